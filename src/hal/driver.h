@@ -1,0 +1,40 @@
+#pragma once
+/// The wall to the machine. A simulator, a CAN bus and an EtherCAT master stand behind the same four calls.
+
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "signals/joint.h"
+#include "signals/sensor_frame.h"
+#include "signals/truth_frame.h"
+
+namespace robot_control {
+
+/// Start-up failed: what, where, remedy.
+class DriverError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Driver {
+ public:
+  virtual ~Driver() = default;
+
+  /// Brings the machine to a state in which `read` and `write` may be called; brakes hold. Throws DriverError.
+  virtual void start() = 0;
+
+  /// Sensors of x(t_k): everything of the frame but head, boot, gate and counters. Never blocks.
+  virtual void read(SensorFrame& sensors) noexcept = 0;
+
+  /// Applies the commands, one per joint in frame order, over [t_k, t_k+1). A simulated machine advances.
+  virtual void write(std::span<const JointCommand> commands) noexcept = 0;
+
+  /// Brakes, now and for good.
+  virtual void stop() noexcept = 0;
+
+  /// What really is at t_k, where the driver knows (a simulator). False: no truth to be had.
+  virtual bool truth(TruthFrame& /*truth*/) noexcept { return false; }
+};
+
+}  // namespace robot_control

@@ -1,0 +1,177 @@
+#pragma once
+/// The latest frames of one channel: one writer, any number of readers in any process.
+///
+/// Eight slots; the frame of cycle c lies in slot c mod 8. The writer is wait-free, a reader copies and
+/// retries at most kReadTries times. Each slot is a sequence lock whose words are atomics: the writer
+/// stores an odd version, then every word with release, then the even version; a reader that loads one
+/// new word with acquire therefore sees the odd version afterwards and discards its copy. No fence is
+/// needed (H.-J. Boehm, "Can seqlocks get along with programming language memory models?", MSPC 2012,
+/// section 4), and on x86-64 every access is a plain move.
+///
+/// `sequence` counts publications over all writers' lives and is the futex word that readers wait on.
+/// Readers need only read access to the memory.
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+
+#include "rt/futex.h"
+#include "signals/frame_head.h"
+
+namespace robot_control {
+
+inline constexpr std::size_t kFrameSlots = 8;
+inline constexpr int kReadTries = 4;
+
+inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
+inline constexpr std::uint64_t kLayoutVersion = 1;
+
+/// First bytes of every shared object: of a LatestFrames as of a Ring.
+struct ChannelHead {
+  std::atomic<std::uint64_t> magic;    ///< kChannelMagic, stored last when the object is made
+  std::uint64_t layout_version;        ///< kLayoutVersion
+  std::uint64_t frame_bytes;           ///< sizeof(Frame)
+  std::uint64_t slots;                 ///< number of frames that fit
+  std::atomic<std::uint64_t> retired;  ///< 1: the name now belongs to another object, map anew
+  std::atomic<std::uint64_t> attached_run;  ///< run whose sensors the writer of this channel waits on
+  std::atomic<std::uint64_t> robot_hash;    ///< RobotModel::hash of the writer's robot; sensors channel only
+  std::array<std::atomic<char>, 256> robot_source;  ///< where that robot was read, zero-terminated
+};
+
+template <class Frame>
+struct LatestFrames {
+  struct Slot {
+    std::atomic<std::uint64_t> version;
+    std::array<std::atomic<std::uint64_t>, kFrameWords<Frame>> words;
+  };
+  ChannelHead head;
+  alignas(64) std::atomic<std::uint32_t> sequence;  ///< futex word
+  std::atomic<std::uint64_t> newest;                ///< slot of the last publication + 1; 0 = none
+  alignas(64) std::array<Slot, kFrameSlots> slots;
+};
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+
+/// What a look-up found.
+enum class Lookup { kMissing, kFrame, kToken, kCorrupt };
+
+template <class Frame>
+class FrameWriter {
+ public:
+  /// `memory`: zeroed, or left by an earlier writer of the same layout. Not owned.
+  explicit FrameWriter(LatestFrames<Frame>* memory = nullptr) noexcept : memory_(memory) {}
+
+  /// Seals the frame, stores it and wakes all readers. One futex call, nothing else.
+  void publish(Frame& frame) noexcept {
+    seal(frame);
+    store(frame);
+    memory_->sequence.fetch_add(1, std::memory_order_release);
+    futex_wake_all(memory_->sequence);
+  }
+
+  /// Stores without sealing or waking: for tests that plant a broken frame.
+  void store(const Frame& frame) noexcept {
+    const auto words = std::bit_cast<std::array<std::uint64_t, kFrameWords<Frame>>>(frame);
+    const std::size_t index = frame.head.cycle % kFrameSlots;
+    auto& slot = memory_->slots[index];
+    const std::uint64_t version = slot.version.load(std::memory_order_relaxed) | 1;  // odd also after a crash
+    slot.version.store(version, std::memory_order_relaxed);
+    for (std::size_t i = 0; i < words.size(); ++i) slot.words[i].store(words[i], std::memory_order_release);
+    slot.version.store(version + 1, std::memory_order_release);
+    memory_->newest.store(index + 1, std::memory_order_release);
+  }
+
+  LatestFrames<Frame>* memory() const noexcept { return memory_; }
+
+ private:
+  LatestFrames<Frame>* memory_;
+};
+
+template <class Frame>
+class FrameReader {
+ public:
+  explicit FrameReader(const LatestFrames<Frame>* memory = nullptr) noexcept : memory_(memory) {}
+  FrameReader(const FrameReader& other) noexcept : memory_(other.memory_.load()) {}
+  FrameReader& operator=(const FrameReader& other) noexcept {
+    memory_.store(other.memory_.load());
+    return *this;
+  }
+
+  /// Ordinary thread: the channel's object was replaced. The old mapping must stay valid.
+  void remap(const LatestFrames<Frame>* memory) noexcept { memory_.store(memory, std::memory_order_release); }
+
+  /// The frame published last.
+  Lookup newest(Frame& out) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    if (memory == nullptr) return Lookup::kMissing;
+    for (int tries = 0; tries < kReadTries; ++tries) {
+      const std::uint64_t newest = memory->newest.load(std::memory_order_acquire);
+      if (newest == 0 || newest > kFrameSlots) return Lookup::kMissing;
+      if (copy(memory->slots[newest - 1], out)) return judge(out);
+    }
+    return Lookup::kMissing;
+  }
+
+  /// The frame of this run and cycle.
+  Lookup at(std::uint64_t run, std::uint64_t cycle, Frame& out) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    if (memory == nullptr) return Lookup::kMissing;
+    for (int tries = 0; tries < kReadTries; ++tries) {
+      if (!copy(memory->slots[cycle % kFrameSlots], out)) continue;
+      const Lookup found = judge(out);
+      if (found == Lookup::kCorrupt) return found;
+      return out.head.run == run && out.head.cycle == cycle ? found : Lookup::kMissing;
+    }
+    return Lookup::kMissing;
+  }
+
+  /// The newest frame of cycles first … last of this run (both included), searched downwards.
+  /// A corrupt frame ends the search. A token counts as missing.
+  Lookup newest_within(std::uint64_t run, std::uint64_t first, std::uint64_t last, Frame& out) const noexcept {
+    for (std::uint64_t cycle = last + 1; cycle-- > first;) {
+      const Lookup found = at(run, cycle, out);
+      if (found == Lookup::kFrame || found == Lookup::kCorrupt) return found;
+    }
+    return Lookup::kMissing;
+  }
+
+  std::uint32_t sequence() const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    return memory == nullptr ? 0 : memory->sequence.load(std::memory_order_acquire);
+  }
+
+  /// Waits until `sequence()` differs from `seen`, or the timeout has passed. True if it differs.
+  bool wait(std::uint32_t seen, std::int64_t timeout_ns) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    if (memory == nullptr) {
+      sleep_ns(timeout_ns);
+      return false;
+    }
+    return futex_wait(memory->sequence, seen, timeout_ns);
+  }
+
+  const LatestFrames<Frame>* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
+
+ private:
+  static bool copy(const typename LatestFrames<Frame>::Slot& slot, Frame& out) noexcept {
+    const std::uint64_t before = slot.version.load(std::memory_order_acquire);
+    if (before % 2 != 0) return false;
+    std::array<std::uint64_t, kFrameWords<Frame>> words;
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = slot.words[i].load(std::memory_order_acquire);
+    if (slot.version.load(std::memory_order_relaxed) != before) return false;
+    out = std::bit_cast<Frame>(words);
+    return true;
+  }
+
+  static Lookup judge(const Frame& frame) noexcept {
+    if (frame.head.run == 0) return Lookup::kMissing;  // a slot never written
+    if (!intact(frame)) return Lookup::kCorrupt;
+    return frame.head.kind == FrameKind::kToken ? Lookup::kToken : Lookup::kFrame;
+  }
+
+  std::atomic<const LatestFrames<Frame>*> memory_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,53 @@
+#pragma once
+/// A latest value between two threads of one process: the inbox of a real-time thread.
+///
+/// Same sequence lock as LatestFrames, one slot. `store` must be serialised by the caller when more than
+/// one thread writes. `load` is bounded: it returns false, and leaves `out`, when a writer was in the way
+/// kReadTries times; the reader then keeps its old value and asks again in the next cycle.
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace robot_control {
+
+template <class Value>
+class LatestValue {
+  static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) % 8 == 0);
+  static constexpr std::size_t kWords = sizeof(Value) / 8;
+  static constexpr int kTries = 4;
+  using Words = std::array<std::uint64_t, kWords>;
+
+ public:
+  explicit LatestValue(const Value& initial = Value{}) noexcept { store(initial); }
+
+  void store(const Value& value) noexcept {
+    const auto words = std::bit_cast<Words>(value);
+    const std::uint64_t version = version_.load(std::memory_order_relaxed);
+    version_.store(version + 1, std::memory_order_relaxed);
+    for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
+    version_.store(version + 2, std::memory_order_release);
+  }
+
+  bool load(Value& out) const noexcept {
+    for (int tries = 0; tries < kTries; ++tries) {
+      const std::uint64_t before = version_.load(std::memory_order_acquire);
+      if (before % 2 != 0) continue;
+      Words words;
+      for (std::size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_acquire);
+      if (version_.load(std::memory_order_relaxed) != before) continue;
+      out = std::bit_cast<Value>(words);
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  std::atomic<std::uint64_t> version_{0};
+  std::array<std::atomic<std::uint64_t>, kWords> words_{};
+};
+
+}  // namespace robot_control

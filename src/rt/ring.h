@@ -1,0 +1,125 @@
+#pragma once
+/// A ring of rows from one writer to one reader in another process, losses counted.
+///
+/// The ring belongs to the writer, the read position to the reader (RingPositions, an object of its own, so
+/// that neither needs write access to the other's memory). Each slot is a sequence lock as in LatestFrames.
+/// When the ring is full the writer either waits (lockstep, a reader present) or drops the new row and counts
+/// it; with no reader present it overwrites the oldest rows.
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "rt/futex.h"
+#include "rt/latest_frames.h"
+
+namespace robot_control {
+
+inline constexpr std::size_t kRingRows = 2048;
+inline constexpr std::size_t kTraceRings = 4;
+
+/// Index into RingPositions::read.
+enum class TraceRing : std::size_t { kDriver = 0, kEstimator = 1, kController = 2, kMonitor = 3 };
+
+/// Rows consumed so far, per ring; written by the reader (telemetry).
+struct RingPositions {
+  ChannelHead head;
+  alignas(64) std::array<std::atomic<std::uint64_t>, kTraceRings> read;
+};
+
+template <class Row>
+struct Ring {
+  static_assert(std::is_trivially_copyable_v<Row> && sizeof(Row) % 8 == 0);
+  static constexpr std::size_t kWords = sizeof(Row) / 8;
+  struct Slot {
+    std::atomic<std::uint64_t> version;  ///< 2 * (position + 1) when row `position` is complete
+    std::array<std::atomic<std::uint64_t>, kWords> words;
+  };
+  ChannelHead head;
+  alignas(64) std::atomic<std::uint64_t> written;  ///< rows ever appended
+  std::atomic<std::uint64_t> dropped;              ///< rows ever dropped by the writer
+  alignas(64) std::array<Slot, kRingRows> slots;
+};
+
+template <class Row>
+class RingWriter {
+ public:
+  explicit RingWriter(Ring<Row>* memory = nullptr) noexcept : memory_(memory) {}
+
+  /// `read`: the reader's position, null when no reader is present. False: dropped and counted.
+  bool append(const Row& row, const std::atomic<std::uint64_t>* read) noexcept {
+    const std::uint64_t position = memory_->written.load(std::memory_order_relaxed);
+    if (full(read)) {
+      memory_->dropped.fetch_add(1, std::memory_order_relaxed);
+      return false;
+    }
+    auto& slot = memory_->slots[position % kRingRows];
+    const auto words = std::bit_cast<std::array<std::uint64_t, Ring<Row>::kWords>>(row);
+    slot.version.store(2 * position + 1, std::memory_order_relaxed);
+    for (std::size_t i = 0; i < words.size(); ++i) slot.words[i].store(words[i], std::memory_order_release);
+    slot.version.store(2 * (position + 1), std::memory_order_release);
+    memory_->written.store(position + 1, std::memory_order_release);
+    return true;
+  }
+
+  /// True when `append` would drop.
+  bool full(const std::atomic<std::uint64_t>* read) const noexcept {
+    if (read == nullptr) return false;
+    const std::uint64_t position = memory_->written.load(std::memory_order_relaxed);
+    const std::uint64_t done = read->load(std::memory_order_acquire);
+    return position >= done && position - done >= kRingRows;
+  }
+
+ private:
+  Ring<Row>* memory_;
+};
+
+template <class Row>
+class RingReader {
+ public:
+  /// Starts at the row that will be written next.
+  explicit RingReader(const Ring<Row>* memory) noexcept
+      : memory_(memory), position_(memory->written.load(std::memory_order_acquire)) {}
+
+  /// Takes the next row; false when there is none yet. Rows overwritten meanwhile are skipped and counted.
+  bool take(Row& row) noexcept {
+    for (;;) {
+      const std::uint64_t written = memory_->written.load(std::memory_order_acquire);
+      if (position_ >= written) {
+        position_ = written;  // the writer's object was made anew
+        return false;
+      }
+      if (written - position_ > kRingRows) {
+        overwritten_ += written - position_ - kRingRows;
+        position_ = written - kRingRows;
+      }
+      const auto& slot = memory_->slots[position_ % kRingRows];
+      const std::uint64_t expected = 2 * (position_ + 1);
+      std::array<std::uint64_t, Ring<Row>::kWords> words;
+      if (slot.version.load(std::memory_order_acquire) == expected) {
+        for (std::size_t i = 0; i < words.size(); ++i) words[i] = slot.words[i].load(std::memory_order_acquire);
+        if (slot.version.load(std::memory_order_relaxed) == expected) {
+          row = std::bit_cast<Row>(words);
+          ++position_;
+          return true;
+        }
+      }
+      ++overwritten_;
+      ++position_;
+    }
+  }
+
+  std::uint64_t position() const noexcept { return position_; }
+  std::uint64_t overwritten() const noexcept { return overwritten_; }
+  std::uint64_t dropped() const noexcept { return memory_->dropped.load(std::memory_order_relaxed); }
+
+ private:
+  const Ring<Row>* memory_;
+  std::uint64_t position_;
+  std::uint64_t overwritten_ = 0;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,45 @@
+#pragma once
+/// What the gate decided in one tick.
+
+#include <cstdint>
+
+namespace robot_control {
+
+enum class GateVerdict : std::uint64_t {
+  kBrake = 0,    ///< The driver's brake law on every joint.
+  kPassed = 1,   ///< The command of cycle k-1, unchanged.
+  kHeld = 2,     ///< An older command (k-2 … k-4), unchanged.
+  kClamped = 3,  ///< Passed or held, with at least one number clamped.
+  kRamp = 4,     ///< Passed under a ramp permit (stop category 1), clamped where needed.
+};
+
+/// Why a verdict is not kPassed; bits of GateReport::reasons.
+enum GateReason : std::uint64_t {
+  kGateFirstTick = 1u << 0,         ///< Tick 0 of a run.
+  kGateNoPermit = 1u << 1,          ///< No permit of this run.
+  kGatePermitExpired = 1u << 2,     ///< The newest permit expired: the monitor made no progress.
+  kGatePermitBrake = 1u << 3,       ///< The permit orders the brake.
+  kGateRampOver = 1u << 4,          ///< The ramp's last cycle has passed.
+  kGateNoCommand = 1u << 5,         ///< No command of cycles k-4 … k-1.
+  kGateCommandHeld = 1u << 6,       ///< Command older than k-1.
+  kGateNotFinite = 1u << 7,         ///< NaN or infinity in the command.
+  kGateChecksum = 1u << 8,          ///< Command or permit whose checksum is wrong.
+  kGateFuture = 1u << 9,            ///< A frame of cycle >= k was refused.
+  kGateEffortClamped = 1u << 10,    ///< |effort| above the joint's limit.
+  kGateWrongJointCount = 1u << 11,  ///< The command is for another number of joints.
+  kGateControllerBrake = 1u << 12,  ///< The command itself asks the brake of every joint.
+  kGateUnknownMode = 1u << 13,      ///< A mode outside JointMode, or a permit action outside PermitAction.
+};
+
+struct GateReport {
+  GateVerdict verdict = GateVerdict::kBrake;
+  std::uint64_t reasons = kGateFirstTick;
+  std::uint64_t command_cycle = 0;    ///< Of the command used; meaningless when none was.
+  std::uint64_t permit_cycle = 0;     ///< Of the permit used; meaningless when none was.
+  std::uint64_t held = 0;             ///< Ticks of this run on a held command.
+  std::uint64_t missed = 0;           ///< Ticks of this run braked for want of a command, tick 0 excepted.
+  std::uint64_t late_permits = 0;     ///< Ticks of this run whose permit was older than k-1, tick 0 excepted.
+  std::uint64_t refused = 0;          ///< Frames of this run refused (checksum, finiteness, future, count).
+};
+
+}  // namespace robot_control

@@ -1,0 +1,22 @@
+#pragma once
+/// Plain geometric values; no algebra here (that is Eigen's, inside the laws).
+
+#include <array>
+
+namespace robot_control {
+
+using Vector3 = std::array<double, 3>;     ///< x, y, z
+using Quaternion = std::array<double, 4>;  ///< x, y, z, w (the order of geometry_msgs); unit norm
+using Matrix6 = std::array<double, 36>;    ///< row-major over x, y, z, roll, pitch, yaw
+
+struct Pose {
+  Vector3 position{};                  ///< m
+  Quaternion orientation{0, 0, 0, 1};  ///< rotates from the child's axes to the parent's
+};
+
+struct Twist {
+  Vector3 linear{};   ///< m/s
+  Vector3 angular{};  ///< rad/s
+};
+
+}  // namespace robot_control

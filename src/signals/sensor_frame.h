@@ -1,0 +1,66 @@
+#pragma once
+/// Driver → everybody: the sensors of cycle k, the driver's health, and the gate's verdict of tick k-1.
+
+#include <array>
+#include <cstdint>
+
+#include "signals/frame_head.h"
+#include "signals/gate_report.h"
+#include "signals/geometry.h"
+#include "signals/joint.h"
+
+namespace robot_control {
+
+inline constexpr std::size_t kMaxContacts = 8;
+
+/// In the IMU link's own axes. Angular velocity belongs to t_k, linear acceleration (specific force,
+/// +g upwards at rest) to [t_k-1, t_k).
+struct ImuSample {
+  Vector3 angular_velocity{};     ///< rad/s
+  Vector3 linear_acceleration{};  ///< m/s²
+  Quaternion orientation{};       ///< all zero where the device has none
+};
+
+enum class DriverState : std::uint64_t { kStarting = 0, kRunning = 1, kPaused = 2, kFault = 3 };
+
+/// Bits of SensorFrame::faults.
+enum DriverFault : std::uint64_t {
+  kFaultSimulationDiverged = 1u << 0,  ///< The physics engine warned: NaN, huge values, bad inertia.
+  kFaultSimulationError = 1u << 1,     ///< The physics engine raised an error.
+  kFaultNotFinite = 1u << 2,           ///< The driver read NaN or infinity.
+  kFaultLink = 1u << 3,                ///< The device does not answer.
+  kFaultDrive = 1u << 4,               ///< A motor drive reports a fault.
+};
+
+/// Bits of SensorFrame::valid.
+enum SensorValidity : std::uint64_t {
+  kValidJoints = 1u << 0,
+  kValidGyro = 1u << 1,
+  kValidAccelerometer = 1u << 2,
+  kValidOrientation = 1u << 3,
+  kValidContacts = 1u << 4,
+  kValidBattery = 1u << 5,
+};
+
+/// Bits of SensorFrame::digital_inputs.
+enum DigitalInput : std::uint64_t { kInputEmergencyStop = 1u << 0 };
+
+struct SensorFrame {
+  FrameHead head;
+  std::uint64_t boot = 0;  ///< Random number of the driver process; outlives a reset, not a restart.
+  DriverState driver_state = DriverState::kStarting;
+  std::uint64_t faults = 0;
+  std::uint64_t valid = 0;
+  std::uint64_t joint_count = 0;
+  std::array<JointSample, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
+  ImuSample imu;
+  std::array<Vector3, kMaxContacts> contact_forces{};  ///< N, base axes, mean over [t_k-1, t_k)
+  std::uint64_t digital_inputs = 0;
+  double battery_voltage = 0;  ///< V
+  double battery_current = 0;  ///< A, positive when discharging
+  GateReport gate;             ///< of tick k-1
+  std::uint64_t overruns = 0;      ///< Ticks of this run that ended after the next deadline.
+  std::uint64_t slipped_ns = 0;    ///< Time a simulated plant fell behind the wall clock in this run.
+};
+
+}  // namespace robot_control

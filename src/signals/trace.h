@@ -1,0 +1,43 @@
+#pragma once
+/// One row per cycle and node for the log: the frame it published and when.
+
+#include <array>
+#include <cstdint>
+
+#include "signals/command_frame.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+#include "signals/truth_frame.h"
+
+namespace robot_control {
+
+/// Relative to the sensor sample's stamp, on the same clock. Zero in lockstep, where time stands still.
+struct CycleTiming {
+  std::int64_t woke_ns = 0;       ///< the thread began this cycle
+  std::int64_t published_ns = 0;  ///< its frame was published
+};
+
+struct DriverTrace {
+  SensorFrame sensors;
+  TruthFrame truth;
+  GateReport gate;  ///< of tick k itself (SensorFrame::gate is that of k-1)
+  CycleTiming timing;
+};
+
+struct EstimatorTrace {
+  StateFrame state;
+  CycleTiming timing;
+};
+
+struct ControllerTrace {
+  CommandFrame command;
+  CycleTiming timing;
+};
+
+struct MonitorTrace {
+  Permit permit;
+  CycleTiming timing;
+};
+
+}  // namespace robot_control
