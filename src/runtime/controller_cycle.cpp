@@ -1,0 +1,73 @@
+#include "runtime/controller_cycle.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace robot_control {
+
+ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
+                                 const Channels& channels, CommandScript script, Now now)
+    : controller_(parameters, robot, period),
+      clock_(now),
+      channels_(channels),
+      script_(std::move(script)),
+      robot_hash_(robot.hash) {}
+
+void ControllerCycle::enter_run() noexcept {
+  CommandFrame last;
+  const FrameReader<CommandFrame> own(channels_.command.memory());
+  const bool resumed = own.newest(last) == Lookup::kFrame && last.head.run == state_.head.run;
+  inbox_.load(received_);
+  script_.rewind();
+  if (resumed) script_.advance(last.head.cycle);
+  controller_.reset(request_.count);
+}
+
+void ControllerCycle::receive(std::uint64_t cycle) noexcept {
+  VelocityCommand arrived = received_;
+  inbox_.load(arrived);
+  if (arrived.count != received_.count) {
+    request_.twist = arrived.twist;
+    request_.count += arrived.count - received_.count;
+    received_ = arrived;
+  }
+  const ScriptEvents events = script_.advance(cycle);
+  if (events.has_twist) {
+    request_.twist = events.twist;
+    request_.count += events.twists;
+  }
+}
+
+bool ControllerCycle::step() noexcept {
+  const std::int64_t woke_ns = clock_.now();
+  const Lookup found = channels_.state->newest(state_);
+  if (found == Lookup::kMissing || found == Lookup::kCorrupt) return false;
+  if (!current(*channels_.sensors, state_.head, robot_hash_)) return false;
+  const Arrival arrival = clock_.judge(state_.head);
+  if (arrival == Arrival::kOld) return false;
+  const std::uint64_t run = state_.head.run;
+  const std::uint64_t cycle = state_.head.cycle;
+  const Lookup sensors_found = channels_.sensors->at(run, cycle, sensors_);
+  if (arrival == Arrival::kNewRun) enter_run();
+  clock_.accept(state_.head);
+  if (found == Lookup::kToken || sensors_found == Lookup::kToken) {
+    publish_token(channels_.command, state_.head);
+    return false;
+  }
+  if (sensors_found != Lookup::kFrame) return false;
+
+  receive(cycle);
+  ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};
+  if (cycle > 0 && channels_.permit->newest_within(run, cycle - std::min(cycle, kPermitLife), cycle - 1, permit_) ==
+                       Lookup::kFrame &&
+      permit_.expiry >= cycle) {
+    input.permit = &permit_;
+  }
+  controller_.step(input, trace_.command);
+  trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
+  channels_.command.publish(trace_.command);
+  trace_.timing = clock_.timing(woke_ns, state_.head.stamp_ns);
+  return true;
+}
+
+}  // namespace robot_control

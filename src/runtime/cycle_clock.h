@@ -1,0 +1,68 @@
+#pragma once
+/// What a consumer of the sensors channel has already seen, and when it woke.
+
+#include <cstdint>
+
+#include "rt/latest_frames.h"
+#include "signals/frame_head.h"
+#include "signals/sensor_frame.h"
+#include "signals/trace.h"
+
+namespace robot_control {
+
+/// ns on the clock of the stamps; null in virtual time and in lockstep, where all timings are zero.
+using Now = std::int64_t (*)();
+
+/// What a frame means to a consumer that may have seen it before.
+enum class Arrival {
+  kOld,     ///< the frame processed last, again
+  kNext,    ///< a later cycle of the same run
+  kNewRun,  ///< the first frame of another run
+};
+
+class CycleClock {
+ public:
+  explicit CycleClock(Now now) noexcept : now_(now) {}
+
+  Arrival judge(const FrameHead& head) const noexcept {
+    if (head.run != run_) return Arrival::kNewRun;
+    return head.cycle > cycle_ ? Arrival::kNext : Arrival::kOld;
+  }
+
+  void accept(const FrameHead& head) noexcept {
+    run_ = head.run;
+    cycle_ = head.cycle;
+  }
+
+  std::int64_t now() const noexcept { return now_ == nullptr ? 0 : now_(); }
+
+  CycleTiming timing(std::int64_t woke_ns, std::int64_t stamp_ns) const noexcept {
+    if (now_ == nullptr) return {};
+    return {.woke_ns = woke_ns - stamp_ns, .published_ns = now_() - stamp_ns};
+  }
+
+  std::uint64_t run() const noexcept { return run_; }
+  std::uint64_t cycle() const noexcept { return cycle_; }
+
+ private:
+  Now now_;
+  std::uint64_t run_ = 0;
+  std::uint64_t cycle_ = 0;
+};
+
+/// Is `head` of the run that the driver is in now, on a robot with this hash?
+inline bool current(const FrameReader<SensorFrame>& sensors, const FrameHead& head, std::uint64_t robot_hash) noexcept {
+  const auto* memory = sensors.memory();
+  return memory != nullptr && memory->head.attached_run.load(std::memory_order_acquire) == head.run &&
+         memory->head.robot_hash.load(std::memory_order_acquire) == robot_hash;
+}
+
+/// Lockstep: cycle k has passed here, without a frame.
+template <class Frame>
+void publish_token(FrameWriter<Frame>& channel, const FrameHead& of) noexcept {
+  Frame token{};
+  token.head = {.run = of.run, .cycle = of.cycle, .stamp_ns = of.stamp_ns, .kind = FrameKind::kToken};
+  channel.publish(token);
+}
+
+}  // namespace robot_control

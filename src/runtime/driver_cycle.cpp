@@ -1,0 +1,78 @@
+#include "runtime/driver_cycle.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace robot_control {
+namespace {
+
+std::vector<double> effort_limits(const RobotModel& robot) {
+  std::vector<double> limits;
+  for (const JointModel& joint : robot.joints) limits.push_back(joint.effort_limit);
+  return limits;
+}
+
+}  // namespace
+
+DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns,
+                         Now now)
+    : driver_(driver), channels_(channels), gate_(effort_limits(robot)), period_ns_(period_ns), now_(now) {
+  auto& head = channels_.sensors.memory()->head;
+  for (std::size_t i = 0; i < head.robot_source.size(); ++i) {
+    head.robot_source[i].store(i + 1 < head.robot_source.size() && i < robot.source.size() ? robot.source[i] : '\0');
+  }
+  head.robot_hash.store(robot.hash, std::memory_order_release);
+}
+
+void DriverCycle::begin_run(std::uint64_t run) noexcept {
+  run_ = run;
+  cycle_ = 0;
+  overruns_ = 0;
+  slipped_ns_ = 0;
+  gate_.reset();
+  trace_ = {};
+  auto* memory = channels_.sensors.memory();
+  memory->head.attached_run.store(run, std::memory_order_release);
+  memory->sequence.fetch_add(1, std::memory_order_release);
+  futex_wake_all(memory->sequence);
+}
+
+GateInput DriverCycle::latch() noexcept {
+  GateInput input;
+  input.run = run_;
+  input.cycle = cycle_;
+  input.command = &command_;
+  input.permit = &permit_;
+  if (cycle_ == 0) return input;
+  const std::uint64_t last = cycle_ - 1;
+  input.command_found = channels_.command->newest_within(run_, cycle_ - std::min(cycle_, kCommandLife), last, command_);
+  input.permit_found = channels_.permit->newest_within(run_, cycle_ - std::min(cycle_, kPermitLife), last, permit_);
+  return input;
+}
+
+void DriverCycle::step() noexcept {
+  const std::int64_t stamp_ns = next_stamp_ns();
+  trace_.timing.woke_ns = now_ == nullptr ? 0 : now_() - stamp_ns;
+  const GateInput input = latch();
+
+  SensorFrame& sensors = trace_.sensors;
+  driver_.read(sensors);
+  sensors.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
+  sensors.boot = boot_;
+  sensors.gate = gate_.report();
+  sensors.overruns = overruns_;
+  sensors.slipped_ns = slipped_ns_;
+  channels_.sensors.publish(sensors);
+  trace_.timing.published_ns = now_ == nullptr ? 0 : now_() - stamp_ns;
+
+  if (driver_.truth(trace_.truth)) {
+    trace_.truth.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
+    channels_.truth.publish(trace_.truth);
+  }
+
+  driver_.write(gate_.step(input));
+  trace_.gate = gate_.report();
+  ++cycle_;
+}
+
+}  // namespace robot_control

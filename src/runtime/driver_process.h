@@ -1,0 +1,58 @@
+#pragma once
+/// The node that owns the machine and the time: mujoco_plant today, a fieldbus master tomorrow.
+///
+/// `clock: wall` paces with absolute deadlines; a simulated plant that falls behind lets time slip.
+/// `clock: lockstep` waits for state, command and permit k before tick k+1; time stands still while one is
+/// missing, and `missing` says which.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/driver_cycle.h"
+#include "runtime/process.h"
+#include "runtime/trace_sink.h"
+
+namespace robot_control {
+
+class DriverProcess final : public Process {
+ public:
+  /// Takes the locks; `open_driver` then (or never).
+  DriverProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ~DriverProcess() override;
+
+  /// Starts the machine and announces the first run. Throws DriverError.
+  void open_driver(std::unique_ptr<Driver> driver);
+
+  std::vector<std::string> missing() const override;
+  const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
+  const FrameReader<TruthFrame>& truth() const noexcept { return truth_.reader; }
+
+  /// Simulated over real time since the run began.
+  double real_time_factor() const noexcept { return real_time_factor_.load(); }
+
+ private:
+  void poll_channels() override;
+  bool ready() override;
+  void loop() noexcept override;
+  void loop_wall() noexcept;
+  void loop_lockstep() noexcept;
+  bool tick() noexcept;
+
+  RobotModel robot_;
+  std::uint64_t cycles_;
+  Output<SensorFrame> sensors_;
+  Output<TruthFrame> truth_;
+  Input<StateFrame> state_;
+  Input<CommandFrame> command_;
+  Input<Permit> permit_;
+  TraceSink<DriverTrace> trace_;
+  std::unique_ptr<Driver> driver_;
+  std::unique_ptr<DriverCycle> cycle_;
+  std::atomic<const char*> awaited_{nullptr};
+  std::atomic<double> real_time_factor_{0};
+};
+
+}  // namespace robot_control

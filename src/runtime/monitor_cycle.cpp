@@ -1,0 +1,91 @@
+#include "runtime/monitor_cycle.h"
+
+#include <utility>
+
+namespace robot_control {
+
+MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
+                           const Channels& channels, CommandScript script, Now now)
+    : monitor_(parameters, period),
+      clock_(now),
+      channels_(channels),
+      script_(std::move(script)),
+      robot_hash_(robot.hash) {
+  Permit last;
+  const FrameReader<Permit> own(channels_.permit.memory());
+  if (own.newest(last) == Lookup::kFrame) monitor_.resume(last);
+}
+
+void MonitorCycle::enter_run() noexcept {
+  Permit last;
+  const FrameReader<Permit> own(channels_.permit.memory());
+  const bool resumed = own.newest(last) == Lookup::kFrame && last.head.run == sensors_.head.run;
+  script_.rewind();
+  if (resumed) script_.advance(last.head.cycle);
+  receive_messages();
+  monitor_.reset(operator_input_);
+}
+
+void MonitorCycle::receive_messages() noexcept {
+  OperatorInput arrived = received_;
+  inbox_.load(arrived);
+  operator_input_.e_stop_level = arrived.e_stop_level;
+  operator_input_.e_stop_triggers += arrived.e_stop_triggers - received_.e_stop_triggers;
+  operator_input_.e_stop_services += arrived.e_stop_services - received_.e_stop_services;
+  operator_input_.resets += arrived.resets - received_.resets;
+  operator_input_.heartbeats += arrived.heartbeats - received_.heartbeats;
+  received_ = arrived;
+}
+
+void MonitorCycle::receive(std::uint64_t cycle) noexcept {
+  receive_messages();
+  const ScriptEvents events = script_.advance(cycle);
+  operator_input_.e_stop_services += events.e_stops;
+  operator_input_.resets += events.resets;
+}
+
+bool MonitorCycle::step() noexcept {
+  const std::int64_t woke_ns = clock_.now();
+  const Lookup found = channels_.sensors->newest(sensors_);
+  if (found == Lookup::kMissing || found == Lookup::kCorrupt) return false;
+  if (!current(*channels_.sensors, sensors_.head, robot_hash_)) return false;
+  const Arrival arrival = clock_.judge(sensors_.head);
+  if (arrival == Arrival::kOld) return false;
+  if (arrival == Arrival::kNewRun) enter_run();
+  clock_.accept(sensors_.head);
+  silent_ = false;
+  if (found == Lookup::kToken) {
+    publish_token(channels_.permit, sensors_.head);
+    return false;
+  }
+
+  const std::uint64_t run = sensors_.head.run;
+  const std::uint64_t cycle = sensors_.head.cycle;
+  receive(cycle);
+  input_ = {.sensors = &sensors_, .operator_input = operator_input_};
+  if (cycle > 0) {
+    const Lookup command_found = channels_.command->at(run, cycle - 1, command_);
+    const Lookup state_found = channels_.state->at(run, cycle - 1, state_);
+    input_.command = command_found == Lookup::kFrame ? &command_ : nullptr;
+    input_.state_seen = state_found == Lookup::kFrame;
+    input_.corrupt = command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt;
+  }
+  publish();
+  trace_.timing = clock_.timing(woke_ns, sensors_.head.stamp_ns);
+  return true;
+}
+
+void MonitorCycle::silence() noexcept {
+  if (silent_ || clock_.run() == 0 || sensors_.driver_state == DriverState::kPaused) return;
+  silent_ = true;
+  monitor_.driver_lost();
+  publish();
+}
+
+void MonitorCycle::publish() noexcept {
+  monitor_.step(input_, trace_.permit);
+  trace_.permit.head = {.run = clock_.run(), .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+  channels_.permit.publish(trace_.permit);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,65 @@
+#pragma once
+/// The monitor's duty in one cycle: sensors k (which woke it), command k-1, head of state k-1 → permit k.
+/// A token is passed on.
+
+#include <cstdint>
+
+#include "rt/latest_frames.h"
+#include "rt/latest_value.h"
+#include "runtime/command_script.h"
+#include "runtime/cycle_clock.h"
+#include "safety/safety_monitor.h"
+#include "signals/trace.h"
+
+namespace robot_control {
+
+/// The monitor's wait ends after so many periods; then the driver is lost (wall clock only).
+inline constexpr std::int64_t kDriverLossPeriods = 20;
+
+class MonitorCycle {
+ public:
+  struct Channels {
+    const FrameReader<SensorFrame>* sensors;
+    const FrameReader<StateFrame>* state;
+    const FrameReader<CommandFrame>* command;
+    FrameWriter<Permit> permit;
+  };
+
+  MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period, const Channels& channels,
+               CommandScript script, Now now);
+
+  /// In from the outside: one ordinary thread stores, this cycle loads.
+  LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
+
+  /// True when there was a new sensor frame of the driver's current run, and a permit was published.
+  bool step() noexcept;
+
+  /// The wait for sensors ended without a frame. Unless the driver's last word was "paused", that latches
+  /// kCauseDriverLost, and the last permit is published again with it, for display.
+  void silence() noexcept;
+
+  const MonitorTrace& trace() const noexcept { return trace_; }
+
+ private:
+  void enter_run() noexcept;
+  void receive_messages() noexcept;
+  void receive(std::uint64_t cycle) noexcept;
+  void publish() noexcept;
+
+  SafetyMonitor monitor_;
+  CycleClock clock_;
+  Channels channels_;
+  CommandScript script_;
+  std::uint64_t robot_hash_;
+  LatestValue<OperatorInput> inbox_;
+  OperatorInput received_;        ///< what the inbox held when last looked at
+  OperatorInput operator_input_;  ///< inbox and script added up
+  bool silent_ = false;
+  SensorFrame sensors_;
+  StateFrame state_;
+  CommandFrame command_;
+  MonitorInput input_;
+  MonitorTrace trace_;
+};
+
+}  // namespace robot_control

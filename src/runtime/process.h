@@ -1,0 +1,91 @@
+#pragma once
+/// A node without ROS: its channels and locks, its real-time thread, and what an ordinary thread does for it.
+///
+/// The constructor takes the locks of the channels that the node writes (BusError when another instance holds
+/// them). Then an ordinary thread calls `poll` at 10 Hz: it maps the channels of the others as they appear,
+/// starts the real-time thread as soon as the node can run, and notices replaced channels, another robot and
+/// telemetry. The real-time thread touches nothing but frames, futexes and the clock.
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/bus.h"
+#include "parameters/parameters.h"
+#include "robot/robot_model.h"
+#include "rt/latest_frames.h"
+#include "rt/realtime_thread.h"
+
+namespace robot_control {
+
+/// The ends of the chain's priorities: driver > monitor > estimator > controller.
+enum class LoopPriority : int { kDriver = 83, kMonitor = 82, kEstimator = 81, kController = 80 };
+
+class Process {
+ public:
+  Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name);
+  virtual ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  /// Ordinary thread, at 10 Hz. Throws BusError (a channel is foreign, the driver runs another robot) and
+  /// RealtimeError (realtime: required was not granted).
+  void poll();
+
+  /// Ends the real-time thread within 0.2 s. Called by every destructor below.
+  void stop() noexcept;
+
+  /// True once the loop has ended by itself (mujoco_plant after `cycles`).
+  bool finished() const noexcept { return finished_.load(); }
+
+  /// Who this node is waiting for, by node name; empty when it has all it needs.
+  virtual std::vector<std::string> missing() const = 0;
+
+  /// What the real-time thread was granted and what not, in words; empty before it started.
+  std::vector<std::string> realtime_messages() const;
+
+ protected:
+  virtual void poll_channels() = 0;         ///< maps what appeared
+  virtual bool ready() = 0;                 ///< may the real-time thread start?
+  virtual void loop() noexcept = 0;         ///< its body; ends when `stopping()`
+
+  const std::atomic<bool>& stopping() const noexcept { return stopping_; }
+  void finish() noexcept { finished_.store(true); }
+  const LoopParameters& loop_parameters() const noexcept { return loop_; }
+  bool lockstep() const noexcept { return loop_.clock == ClockMode::kLockstep; }
+
+ private:
+  LoopParameters loop_;
+  LoopPriority priority_;
+  std::string thread_name_;
+  std::atomic<bool> stopping_{false};
+  std::atomic<bool> finished_{false};
+  std::unique_ptr<RealtimeThread> thread_;
+};
+
+/// A channel of another node, and the reader that the real-time thread uses.
+template <class Frame>
+struct Input {
+  Input(const std::string& bus, const char* name) : channel(bus, name) {}
+
+  void poll() {
+    if (channel.poll()) reader.remap(channel.memory());
+  }
+
+  ForeignChannel<LatestFrames<Frame>> channel;
+  FrameReader<Frame> reader;
+};
+
+/// A channel of this node; `reader` is for the ordinary threads that publish what was written.
+template <class Frame>
+struct Output {
+  Output(const std::string& bus, const char* name)
+      : channel(bus, name), writer(channel.memory()), reader(channel.memory()) {}
+
+  OwnedChannel<LatestFrames<Frame>> channel;
+  FrameWriter<Frame> writer;
+  FrameReader<Frame> reader;
+};
+
+}  // namespace robot_control
