@@ -1,0 +1,206 @@
+#pragma once
+/// The one vocabulary: every state, verdict and bit of the frames → its name, what it means, what to do.
+/// Log, topics, services and tests speak these words and no others.
+///
+/// A table holds one row per bit, in the order of the bits (checked below). `remedy` is empty where there is
+/// nothing to repair.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "signals/command_frame.h"
+#include "signals/gate_report.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+struct BitName {
+  std::uint64_t bit;
+  std::string_view name;      ///< snake_case, for logs and topics
+  std::string_view sentence;  ///< what is the case
+  std::string_view remedy;    ///< what an operator does about it
+};
+
+// clang-format off
+inline constexpr auto kStopCauseNames = std::to_array<BitName>({
+    {kCauseEmergencyStopTopic, "e_stop_topic", "the topic e_stop said true",
+     "publish false on e_stop, then call e_stop_reset"},
+    {kCauseEmergencyStopService, "e_stop_service", "e_stop_trigger was called", "call e_stop_reset"},
+    {kCauseEmergencyStopInput, "e_stop_input", "the emergency stop button is pressed",
+     "release the button, then call e_stop_reset"},
+    {kCauseDriverLost, "driver_lost", "the driver published no sensors for 20 periods",
+     "look whether the driver node runs and gets its core, then call e_stop_reset"},
+    {kCauseDriverFault, "driver_fault", "the driver reports a fault",
+     "read the driver's fault, repair it, restart or reset the driver, then call e_stop_reset"},
+    {kCauseControllerLost, "controller_lost", "the controller published no command for loss_cycles cycles",
+     "look whether diff_drive_controller runs, then call e_stop_reset"},
+    {kCauseEstimatorLost, "estimator_lost", "the estimator published no state for loss_cycles cycles",
+     "look whether state_estimator runs, then call e_stop_reset"},
+    {kCauseHeartbeatLost, "heartbeat_lost", "the operator's heartbeat stopped",
+     "publish heartbeat again, then call e_stop_reset"},
+    {kCauseMonitorRestarted, "monitor_restarted", "the safety monitor was restarted while the driver ran on",
+     "call e_stop_reset"},
+    {kCauseCorruptFrame, "corrupt_frame", "frames with a wrong checksum were read",
+     "look for two builds on one bus or failing memory, then call e_stop_reset"},
+    {kCauseNotFinite, "not_finite", "sensors or command held NaN or infinity",
+     "look at the sensors and at the controller's log, then call e_stop_reset"},
+});
+
+inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
+    {kRefusalCauseActive, "cause_active", "a cause of the stop persists", "remove the cause"},
+    {kRefusalCommand, "command", "a motion is still being asked for",
+     "stop the sender on cmd_vel, or let it send zero"},
+    {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every wheel stands"},
+    {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
+});
+
+inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
+    {kMissingSensors, "sensors", "no sensors of this run were seen", "start the driver"},
+    {kMissingState, "state", "no state of this run was seen", "start state_estimator"},
+    {kMissingCommand, "command", "no command of this run was seen", "start diff_drive_controller"},
+});
+
+inline constexpr auto kGateReasonNames = std::to_array<BitName>({
+    {kGateFirstTick, "first_tick", "the first tick of a run brakes", ""},
+    {kGateNoPermit, "no_permit", "there is no permit of this run", "start safety_monitor"},
+    {kGatePermitExpired, "permit_expired", "the newest permit has expired",
+     "look whether safety_monitor runs and gets its core"},
+    {kGatePermitBrake, "permit_brake", "the permit orders the brake", "read the cause in safety_status"},
+    {kGateRampOver, "ramp_over", "the ramp's last cycle has passed", "read the cause in safety_status"},
+    {kGateNoCommand, "no_command", "there is no command of the last 4 cycles",
+     "look whether diff_drive_controller runs and gets its core"},
+    {kGateCommandHeld, "command_held", "the command is older than one cycle and is held", ""},
+    {kGateNotFinite, "not_finite", "the command holds NaN or infinity", "look at the controller's log"},
+    {kGateChecksum, "checksum", "a frame's checksum is wrong", "look for two builds on one bus or failing memory"},
+    {kGateFuture, "future", "a frame of this or a later cycle was refused", "look for two drivers on one bus"},
+    {kGateEffortClamped, "effort_clamped", "an effort was clamped to its joint's limit", ""},
+    {kGateWrongJointCount, "wrong_joint_count", "the command is for another number of joints",
+     "start every node with the same robot"},
+    {kGateControllerBrake, "controller_brake", "the controller asks the brake of every joint", ""},
+    {kGateUnknownMode, "unknown_mode", "a joint mode or a permit action is unknown",
+     "look for two builds on one bus"},
+});
+
+inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
+    {kReasonNoCommand, "no_command", "nothing was received on cmd_vel in this run", "publish on cmd_vel"},
+    {kReasonTimedOut, "timed_out", "the last cmd_vel is older than cmd_vel_timeout",
+     "publish on cmd_vel more often than every cmd_vel_timeout"},
+    {kReasonRefused, "refused", "the last cmd_vel was NaN or infinite", "repair the sender on cmd_vel"},
+    {kReasonSpeedLimited, "speed_limited", "cmd_vel is above max_linear_speed or max_angular_speed", ""},
+    {kReasonAccelerationLimited, "acceleration_limited", "the acceleration limit shapes the motion", ""},
+    {kReasonJerkLimited, "jerk_limited", "the jerk limit shapes the motion", ""},
+    {kReasonCurvatureKept, "curvature_kept", "one axis was scaled to keep the commanded curvature", ""},
+    {kReasonSaturated, "saturated", "a wheel's torque or speed is at its limit", ""},
+    {kReasonNoPermit, "no_permit", "there is no live permit", "start safety_monitor"},
+    {kReasonPermitBrake, "permit_brake", "the permit orders the brake", "read the cause in safety_status"},
+    {kReasonPermitRamp, "permit_ramp", "the permit orders a ramp to standstill", "read the cause in safety_status"},
+    {kReasonNoState, "no_state", "the state of this cycle is missing, held or invalid", "start state_estimator"},
+    {kReasonBadSensors, "bad_sensors", "joint samples are missing or not finite", "look at the driver's faults"},
+    {kReasonHolding, "holding", "standing with zero command: the brake holds the position", ""},
+});
+
+inline constexpr auto kDriverFaultNames = std::to_array<BitName>({
+    {kFaultSimulationDiverged, "simulation_diverged", "the physics engine warned of NaN or huge values",
+     "reset the plant; look at the scene and the commands"},
+    {kFaultSimulationError, "simulation_error", "the physics engine raised an error",
+     "restart the plant; look at its log"},
+    {kFaultNotFinite, "not_finite", "the driver read NaN or infinity", "look at the sensors' cables and drives"},
+    {kFaultLink, "link", "the device does not answer", "look at cable and power"},
+    {kFaultDrive, "drive", "a motor drive reports a fault", "read the drive's own error and clear it"},
+});
+
+inline constexpr auto kStateFlagNames = std::to_array<BitName>({
+    {kStateValid, "valid", "pose and twist may be used", ""},
+    {kStateSlip, "slip", "wheels and inertial sensors disagree", ""},
+    {kStateStandstill, "standstill", "all sensors are quiet", ""},
+    {kStateRestarted, "restarted", "the estimator continues an earlier process's state", ""},
+    {kStateSkipped, "skipped", "a cycle of sensors was never seen", "look whether state_estimator gets its core"},
+    {kStateNoGyro, "no_gyro", "yaw comes from the wheels alone", "look at the IMU"},
+    {kStateBadSample, "bad_sample", "a sample was missing, not finite or impossible and was not used",
+     "look at the driver's faults"},
+});
+
+inline constexpr auto kDigitalInputNames = std::to_array<BitName>({
+    {kInputEmergencyStop, "e_stop", "the emergency stop button is pressed", "release the button"},
+});
+// clang-format on
+
+constexpr std::string_view name_of(SupervisorState state) noexcept {
+  constexpr std::array<std::string_view, 6> kNames{"INIT", "READY", "DRIVE", "STOPPING", "STOPPED", "FAULT"};
+  const auto index = static_cast<std::size_t>(state);
+  return index < kNames.size() ? kNames[index] : "UNKNOWN";
+}
+
+constexpr std::string_view name_of(PermitAction action) noexcept {
+  constexpr std::array<std::string_view, 3> kNames{"brake", "ramp", "drive"};
+  const auto index = static_cast<std::size_t>(action);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+constexpr std::string_view name_of(GateVerdict verdict) noexcept {
+  constexpr std::array<std::string_view, 5> kNames{"brake", "passed", "held", "clamped", "ramp"};
+  const auto index = static_cast<std::size_t>(verdict);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+constexpr std::string_view name_of(DriverState state) noexcept {
+  constexpr std::array<std::string_view, 4> kNames{"starting", "running", "paused", "fault"};
+  const auto index = static_cast<std::size_t>(state);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+constexpr std::string_view name_of(JointMode mode) noexcept {
+  constexpr std::array<std::string_view, 4> kNames{"brake", "effort", "velocity", "impedance"};
+  const auto index = static_cast<std::size_t>(mode);
+  return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+/// The row of one bit; null where the table does not know it.
+constexpr const BitName* row_of(std::span<const BitName> table, std::uint64_t bit) noexcept {
+  for (const BitName& row : table) {
+    if (row.bit == bit) return &row;
+  }
+  return nullptr;
+}
+
+/// "controller_lost heartbeat_lost": the names of all bits set, lowest first. Not for the loop: allocates.
+inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, std::string_view separator = " ") {
+  std::string text;
+  for (const BitName& row : table) {
+    if ((bits & row.bit) == 0) continue;
+    if (!text.empty()) text += separator;
+    text += row.name;
+  }
+  return text;
+}
+
+/// "the topic e_stop said true (publish false on e_stop, then call e_stop_reset); …". Allocates.
+inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits) {
+  std::string text;
+  for (const BitName& row : table) {
+    if ((bits & row.bit) == 0) continue;
+    if (!text.empty()) text += "; ";
+    text += row.sentence;
+    if (!row.remedy.empty()) text.append(" (").append(row.remedy).append(")");
+  }
+  return text;
+}
+
+/// Row i names bit i.
+constexpr bool in_bit_order(std::span<const BitName> table) noexcept {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].bit != std::uint64_t{1} << i) return false;
+  }
+  return true;
+}
+static_assert(in_bit_order(kStopCauseNames) && in_bit_order(kResetRefusalNames) && in_bit_order(kMissingNodeNames));
+static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames));
+static_assert(in_bit_order(kDriverFaultNames) && in_bit_order(kStateFlagNames) && in_bit_order(kDigitalInputNames));
+
+}  // namespace robot_control
