@@ -66,7 +66,7 @@ bool ControllerCycle::step() noexcept {
   controller_.step(input, trace_.command);
   trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
   channels_.command.publish(trace_.command);
-  trace_.timing = clock_.timing(woke_ns, state_.head.stamp_ns);
+  trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }
 

@@ -36,9 +36,9 @@ class CycleClock {
 
   std::int64_t now() const noexcept { return now_ == nullptr ? 0 : now_(); }
 
-  CycleTiming timing(std::int64_t woke_ns, std::int64_t stamp_ns) const noexcept {
+  CycleTiming timing(std::int64_t woke_ns, const SensorFrame& sensors) const noexcept {
     if (now_ == nullptr) return {};
-    return {.woke_ns = woke_ns - stamp_ns, .published_ns = now_() - stamp_ns};
+    return {.woke_ns = woke_ns - due_ns(sensors), .published_ns = now_() - due_ns(sensors)};
   }
 
   std::uint64_t run() const noexcept { return run_; }

@@ -52,7 +52,7 @@ GateInput DriverCycle::latch() noexcept {
 
 void DriverCycle::step() noexcept {
   const std::int64_t stamp_ns = next_stamp_ns();
-  trace_.timing.woke_ns = now_ == nullptr ? 0 : now_() - stamp_ns;
+  const std::int64_t woke_ns = now_ == nullptr ? 0 : now_();
   const GateInput input = latch();
 
   SensorFrame& sensors = trace_.sensors;
@@ -63,7 +63,7 @@ void DriverCycle::step() noexcept {
   sensors.overruns = overruns_;
   sensors.slipped_ns = slipped_ns_;
   channels_.sensors.publish(sensors);
-  trace_.timing.published_ns = now_ == nullptr ? 0 : now_() - stamp_ns;
+  if (now_ != nullptr) trace_.timing = {woke_ns - due_ns(sensors), now_() - due_ns(sensors)};
 
   if (driver_.truth(trace_.truth)) {
     trace_.truth.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};

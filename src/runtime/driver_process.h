@@ -51,7 +51,7 @@ class DriverProcess final : public Process {
   TraceSink<DriverTrace> trace_;
   std::unique_ptr<Driver> driver_;
   std::unique_ptr<DriverCycle> cycle_;
-  std::atomic<const char*> awaited_{nullptr};
+  std::atomic<std::uint64_t> awaited_{0};  ///< lockstep: cycle waited for, plus 1
   std::atomic<double> real_time_factor_{0};
 };
 

@@ -38,7 +38,7 @@ bool EstimatorCycle::step() noexcept {
   estimator_.step(sensors_, trace_.state);
   trace_.state.head = {.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
   state_channel_.publish(trace_.state);
-  trace_.timing = clock_.timing(woke_ns, sensors_.head.stamp_ns);
+  trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }
 

@@ -71,7 +71,7 @@ bool MonitorCycle::step() noexcept {
     input_.corrupt = command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt;
   }
   publish();
-  trace_.timing = clock_.timing(woke_ns, sensors_.head.stamp_ns);
+  trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }
 

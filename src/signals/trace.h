@@ -12,7 +12,12 @@
 
 namespace robot_control {
 
-/// Relative to the sensor sample's stamp, on the same clock. Zero in lockstep, where time stands still.
+/// When cycle k was due on the wall clock: its stamp, later by what a simulated plant let slip.
+inline std::int64_t due_ns(const SensorFrame& sensors) noexcept {
+  return sensors.head.stamp_ns + static_cast<std::int64_t>(sensors.slipped_ns);
+}
+
+/// Relative to `due_ns`, on the same clock. Zero in lockstep, where time stands still.
 struct CycleTiming {
   std::int64_t woke_ns = 0;       ///< the thread began this cycle
   std::int64_t published_ns = 0;  ///< its frame was published

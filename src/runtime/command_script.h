@@ -1,0 +1,68 @@
+#pragma once
+/// Messages written down beforehand: a deterministic entrance beside `cmd_vel` and the e-stop services.
+///
+///   cycle,linear,angular,event
+///   0,0.5,0.2,
+///   1000,nan,0,
+///   1500,,,e_stop
+///   3000,0,0,e_stop_reset
+///
+/// A row is a message received in that cycle: m/s and rad/s as on `cmd_vel` and subject to its timeout, `e_stop`
+/// as a call of `e_stop_trigger`, `e_stop_reset` as one of its service. The header line must be there, its last
+/// column may be left out. A row with an event may leave both speeds empty. NaN and infinity are let through: a
+/// bad message is a legitimate test, and the controller's to refuse. Blank lines and lines that begin with # are
+/// skipped. Cycles may repeat, not decrease.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "signals/geometry.h"
+
+namespace robot_control {
+
+/// What was received since the last look.
+struct ScriptEvents {
+  bool has_twist = false;
+  Twist twist;               ///< the last one received
+  std::uint64_t twists = 0;  ///< how many there were
+  std::uint64_t e_stops = 0;
+  std::uint64_t resets = 0;
+};
+
+class CommandScript {
+ public:
+  /// Nothing ever happens.
+  CommandScript() = default;
+
+  /// Reads a CSV file; throws ParameterError with every bad line (line, column, value, rule).
+  explicit CommandScript(const std::string& path);
+
+  /// The same from text; `source` stands in messages.
+  static CommandScript parse(std::string_view text, const std::string& source);
+
+  /// The rows behind the last call up to and with `cycle`: those of skipped cycles arrive late, none is lost.
+  /// A cycle at or before that of the last call brings nothing new.
+  ScriptEvents advance(std::uint64_t cycle) noexcept;
+
+  /// A new run: from the first row again.
+  void rewind() noexcept { next_ = 0; }
+
+  std::size_t size() const noexcept { return rows_.size(); }
+
+ private:
+  enum class Event { kNone, kEmergencyStop, kReset };
+  struct Row {
+    std::uint64_t cycle = 0;
+    std::optional<Twist> twist;
+    Event event = Event::kNone;
+  };
+  class Parser;
+
+  std::vector<Row> rows_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace robot_control

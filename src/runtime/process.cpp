@@ -1,0 +1,33 @@
+#include "runtime/process.h"
+
+#include <utility>
+
+namespace robot_control {
+
+Process::Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name)
+    : loop_(loop), priority_(priority), thread_name_(std::move(thread_name)) {}
+
+Process::~Process() { stop(); }
+
+void Process::poll() {
+  poll_channels();
+  if (thread_ != nullptr || !ready()) return;
+  const bool paced = loop_.clock == ClockMode::kWall;  // lockstep under SCHED_FIFO would starve the rest
+  thread_ = std::make_unique<RealtimeThread>(
+      RealtimeRequest{.policy = paced ? loop_.realtime : RealtimePolicy::kOff,
+                      .priority = static_cast<int>(priority_),
+                      .core = static_cast<int>(loop_.core),
+                      .name = thread_name_},
+      [this] { loop(); });
+}
+
+void Process::stop() noexcept {
+  stopping_.store(true);
+  thread_.reset();
+}
+
+std::vector<std::string> Process::realtime_messages() const {
+  return thread_ == nullptr ? std::vector<std::string>{} : thread_->report().messages;
+}
+
+}  // namespace robot_control
