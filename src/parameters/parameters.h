@@ -14,6 +14,7 @@
 #include "drivers/mujoco_plant_parameters.h"
 #include "estimation/estimator.h"
 #include "robot/robot_model.h"
+#include "rt/realtime_thread.h"
 #include "safety/safety_monitor.h"
 
 namespace robot_control {
@@ -24,18 +25,17 @@ class ParameterError : public std::runtime_error {
 };
 
 enum class ClockMode { kWall, kLockstep };
-enum class RealtimePolicy { kRequired, kPreferred, kOff };
 
 /// What all nodes must agree on (`robot:` block, beside the robot itself).
 struct LoopParameters {
-  double rate = 1000;                  ///< Hz, 100 … 2000
+  double rate = 1000;  ///< Hz, 100 … 2000
   ClockMode clock = ClockMode::kWall;
   RealtimePolicy realtime = RealtimePolicy::kPreferred;
-  std::int64_t core = 0;               ///< the one core the chain is pinned to; -1 = not pinned
-  std::string bus;                     ///< empty: from master and namespace
-  std::string command_script;          ///< CSV path; empty: none
-  bool wait_for_nodes = true;          ///< cycle 0 begins when all four nodes hold their channels
-  bool wait_for_telemetry = false;     ///< … and telemetry is reading
+  std::int64_t core = 0;            ///< the one core the chain is pinned to; -1 = not pinned
+  std::string bus;                  ///< empty: from master and namespace
+  std::string command_script;       ///< CSV path; empty: none
+  bool wait_for_nodes = true;       ///< cycle 0 begins when all four nodes hold their channels
+  bool wait_for_telemetry = false;  ///< … and telemetry is reading
 
   double period() const { return 1.0 / rate; }                                              ///< s
   std::int64_t period_ns() const { return static_cast<std::int64_t>(1.0e9 / rate + 0.5); }  ///< ns
@@ -43,22 +43,22 @@ struct LoopParameters {
 
 /// Rates and names of what the nodes publish; nothing of it touches the loop.
 struct ReportParameters {
-  double joint_states_rate = 100;     ///< Hz
-  double odom_rate = 50;              ///< Hz
+  double joint_states_rate = 100;  ///< Hz
+  double odom_rate = 50;           ///< Hz
   bool publish_tf = true;
   std::string odom_frame = "odom";
   std::string base_frame = "base_link";
-  double command_rate = 50;           ///< Hz, joint_commands, joint_targets and cmd_vel_out
-  double imu_rate = 100;              ///< Hz
-  double truth_rate = 50;             ///< Hz
+  double command_rate = 50;  ///< Hz, joint_commands, joint_targets and cmd_vel_out
+  double imu_rate = 100;     ///< Hz
+  double truth_rate = 50;    ///< Hz
 };
 
 struct TelemetryParameters {
-  std::string directory;              ///< where runs are written
+  std::string directory;  ///< where runs are written; empty or relative: from where the node was started
 };
 
 struct Parameters {
-  std::string urdf;                   ///< path; relative to the file it stands in
+  std::string urdf;  ///< path; relative to the file it stands in
   RobotParameters robot;
   LoopParameters loop;
   MujocoPlantParameters plant;
@@ -72,11 +72,30 @@ struct Parameters {
 /// One value laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate".
 struct Overlay {
   std::string path;
-  std::string text;
+  std::string text;  ///< a scalar; an empty text is the empty string
   std::string origin;
 };
 
-/// Throws ParameterError.
+/// Throws ParameterError. The file consists of the blocks `robot`, `mujoco_plant`, `state_estimator`,
+/// `diff_drive_controller`, `safety_monitor`, `telemetry`; every key must be there, in the file or in an overlay,
+/// except `robot.wheel_base` (or its other name `wheel_separation`) and `robot.wheel_radius`, which the URDF
+/// knows. With an empty `yaml_path` the overlays are everything there is.
+///
+/// Relative paths of input files (`urdf`, `scene`, `command_script`) count from the folder of the YAML file, in
+/// an overlay from the current folder; they come out absolute.
 Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {});
+
+/// Every path that may be set ("robot.rate", …), in the order of the schema.
+std::vector<std::string> parameter_paths();
+
+struct ParameterDescription {
+  std::string path;
+  std::string unit;       ///< empty where there is none
+  std::string rule;       ///< "a number of 100 … 2000 Hz", "one of wall, lockstep"
+  bool optional = false;  ///< may be absent
+};
+
+/// The same with what is allowed, for documentation and tools.
+std::vector<ParameterDescription> describe_parameters();
 
 }  // namespace robot_control

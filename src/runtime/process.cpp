@@ -14,10 +14,10 @@ void Process::poll() {
   if (thread_ != nullptr || !ready()) return;
   const bool paced = loop_.clock == ClockMode::kWall;  // lockstep under SCHED_FIFO would starve the rest
   thread_ = std::make_unique<RealtimeThread>(
-      RealtimeRequest{.policy = paced ? loop_.realtime : RealtimePolicy::kOff,
-                      .priority = static_cast<int>(priority_),
-                      .core = static_cast<int>(loop_.core),
-                      .name = thread_name_},
+      RealtimeParameters{.name = thread_name_,
+                         .policy = paced ? loop_.realtime : RealtimePolicy::kOff,
+                         .priority = paced ? static_cast<int>(priority_) : 0,
+                         .core = static_cast<int>(loop_.core)},
       [this] { loop(); });
 }
 
@@ -27,7 +27,7 @@ void Process::stop() noexcept {
 }
 
 std::vector<std::string> Process::realtime_messages() const {
-  return thread_ == nullptr ? std::vector<std::string>{} : thread_->report().messages;
+  return thread_ == nullptr ? std::vector<std::string>{} : thread_->report().refusals;
 }
 
 }  // namespace robot_control

@@ -1,0 +1,84 @@
+/// The extension module behind robot_control.ClosedLoop: numbers in, arrays out. Shapes, units and defaults are
+/// documented in the Python package.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "simulation/closed_loop.h"
+#include "telemetry/columns.h"
+
+namespace py = pybind11;
+
+namespace robot_control {
+namespace {
+
+Twist planar(double linear, double angular) { return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}}; }
+
+std::vector<Column> columns_of(const ClosedLoop& loop) {
+  std::vector<std::string> names;
+  for (const JointModel& joint : loop.robot().joints) names.push_back(joint.name);
+  return log_columns(names, false);
+}
+
+/// Runs `cycles` cycles; `command(t)` gives (linear, angular), or is None.
+py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command) {
+  if (cycles < 0) throw py::value_error("cycles must not be negative");
+  const std::vector<Column> columns = columns_of(loop);
+  std::vector<py::array_t<double>> arrays;
+  std::vector<double*> cells;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    arrays.emplace_back(cycles);
+    cells.push_back(arrays.back().mutable_data());
+  }
+  for (std::int64_t row = 0; row < cycles; ++row) {
+    if (!command.is_none()) {
+      const auto [linear, angular] = command(loop.time()).cast<std::pair<double, double>>();
+      loop.command(planar(linear, angular));
+    }
+    loop.step();
+    for (std::size_t i = 0; i < columns.size(); ++i) cells[i][row] = columns[i].value(loop.row());
+    if (row % 1000 == 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  py::dict log;
+  for (std::size_t i = 0; i < columns.size(); ++i) log[py::str(columns[i].name)] = arrays[i];
+  return log;
+}
+
+Parameters parameters_from(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+  std::vector<Overlay> overlays;
+  for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
+  return read_parameters(path, overlays);
+}
+
+}  // namespace
+}  // namespace robot_control
+
+PYBIND11_MODULE(_robot_control, module) {
+  using namespace robot_control;
+  py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
+  py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
+  py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
+  py::class_<ClosedLoop>(module, "ClosedLoop")
+      .def(py::init([](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+             return ClosedLoop(parameters_from(path, values));
+           }),
+           py::arg("path"), py::arg("values"))
+      .def("command", [](ClosedLoop& loop, double linear, double angular) { loop.command(planar(linear, angular)); })
+      .def("e_stop", &ClosedLoop::e_stop)
+      .def("e_stop_reset", &ClosedLoop::e_stop_reset)
+      .def("heartbeat", &ClosedLoop::heartbeat)
+      .def("run", &run, py::arg("cycles"), py::arg("command"))
+      .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
+      .def_property_readonly("cycle", &ClosedLoop::cycle)
+      .def_property_readonly("time", &ClosedLoop::time)
+      .def_property_readonly("columns", [](const ClosedLoop& loop) {
+        std::vector<std::pair<std::string, std::string>> names;
+        for (const Column& column : columns_of(loop)) names.emplace_back(column.name, column.unit);
+        return names;
+      });
+}

@@ -1,0 +1,115 @@
+#include "simulation/closed_loop.h"
+
+#include <string>
+#include <vector>
+
+#include "drivers/mujoco_plant.h"
+#include "runtime/controller_cycle.h"
+#include "runtime/driver_cycle.h"
+#include "runtime/estimator_cycle.h"
+#include "runtime/monitor_cycle.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::uint64_t kRun = 1;  // any number but 0: nobody else is on these channels
+
+/// A channel in private memory, with its two ends.
+template <class Frame>
+struct Channel {
+  std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
+  FrameWriter<Frame> writer{memory.get()};
+  FrameReader<Frame> reader{memory.get()};
+};
+
+CommandScript load_script(const Parameters& parameters) {
+  const std::string& path = parameters.loop.command_script;
+  return path.empty() ? CommandScript() : CommandScript(path);
+}
+
+RobotModel load_robot(const Parameters& parameters) {
+  RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+  const std::vector<std::string> problems =
+      control_problems(parameters.controller, robot, parameters.loop.period());
+  if (problems.empty()) return robot;
+  std::string message;
+  for (const std::string& problem : problems) message += problem + "\n";
+  throw ParameterError(message);
+}
+
+}  // namespace
+
+struct ClosedLoop::Parts {
+  explicit Parts(const Parameters& given)
+      : parameters(given),
+        robot(load_robot(given)),
+        plant(robot, given.plant, given.loop.period()),
+        driver(plant, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, given.loop.period_ns(),
+               nullptr),
+        estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
+        controller(given.controller, robot, given.loop.period(),
+                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, load_script(given), nullptr),
+        monitor(given.safety, robot, given.loop.period(),
+                {&sensors.reader, &state.reader, &command.reader, permit.writer}, load_script(given), nullptr) {
+    plant.start();
+    driver.set_boot(kRun);
+    driver.begin_run(kRun);
+  }
+
+  Parameters parameters;
+  RobotModel robot;
+  MujocoPlant plant;
+  Channel<SensorFrame> sensors;
+  Channel<TruthFrame> truth;
+  Channel<StateFrame> state;
+  Channel<CommandFrame> command;
+  Channel<Permit> permit;
+  DriverCycle driver;
+  EstimatorCycle estimator;
+  ControllerCycle controller;
+  MonitorCycle monitor;
+  VelocityCommand request;
+  OperatorInput operator_input;
+  JoinedRow row;
+};
+
+ClosedLoop::ClosedLoop(const Parameters& parameters) : parts_(std::make_unique<Parts>(parameters)) {}
+ClosedLoop::~ClosedLoop() = default;
+ClosedLoop::ClosedLoop(ClosedLoop&&) noexcept = default;
+ClosedLoop& ClosedLoop::operator=(ClosedLoop&&) noexcept = default;
+
+void ClosedLoop::command(const Twist& twist) noexcept {
+  parts_->request = {.twist = twist, .count = parts_->request.count + 1};
+}
+
+void ClosedLoop::e_stop() noexcept { ++parts_->operator_input.e_stop_services; }
+void ClosedLoop::e_stop_reset() noexcept { ++parts_->operator_input.resets; }
+void ClosedLoop::heartbeat() noexcept { ++parts_->operator_input.heartbeats; }
+
+void ClosedLoop::step() noexcept {
+  Parts& parts = *parts_;
+  if (cycle() > 0) {  // what arrives before a run begins is dropped by every node
+    parts.controller.inbox().store(parts.request);
+    parts.monitor.inbox().store(parts.operator_input);
+  }
+  parts.driver.step();
+  const bool estimated = parts.estimator.step();
+  const bool controlled = parts.controller.step();
+  const bool monitored = parts.monitor.step();
+  const std::uint64_t cycle = parts.driver.trace().sensors.head.cycle;
+  parts.row = {.run = 0,
+               .cycle = cycle,
+               .time = row_time(cycle, parts.parameters.loop.period()),
+               .driver = &parts.driver.trace(),
+               .estimator = estimated ? &parts.estimator.trace() : nullptr,
+               .controller = controlled ? &parts.controller.trace() : nullptr,
+               .monitor = monitored ? &parts.monitor.trace() : nullptr};
+}
+
+std::uint64_t ClosedLoop::cycle() const noexcept { return parts_->driver.next_cycle(); }
+double ClosedLoop::time() const noexcept { return row_time(cycle(), parts_->parameters.loop.period()); }
+const JoinedRow& ClosedLoop::row() const noexcept { return parts_->row; }
+const RobotModel& ClosedLoop::robot() const noexcept { return parts_->robot; }
+const Parameters& ClosedLoop::parameters() const noexcept { return parts_->parameters; }
+
+}  // namespace robot_control

@@ -1,0 +1,54 @@
+#pragma once
+/// The closed loop in one process, in virtual time: the very same cycles as the four nodes run, on channels
+/// in private memory. For tests, Python and campaigns.
+///
+/// One `step` is: driver tick k, estimator k, controller k, monitor k. Same parameters, seed and inputs give
+/// the same bits, and the same bits as the four nodes in lockstep.
+
+#include <cstdint>
+#include <memory>
+
+#include "parameters/parameters.h"
+#include "robot/robot_model.h"
+#include "signals/geometry.h"
+#include "telemetry/joined_row.h"
+
+namespace robot_control {
+
+class ClosedLoop {
+ public:
+  /// Reads the robot named by the parameters and sets a MuJoCo plant down in the scene. Throws RobotError,
+  /// DriverError, ParameterError. Telemetry, clock and real-time parameters have no effect.
+  explicit ClosedLoop(const Parameters& parameters);
+  ~ClosedLoop();
+  ClosedLoop(ClosedLoop&&) noexcept;
+  ClosedLoop& operator=(ClosedLoop&&) noexcept;
+
+  /// As if just received on cmd_vel: takes effect in the next step, in cycle 1 at the earliest (in cycle 0 the
+  /// nodes enter the run), and times out like cmd_vel.
+  void command(const Twist& twist) noexcept;
+
+  /// As if e_stop_trigger, e_stop_reset had been called, as if a heartbeat had arrived.
+  void e_stop() noexcept;
+  void e_stop_reset() noexcept;
+  void heartbeat() noexcept;
+
+  /// One cycle.
+  void step() noexcept;
+
+  /// Cycle and time [s] of the sample that the next step takes.
+  std::uint64_t cycle() const noexcept;
+  double time() const noexcept;
+
+  /// What the four nodes published in the last step.
+  const JoinedRow& row() const noexcept;
+
+  const RobotModel& robot() const noexcept;
+  const Parameters& parameters() const noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace robot_control
