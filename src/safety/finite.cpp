@@ -1,0 +1,47 @@
+#include "safety/finite.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+bool finite(const Vector3& vector) noexcept {
+  return std::isfinite(vector[0]) && std::isfinite(vector[1]) && std::isfinite(vector[2]);
+}
+
+bool finite(const Twist& twist) noexcept {
+  return finite(twist.linear) && finite(twist.angular);
+}
+
+bool finite(const JointSample& joint) noexcept {
+  return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.effort);
+}
+
+bool finite(const JointCommand& joint) noexcept {
+  return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.stiffness) &&
+         std::isfinite(joint.damping) && std::isfinite(joint.effort);
+}
+
+}  // namespace
+
+bool finite(const SensorFrame& sensors) noexcept {
+  const std::size_t count = std::min<std::size_t>(sensors.joint_count, kMaxJoints);
+  if ((sensors.valid & kValidJoints) != 0) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!finite(sensors.joints[i])) return false;
+    }
+  }
+  if ((sensors.valid & kValidGyro) != 0 && !finite(sensors.imu.angular_velocity)) return false;
+  return (sensors.valid & kValidAccelerometer) == 0 || finite(sensors.imu.linear_acceleration);
+}
+
+bool finite(const CommandFrame& command) noexcept {
+  const std::size_t count = std::min<std::size_t>(command.joint_count, kMaxJoints);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!finite(command.joints[i])) return false;
+  }
+  return finite(command.twist_requested) && finite(command.twist_limited);
+}
+
+}  // namespace robot_control

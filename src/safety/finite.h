@@ -1,0 +1,15 @@
+#pragma once
+/// Is every number finite that a frame claims to be valid?
+
+#include "signals/command_frame.h"
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+/// Joints and IMU, as far as `valid` says they were measured.
+bool finite(const SensorFrame& sensors) noexcept;
+
+/// Used joints and both twists.
+bool finite(const CommandFrame& command) noexcept;
+
+}  // namespace robot_control

@@ -1,0 +1,19 @@
+#pragma once
+/// Everything that one cycle of the monitor depends on.
+
+#include "signals/command_frame.h"
+#include "signals/sensor_frame.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+/// Null: missing in this cycle.
+struct MonitorInput {
+  const SensorFrame* sensors = nullptr;   ///< never null
+  const CommandFrame* command = nullptr;  ///< of cycle k-1
+  bool state_seen = false;                ///< a state of cycle k-1 exists (its head alone was read)
+  bool corrupt = false;                   ///< a checksum of this cycle's inputs was wrong
+  OperatorInput operator_input;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,60 @@
+#pragma once
+/// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes and which came first.
+///
+/// A cause once active stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused
+/// while a cause is active, a motion is asked for, the robot moves or a node is missing in INIT; during
+/// STOPPING it counts as moving. Where nothing is latched (READY, DRIVE) a reset is accepted without effect.
+/// The ramp of STOPPING ends at the cycle fixed when it began, or at standstill.
+
+#include <cstdint>
+
+#include "safety/supervisor_table.h"
+#include "signals/permit.h"
+
+namespace robot_control {
+
+struct SupervisorInput {
+  std::uint64_t cycle = 0;
+  std::uint64_t active = 0;   ///< StopCause bits true in this cycle
+  std::uint64_t missing = 0;  ///< MissingNode bits of this run
+  bool requested = false;     ///< the controller asks for a motion
+  bool moving = false;        ///< a joint turns in this very cycle
+  bool standing = false;      ///< every joint has been slow for a while
+  bool reset_requested = false;
+};
+
+class Supervisor {
+ public:
+  /// `ramp_cycles`: length of the longest category-1 ramp.
+  explicit Supervisor(std::uint64_t ramp_cycles) noexcept : ramp_cycles_(ramp_cycles) {}
+
+  void step(const SupervisorInput& input) noexcept;
+
+  /// A new run: INIT, or where a cause is latched STOPPED or FAULT.
+  void enter_run() noexcept;
+
+  /// Takes over what an earlier monitor had latched, and adds `cause`: STOPPED, or FAULT.
+  void restore(std::uint64_t causes, std::uint64_t first_cause, StopCause cause, std::uint64_t cycle) noexcept;
+
+  SupervisorState state() const noexcept { return state_; }
+  std::uint64_t causes() const noexcept { return causes_; }
+  std::uint64_t first_cause() const noexcept { return first_cause_; }
+  std::uint64_t since_cycle() const noexcept { return since_cycle_; }
+  std::uint64_t ramp_until() const noexcept { return ramp_until_; }
+  std::uint64_t reset_refusal() const noexcept { return reset_refusal_; }
+
+ private:
+  void latch(std::uint64_t active) noexcept;
+  std::uint64_t refusal(const SupervisorInput& input) const noexcept;
+  SupervisorState latched_state() const noexcept;
+
+  std::uint64_t ramp_cycles_;
+  SupervisorState state_ = SupervisorState::kInit;
+  std::uint64_t causes_ = 0;
+  std::uint64_t first_cause_ = 0;
+  std::uint64_t since_cycle_ = 0;
+  std::uint64_t ramp_until_ = 0;
+  std::uint64_t reset_refusal_ = 0;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,104 @@
+#pragma once
+/// The supervisor as data: in `from`, when `trigger` holds, `to`. Read from above, the first row that fits wins,
+/// so that within a state the severest trigger stands first. At most one transition per cycle; where no row
+/// fits, the state stays.
+///
+///                 complete          motion
+///         INIT ────────────► READY ◄──────► DRIVE          any brake cause ─► STOPPED
+///          ▲                   │     rest     │            any repair cause ─► FAULT
+///          │ reset, incomplete └──── ramp ────┘
+///          │                          ▼
+///       STOPPED, FAULT ◄── ended ── STOPPING
+///          └── reset, complete ──► READY
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "signals/permit.h"
+
+namespace robot_control {
+
+enum class Trigger : std::uint8_t {
+  kRepairCause,      ///< a latched cause of StopCategory::kBrakeForRepair
+  kBrakeCause,       ///< a latched cause of StopCategory::kBrake
+  kRampCause,        ///< a latched cause of StopCategory::kRamp
+  kRampEnded,        ///< standing, or the ramp's last cycle is reached
+  kResetIncomplete,  ///< a reset was accepted, a node of this run is still missing
+  kResetComplete,    ///< a reset was accepted, all nodes of this run were seen
+  kComplete,         ///< sensors, state and command of this run were each seen
+  kMotion,           ///< a motion is asked for or going on
+  kRest,             ///< nothing is asked for and the robot stands
+};
+inline constexpr std::size_t kTriggers = 9;
+
+struct Transition {
+  SupervisorState from;
+  Trigger trigger;
+  SupervisorState to;
+};
+
+inline constexpr auto kTransitions = std::to_array<Transition>({
+    {SupervisorState::kInit, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kInit, Trigger::kBrakeCause, SupervisorState::kStopped},
+    {SupervisorState::kInit, Trigger::kRampCause, SupervisorState::kStopped},
+    {SupervisorState::kInit, Trigger::kComplete, SupervisorState::kReady},
+
+    {SupervisorState::kReady, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kReady, Trigger::kBrakeCause, SupervisorState::kStopped},
+    {SupervisorState::kReady, Trigger::kRampCause, SupervisorState::kStopping},
+    {SupervisorState::kReady, Trigger::kMotion, SupervisorState::kDrive},
+
+    {SupervisorState::kDrive, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kDrive, Trigger::kBrakeCause, SupervisorState::kStopped},
+    {SupervisorState::kDrive, Trigger::kRampCause, SupervisorState::kStopping},
+    {SupervisorState::kDrive, Trigger::kRest, SupervisorState::kReady},
+
+    {SupervisorState::kStopping, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kStopping, Trigger::kBrakeCause, SupervisorState::kStopped},
+    {SupervisorState::kStopping, Trigger::kRampEnded, SupervisorState::kStopped},
+
+    {SupervisorState::kStopped, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kStopped, Trigger::kResetIncomplete, SupervisorState::kInit},
+    {SupervisorState::kStopped, Trigger::kResetComplete, SupervisorState::kReady},
+
+    {SupervisorState::kFault, Trigger::kResetIncomplete, SupervisorState::kInit},
+    {SupervisorState::kFault, Trigger::kResetComplete, SupervisorState::kReady},
+});
+
+/// The triggers that hold in one cycle.
+class TriggerSet {
+ public:
+  constexpr void add(Trigger trigger, bool holds = true) noexcept {
+    if (holds) bits_ |= std::uint32_t{1} << static_cast<unsigned>(trigger);
+  }
+  constexpr bool holds(Trigger trigger) const noexcept { return (bits_ >> static_cast<unsigned>(trigger) & 1U) != 0; }
+
+ private:
+  std::uint32_t bits_ = 0;
+};
+
+constexpr SupervisorState next_state(SupervisorState state, TriggerSet triggers) noexcept {
+  for (const Transition& row : kTransitions) {
+    if (row.from == state && triggers.holds(row.trigger)) return row.to;
+  }
+  return state;
+}
+
+/// The permit of each state.
+constexpr PermitAction action_in(SupervisorState state) noexcept {
+  switch (state) {
+    case SupervisorState::kReady:
+    case SupervisorState::kDrive:
+      return PermitAction::kDrive;
+    case SupervisorState::kStopping:
+      return PermitAction::kRamp;
+    case SupervisorState::kInit:
+    case SupervisorState::kStopped:
+    case SupervisorState::kFault:
+      return PermitAction::kBrake;
+  }
+  return PermitAction::kBrake;
+}
+
+}  // namespace robot_control
