@@ -2,29 +2,30 @@
 /// The channels between processes: one POSIX shared-memory object each,
 /// `/robot_control.<uid>.<bus>.<channel>`, mode 0600.
 ///
-/// A writer holds an open-file-description lock on its object for as long as it lives: a second instance of a
-/// node refuses to start. The object outlives its writer; the next one of the same layout takes it over with
-/// its frames and its futex sequence, an unlocked object of another layout is retired and made anew, a locked
-/// one is an error. Foreign (other owner, other magic) and truncated objects are never written to.
+/// A writer holds an open-file-description lock on its object for as long as it lives, and a second instance of
+/// a node refuses to start. The object outlives its writer. The next writer finds
+///   the same layout, unlocked     takes it over with its frames and its futex sequence
+///   another layout, unlocked      retires it (ChannelHead::retired) and makes a new one
+///   truncated or foreign magic    never writes to it, unlinks it and makes a new one
+///   any of them, locked           BusError: another instance, or a node of another build, is running
+///   another owner, open to others BusError
+/// A reader maps read-only. It maps nothing but what is usable: an unlocked wreck is waited out, since its next
+/// writer replaces it; a locked wreck and a foreign owner are a BusError. A lock does not outlive the process
+/// that took it, unless a forked child has kept the descriptor.
 
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "hal/bus_object.h"
 #include "rt/latest_frames.h"
 #include "rt/ring.h"
 
 namespace robot_control {
 
-/// What (channel, object), why, remedy.
-class BusError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// `name` of the bus: the parameter `bus`, or 16 hex digits of a hash of ROS master port and namespace.
+/// `name` of the bus where the parameter `bus` is empty: 16 hex digits of a hash (64-bit FNV-1a) of the port of
+/// the ROS master (11311 where the URI has none) and the namespace ("robot2", "/robot2" and "/robot2/" are one).
 std::string bus_name(const std::string& master_uri, const std::string& name_space);
 
 struct ChannelNames {
@@ -37,29 +38,88 @@ struct ChannelNames {
   // rings: "trace_plant" "trace_estimator" "trace_controller" "trace_monitor"
 };
 
+/// The layout of LatestFrames<Frame>, Ring<Row>, RingPositions.
+template <class Object>
+struct BusLayoutOf;
+
+template <class Frame>
+struct BusLayoutOf<LatestFrames<Frame>> {
+  static constexpr BusLayout value{sizeof(LatestFrames<Frame>), sizeof(Frame), kFrameSlots};
+};
+
+template <class Row>
+struct BusLayoutOf<Ring<Row>> {
+  static constexpr BusLayout value{sizeof(Ring<Row>), sizeof(Row), kRingRows};
+};
+
+template <>
+struct BusLayoutOf<RingPositions> {
+  static constexpr BusLayout value{sizeof(RingPositions), sizeof(std::uint64_t), kTraceRings};
+};
+
 /// A channel that this process writes: the mapping and its lock.
 template <class Object>
 class OwnedChannel {
  public:
-  /// Object is LatestFrames<Frame>, Ring<Row> or RingPositions. Throws BusError.
-  OwnedChannel(const std::string& bus, const std::string& channel);
-  Object* memory() const noexcept;
+  /// Object is LatestFrames<Frame>, Ring<Row> or RingPositions. Throws BusError. What a writer says of itself
+  /// in the head (run attached to, robot) begins anew.
+  OwnedChannel(const std::string& bus, const std::string& channel)
+      : object_(bus, channel, BusLayoutOf<Object>::value) {}
+
+  Object* memory() const noexcept { return static_cast<Object*>(object_.data()); }
+
+ private:
+  OwnedBusObject object_;
 };
 
-/// A channel that another process writes. Before its writer has made it, `memory()` is null.
+/// A channel that another process writes. Before its writer has made it, `memory()` is null. `memory` may be
+/// called by any thread, the rest by one ordinary thread.
 template <class Object>
 class ForeignChannel {
  public:
-  ForeignChannel(std::string bus, std::string channel);
+  ForeignChannel(std::string bus, std::string channel)
+      : object_(std::make_unique<ForeignBusObject>(bus, std::move(channel), BusLayoutOf<Object>::value)) {}
 
-  /// Ordinary thread, at 10 Hz: maps, or maps anew after retirement or unlink. True if `memory()` changed.
-  /// Throws BusError on a foreign or truncated object of this name. Old mappings stay valid.
-  bool poll();
+  /// Ordinary thread, at 10 Hz: maps, or maps anew when the name has a new object. True if `memory()` changed.
+  /// Throws BusError. Old mappings stay valid; after an unlink without a successor the old one stays current,
+  /// because its writer may well go on.
+  bool poll() { return object_->poll(); }
 
-  /// True while some process holds the writer's lock.
-  bool locked() const;
+  /// True while some process holds the writer's lock on the mapped object; false while none is mapped.
+  bool locked() const { return object_->locked(); }
 
-  const Object* memory() const noexcept;
+  const Object* memory() const noexcept { return static_cast<const Object*>(object_->data()); }
+
+  /// Why the last `poll` did not map the object of this name ("does not exist yet"); empty when it is mapped.
+  const std::string& obstacle() const noexcept { return object_->obstacle(); }
+
+ private:
+  std::unique_ptr<ForeignBusObject> object_;
 };
+
+/// A consumer tells in its own channel which run's sensors it waits on. Real-time safe.
+inline void attach_to_run(ChannelHead& own, std::uint64_t run) noexcept {
+  own.attached_run.store(run, std::memory_order_release);
+}
+
+/// 0: to none.
+inline std::uint64_t attached_run(const ChannelHead& head) noexcept {
+  return head.attached_run.load(std::memory_order_acquire);
+}
+
+/// The driver tells in the sensors channel which robot it drives: RobotModel::hash and ::source (cut at 255
+/// bytes). Ordinary thread, before the first frame.
+void announce_robot(ChannelHead& own, std::uint64_t hash, const std::string& source) noexcept;
+
+struct AnnouncedRobot {
+  std::uint64_t hash = 0;
+  std::string source;
+};
+
+/// Hash 0: nothing was announced yet.
+AnnouncedRobot announced_robot(const ChannelHead& head);
+
+/// False while nothing was announced; throws BusError, naming both sources, if it is another robot.
+bool same_robot(const ChannelHead& sensors, std::uint64_t hash, const std::string& source);
 
 }  // namespace robot_control

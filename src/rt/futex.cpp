@@ -1,36 +1,35 @@
 #include "rt/futex.h"
 
-#include <climits>
-#include <ctime>
 #include <linux/futex.h>
 #include <sys/syscall.h>
 #include <unistd.h>
+
+#include <climits>
+#include <ctime>
 
 #include "rt/clock.h"
 
 namespace robot_control {
 namespace {
 
-timespec to_timespec(std::int64_t duration_ns) noexcept {
-  return {duration_ns / 1'000'000'000, duration_ns % 1'000'000'000};
+timespec to_timespec(std::int64_t time_ns) noexcept {
+  return {time_ns / 1'000'000'000, time_ns % 1'000'000'000};
 }
 
 }  // namespace
 
 bool futex_wait(const std::atomic<std::uint32_t>& word, std::uint32_t expected, std::int64_t timeout_ns) noexcept {
-  const std::int64_t deadline = timeout_ns < 0 ? 0 : monotonic_ns() + timeout_ns;
-  while (word.load(std::memory_order_acquire) == expected) {
-    timespec left{};
-    if (timeout_ns >= 0) {
-      const std::int64_t left_ns = deadline - monotonic_ns();
-      if (left_ns <= 0) return false;
-      left = to_timespec(left_ns);
-    }
-    // Not FUTEX_PRIVATE_FLAG: the word lies in shared memory.
-    syscall(SYS_futex, reinterpret_cast<const std::uint32_t*>(&word), FUTEX_WAIT, expected,
-            timeout_ns < 0 ? nullptr : &left, nullptr, 0);
-  }
-  return true;
+  if (word.load(std::memory_order_acquire) != expected) return true;
+  const std::int64_t deadline_ns = timeout_ns < 0 ? 0 : monotonic_ns() + timeout_ns;
+  const timespec deadline = to_timespec(deadline_ns);
+  do {
+    // The bitset form takes an absolute CLOCK_MONOTONIC time. Not private: the word lies in shared memory.
+    const long result = syscall(SYS_futex, reinterpret_cast<const std::uint32_t*>(&word), FUTEX_WAIT_BITSET, expected,
+                                timeout_ns < 0 ? nullptr : &deadline, nullptr, FUTEX_BITSET_MATCH_ANY);
+    if (word.load(std::memory_order_acquire) != expected) return true;
+    if (result == 0 || timeout_ns < 0) continue;
+    if (monotonic_ns() >= deadline_ns) return false;
+  } while (true);
 }
 
 void futex_wake_all(std::atomic<std::uint32_t>& word) noexcept {
@@ -38,8 +37,7 @@ void futex_wake_all(std::atomic<std::uint32_t>& word) noexcept {
 }
 
 void sleep_ns(std::int64_t duration_ns) noexcept {
-  const timespec duration = to_timespec(duration_ns);
-  clock_nanosleep(CLOCK_MONOTONIC, 0, &duration, nullptr);
+  sleep_until(monotonic_ns() + duration_ns);
 }
 
 }  // namespace robot_control

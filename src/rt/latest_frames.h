@@ -29,15 +29,16 @@ inline constexpr int kReadTries = 4;
 inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
 inline constexpr std::uint64_t kLayoutVersion = 1;
 
-/// First bytes of every shared object: of a LatestFrames as of a Ring.
+/// First bytes of every shared object: of a LatestFrames as of a Ring. `magic` to `retired` keep their places
+/// in every layout version, so that a process can judge and retire an object that it cannot read.
 struct ChannelHead {
-  std::atomic<std::uint64_t> magic;    ///< kChannelMagic, stored last when the object is made
-  std::uint64_t layout_version;        ///< kLayoutVersion
-  std::uint64_t frame_bytes;           ///< sizeof(Frame)
-  std::uint64_t slots;                 ///< number of frames that fit
-  std::atomic<std::uint64_t> retired;  ///< 1: the name now belongs to another object, map anew
-  std::atomic<std::uint64_t> attached_run;  ///< run whose sensors the writer of this channel waits on
-  std::atomic<std::uint64_t> robot_hash;    ///< RobotModel::hash of the writer's robot; sensors channel only
+  std::atomic<std::uint64_t> magic;                 ///< kChannelMagic, stored last when the object is made
+  std::uint64_t layout_version;                     ///< kLayoutVersion
+  std::uint64_t frame_bytes;                        ///< sizeof(Frame)
+  std::uint64_t slots;                              ///< number of frames that fit
+  std::atomic<std::uint64_t> retired;               ///< 1: the name now belongs to another object, map anew
+  std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
+  std::atomic<std::uint64_t> robot_hash;            ///< RobotModel::hash of the writer's robot; sensors channel only
   std::array<std::atomic<char>, 256> robot_source;  ///< where that robot was read, zero-terminated
 };
 
@@ -142,15 +143,25 @@ class FrameReader {
     return memory == nullptr ? 0 : memory->sequence.load(std::memory_order_acquire);
   }
 
-  /// Waits until `sequence()` differs from `seen`, or the timeout has passed. True if it differs.
+  /// Waits until `sequence()` differs from `seen`, or the timeout (negative: none) has passed. True if it
+  /// differs, or if the channel was mapped or mapped anew meanwhile: noticed within kRemapNs, also by a
+  /// thread that waits for ever. Take `seen` before looking for a frame, not after.
   bool wait(std::uint32_t seen, std::int64_t timeout_ns) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);
-    if (memory == nullptr) {
-      sleep_ns(timeout_ns);
-      return false;
+    for (std::int64_t left_ns = timeout_ns; left_ns != 0;) {
+      const std::int64_t slice_ns = left_ns < 0 || left_ns > kRemapNs ? kRemapNs : left_ns;
+      if (memory == nullptr) {
+        sleep_ns(slice_ns);
+      } else if (futex_wait(memory->sequence, seen, slice_ns)) {
+        return true;
+      }
+      if (memory_.load(std::memory_order_acquire) != memory) return true;
+      if (left_ns > 0) left_ns -= slice_ns;
     }
-    return futex_wait(memory->sequence, seen, timeout_ns);
+    return memory != nullptr && memory->sequence.load(std::memory_order_acquire) != seen;
   }
+
+  static constexpr std::int64_t kRemapNs = 20'000'000;
 
   const LatestFrames<Frame>* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
 

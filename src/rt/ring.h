@@ -84,12 +84,15 @@ class RingReader {
   explicit RingReader(const Ring<Row>* memory) noexcept
       : memory_(memory), position_(memory->written.load(std::memory_order_acquire)) {}
 
+  /// Starts at `position`: 0 for every row that is still there, or where an earlier reader ended.
+  RingReader(const Ring<Row>* memory, std::uint64_t position) noexcept : memory_(memory), position_(position) {}
+
   /// Takes the next row; false when there is none yet. Rows overwritten meanwhile are skipped and counted.
   bool take(Row& row) noexcept {
     for (;;) {
       const std::uint64_t written = memory_->written.load(std::memory_order_acquire);
       if (position_ >= written) {
-        position_ = written;  // the writer's object was made anew
+        position_ = written;  // an earlier reader's position in an object that was made anew since
         return false;
       }
       if (written - position_ > kRingRows) {

@@ -1,0 +1,70 @@
+#pragma once
+/// What is the same for a channel of any type: the claim of an object by its writer, the view of a reader.
+/// The protocol is told in hal/bus.h.
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rt/latest_frames.h"
+#include "rt/shared_memory.h"
+
+namespace robot_control {
+
+/// What (channel, object), why, remedy.
+class BusError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What the head of a channel's object must say, and how long the object must be.
+struct BusLayout {
+  std::uint64_t object_bytes = 0;
+  std::uint64_t frame_bytes = 0;
+  std::uint64_t slots = 0;
+};
+
+/// "/robot_control.<uid>.<bus>.<channel>". Throws BusError: a part is empty, has a character other than
+/// letters, digits, '_', '-', '.', or the whole is longer than a file name may be.
+std::string bus_object_name(const std::string& bus, const std::string& channel);
+
+class OwnedBusObject {
+ public:
+  OwnedBusObject(const std::string& bus, const std::string& channel, const BusLayout& layout);
+
+  void* data() const noexcept { return mapping_.data(); }
+
+ private:
+  explicit OwnedBusObject(std::pair<SharedMemory, MemoryMapping> claimed) noexcept;
+
+  SharedMemory object_;
+  MemoryMapping mapping_;
+};
+
+class ForeignBusObject {
+ public:
+  ForeignBusObject(const std::string& bus, std::string channel, const BusLayout& layout);
+
+  bool poll();
+  bool locked() const noexcept { return object_ && object_->locked_elsewhere(); }
+  const void* data() const noexcept { return data_.load(std::memory_order_acquire); }
+  const std::string& obstacle() const noexcept { return obstacle_; }
+
+ private:
+  bool is_current(const SharedMemory& named) const;
+  std::string obstacle_of(const SharedMemory& named) const;
+
+  std::string channel_;
+  std::string name_;
+  BusLayout layout_;
+  std::optional<SharedMemory> object_;
+  std::vector<MemoryMapping> mappings_;  // all of this life: a real-time thread may still read an old one
+  std::atomic<const void*> data_{nullptr};
+  std::string obstacle_;
+};
+
+}  // namespace robot_control

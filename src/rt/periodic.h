@@ -1,0 +1,72 @@
+#pragma once
+/// The advancing absolute deadline of a loop on the wall clock; arithmetic only, the clock is an argument.
+///
+///   for (std::int64_t k = 0;; ++k) {
+///     sleep_until(schedule.deadline_ns());
+///     k += schedule.begin(monotonic_ns());
+///     … tick k …
+///     schedule.end(monotonic_ns());
+///   }
+///
+/// deadline(k) = start + k·period + slipped. A sleep relative to the wake-up would add every latency to the
+/// period; this grid does not. A wake-up less than one period late keeps the grid. One that is a whole period
+/// or more late cannot be made good, and is not made good by a burst of ticks:
+///   kSlip  a simulated plant: time slips. The tick runs now, k stays consecutive, the grid moves by the
+///          lateness, which is counted: slipped = now − deadline.
+///   kSkip  hardware: time passed without us. The grid stays, k jumps over the periods missed:
+///          missed = ⌊(now − deadline) / period⌋.
+
+#include <cstdint>
+
+namespace robot_control {
+
+enum class WhenLate { kSlip, kSkip };
+
+class Periodic {
+ public:
+  /// `start_ns` is the deadline of the first tick.
+  Periodic(std::int64_t start_ns, std::int64_t period_ns, WhenLate when_late = WhenLate::kSlip) noexcept
+      : deadline_ns_(start_ns), period_ns_(period_ns), when_late_(when_late) {}
+
+  /// Of the tick that comes next or, between `begin` and `end`, of the tick that runs.
+  std::int64_t deadline_ns() const noexcept { return deadline_ns_; }
+
+  /// The tick begins. Returns how many periods were missed before it: 0 whenever time slips.
+  std::int64_t begin(std::int64_t now_ns) noexcept {
+    late_ns_ = now_ns > deadline_ns_ ? now_ns - deadline_ns_ : 0;
+    if (late_ns_ < period_ns_) return 0;
+    if (when_late_ == WhenLate::kSlip) {
+      slipped_ns_ += late_ns_;
+      deadline_ns_ = now_ns;
+      return 0;
+    }
+    const std::int64_t periods = late_ns_ / period_ns_;
+    missed_ += periods;
+    deadline_ns_ += periods * period_ns_;
+    return periods;
+  }
+
+  /// The tick ended; the deadline advances. False: that has passed already, an overrun.
+  bool end(std::int64_t now_ns) noexcept {
+    deadline_ns_ += period_ns_;
+    if (now_ns <= deadline_ns_) return true;
+    ++overruns_;
+    return false;
+  }
+
+  std::int64_t late_ns() const noexcept { return late_ns_; }        ///< of the last `begin`
+  std::int64_t slipped_ns() const noexcept { return slipped_ns_; }  ///< in all
+  std::int64_t missed() const noexcept { return missed_; }          ///< periods, in all
+  std::uint64_t overruns() const noexcept { return overruns_; }
+
+ private:
+  std::int64_t deadline_ns_;
+  std::int64_t period_ns_;
+  WhenLate when_late_;
+  std::int64_t late_ns_ = 0;
+  std::int64_t slipped_ns_ = 0;
+  std::int64_t missed_ = 0;
+  std::uint64_t overruns_ = 0;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,195 @@
+#include "rt/realtime_thread.h"
+
+#include <linux/capability.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <future>
+#include <mutex>
+#include <system_error>
+#include <utility>
+
+namespace robot_control {
+namespace {
+
+constexpr std::size_t kOrdinaryStackBytes = 1024 * 1024;
+constexpr std::size_t kGuardBytes = 64 * 1024;  // an overflow ends in SIGSEGV, not in a neighbour's memory
+constexpr const char* kDocker = "in a container: --cap-add=SYS_NICE --cap-add=IPC_LOCK";
+
+std::string user_name() {
+  const char* user = std::getenv("USER");
+  return user != nullptr && *user != '\0' ? user : std::to_string(geteuid());
+}
+
+bool has_capability(int capability) {
+  std::ifstream status("/proc/self/status");
+  for (std::string key; status >> key;) {
+    unsigned long long effective = 0;
+    if (key == "CapEff:" && status >> std::hex >> effective) return ((effective >> capability) & 1) != 0;
+  }
+  return false;
+}
+
+/// Raises the soft limit to what may be had without asking; returns it.
+rlim_t raise_limit(__rlimit_resource resource, rlim_t wanted) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return 0;
+  if (limit.rlim_cur >= wanted) return limit.rlim_cur;
+  limit.rlim_cur = std::min(limit.rlim_max, wanted);
+  return setrlimit(resource, &limit) == 0 ? limit.rlim_cur : 0;
+}
+
+std::string memory_remedy() {
+  return "remedy: '" + user_name() + " - memlock unlimited' in /etc/security/limits.d/realtime.conf and a new login, " +
+         "or CAP_IPC_LOCK; " + kDocker;
+}
+
+RealtimeReport lock_memory() {
+  RealtimeReport report;
+  const rlim_t limit = raise_limit(RLIMIT_MEMLOCK, RLIM_INFINITY);
+  if (limit != RLIM_INFINITY && !has_capability(CAP_IPC_LOCK)) {
+    report.memory_lock = Grant::kRefused;
+    report.refusals.push_back("memory is not locked: the limit is " + std::to_string(limit / 1024) +
+                              " KiB, not unlimited, so page faults may delay the loop; " + memory_remedy());
+    return report;
+  }
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    report.memory_lock = Grant::kRefused;
+    report.refusals.push_back(std::string("memory is not locked: mlockall says '") + std::strerror(errno) +
+                              "', so page faults may delay the loop; " + memory_remedy());
+    return report;
+  }
+  report.memory_lock = Grant::kGranted;
+  mallopt(M_ARENA_MAX, 2);
+  mallopt(M_TRIM_THRESHOLD, -1);
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) == 0) {
+    pthread_attr_setstacksize(&attributes, kOrdinaryStackBytes);
+    pthread_setattr_default_np(&attributes);
+    pthread_attr_destroy(&attributes);
+  }
+  return report;
+}
+
+void take_core(int core, RealtimeReport& report) {
+  if (core < 0) return;
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  int error = EINVAL;
+  if (core < CPU_SETSIZE) {
+    CPU_SET(static_cast<std::size_t>(core), &cores);
+    error = pthread_setaffinity_np(pthread_self(), sizeof cores, &cores);
+  }
+  report.core = error == 0 ? Grant::kGranted : Grant::kRefused;
+  if (error == 0) return;
+  report.refusals.push_back("core " + std::to_string(core) + " is not granted: '" + std::strerror(error) +
+                            "'; remedy: set the parameter 'core' to one of this process's cores ('taskset -cp " +
+                            std::to_string(getpid()) + "' lists them), or to -1");
+}
+
+void take_priority(int priority, RealtimeReport& report) {
+  const rlim_t limit = raise_limit(RLIMIT_RTPRIO, static_cast<rlim_t>(priority));
+  const sched_param parameter{.sched_priority = priority};
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
+  report.priority = error == 0 ? Grant::kGranted : Grant::kRefused;
+  if (error == 0) return;
+  report.refusals.push_back(
+      "SCHED_FIFO priority " + std::to_string(priority) + " is not granted: '" + std::strerror(error) +
+      "', the limit is " + std::to_string(limit) + ", so other programs may delay the loop; remedy: '" + user_name() +
+      " - rtprio 99' in /etc/security/limits.d/realtime.conf and a new login, or CAP_SYS_NICE; " + kDocker);
+}
+
+bool refused(const RealtimeParameters& parameters, const RealtimeReport& report) {
+  return parameters.policy == RealtimePolicy::kRequired && !report.refusals.empty();
+}
+
+/// Stack of the thread: guard below, pages populated.
+class Stack {
+ public:
+  Stack() {
+    const int flags = MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_POPULATE;
+    memory_ = mmap(nullptr, kGuardBytes + RealtimeThread::kStackBytes, PROT_READ | PROT_WRITE, flags, -1, 0);
+    if (memory_ == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap of the loop's stack");
+    mprotect(memory_, kGuardBytes, PROT_NONE);
+    mlock(bottom(), RealtimeThread::kStackBytes);  // fits also where the whole process does not
+  }
+  Stack(const Stack&) = delete;
+  Stack& operator=(const Stack&) = delete;
+  ~Stack() { munmap(memory_, kGuardBytes + RealtimeThread::kStackBytes); }
+
+  void* bottom() const noexcept { return static_cast<char*>(memory_) + kGuardBytes; }
+
+ private:
+  void* memory_ = nullptr;
+};
+
+}  // namespace
+
+RealtimeReport prepare_process(RealtimePolicy policy) {
+  if (policy == RealtimePolicy::kOff) return {};
+  static const RealtimeReport first = lock_memory();
+  return first;
+}
+
+struct RealtimeThread::Thread {
+  RealtimeParameters parameters;
+  std::function<void()> body;
+  RealtimeReport report;
+  std::promise<void> ready;
+  Stack stack;
+  pthread_t handle{};
+  bool joined = false;
+
+  static void* run(void* argument) {
+    auto& self = *static_cast<Thread*>(argument);
+    const RealtimeParameters& asked = self.parameters;
+    pthread_setname_np(pthread_self(), asked.name.substr(0, 15).c_str());
+    take_core(asked.core, self.report);
+    if (asked.policy != RealtimePolicy::kOff && asked.priority > 0) take_priority(asked.priority, self.report);
+    const bool go = !refused(asked, self.report);
+    self.ready.set_value();
+    if (go) self.body();
+    return nullptr;
+  }
+};
+
+RealtimeThread::RealtimeThread(const RealtimeParameters& parameters, std::function<void()> body)
+    : report_(prepare_process(parameters.policy)), thread_(std::make_unique<Thread>()) {
+  thread_->parameters = parameters;
+  thread_->body = std::move(body);
+  thread_->report = report_;
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstack(&attributes, thread_->stack.bottom(), kStackBytes);
+  const int error = pthread_create(&thread_->handle, &attributes, &Thread::run, thread_.get());
+  pthread_attr_destroy(&attributes);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "pthread_create of the loop's thread");
+  thread_->ready.get_future().wait();
+  report_ = thread_->report;
+  if (!refused(parameters, report_)) return;
+  join();
+  std::string message = "realtime: required, but";
+  for (const std::string& refusal : report_.refusals) message += "\n  " + refusal;
+  throw RealtimeError(message);
+}
+
+RealtimeThread::~RealtimeThread() {
+  join();
+}
+
+void RealtimeThread::join() {
+  if (thread_->joined) return;
+  pthread_join(thread_->handle, nullptr);
+  thread_->joined = true;
+}
+
+}  // namespace robot_control
