@@ -1,0 +1,135 @@
+"""The closed loop in one process, in virtual time: the same C++ classes as the four nodes run.
+
+    loop = ClosedLoop()
+    log = loop.run(seconds=10.0, command=(0.5, 0.2))
+    log["truth_linear"]  # numpy, one value per cycle
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from os import PathLike, fspath
+from typing import Any, Union
+
+import numpy as np
+
+from robot_control import _robot_control
+from robot_control.share import share_file
+
+Log = dict[str, np.ndarray]
+Command = Union[Callable[[float], tuple[float, float]], tuple[float, float], None]
+
+
+def _leaves(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Dotted path and YAML text of every value of a nested dict."""
+    for key, value in tree.items():
+        path = f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            yield from _leaves(value, path + ".")
+        elif isinstance(value, bool):
+            yield path, "true" if value else "false"
+        elif isinstance(value, float):
+            yield path, repr(value) if np.isfinite(value) else {"nan": ".nan", "inf": ".inf"}.get(str(value), "-.inf")
+        else:
+            yield path, str(value)
+
+
+class ClosedLoop:
+    """Plant, estimator, controller and safety monitor, one cycle after the other.
+
+    Args:
+        params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`;
+            None takes that file as it is.
+        seed: of every random number in the plant.
+        urdf: path of the robot description; overrides `robot.urdf`.
+        scene: path of the MJCF world; overrides `mujoco_plant.scene`.
+
+    Raises:
+        ParameterError: every missing, unknown, mistyped or out-of-range value at once.
+        RobotError: the robot description cannot be driven.
+        DriverError: the scene does not compile.
+
+    Same arguments and calls give the same bits.
+    """
+
+    def __init__(
+        self,
+        params: str | PathLike[str] | Mapping[str, Any] | None = None,
+        seed: int = 0,
+        urdf: str | PathLike[str] | None = None,
+        scene: str | PathLike[str] | None = None,
+    ) -> None:
+        values: list[tuple[str, str]] = []
+        path = share_file("config/robot_params.yaml")
+        if isinstance(params, Mapping):
+            values += _leaves(params)
+        elif params is not None:
+            path = fspath(params)
+        if urdf is not None:
+            values.append(("robot.urdf", fspath(urdf)))
+        if scene is not None:
+            values.append(("mujoco_plant.scene", fspath(scene)))
+        self._path = path
+        self._values = values
+        self.reset(seed)
+
+    def reset(self, seed: int = 0) -> None:
+        """Starts anew at cycle 0: robot set down, estimator, controller and latches fresh."""
+        self._loop = _robot_control.ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
+
+    def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
+        """As if just received on cmd_vel: linear [m/s], angular [rad/s]. Times out like cmd_vel."""
+        self._loop.command(linear, angular)
+
+    def e_stop(self) -> None:
+        """As if `e_stop_trigger` had been called: brake, latched."""
+        self._loop.e_stop()
+
+    def e_stop_reset(self) -> None:
+        """As if `e_stop_reset` had been called; accepted only at standstill with zero command."""
+        self._loop.e_stop_reset()
+
+    def heartbeat(self) -> None:
+        """As if a message had arrived on `heartbeat`."""
+        self._loop.heartbeat()
+
+    def step(self, cycles: int = 1) -> Log:
+        """Runs `cycles` cycles; returns their log, arrays of shape (cycles,)."""
+        return self._loop.run(cycles, None)
+
+    def run(self, seconds: float, command: Command = None) -> Log:
+        """Runs for `seconds` of simulated time.
+
+        Args:
+            seconds: s, rounded to whole cycles.
+            command: called with the time [s] of each cycle, gives (linear [m/s], angular [rad/s]), each as
+                if just received; or one such pair for every cycle; or None: the last `command`, which
+                times out like cmd_vel.
+
+        Returns:
+            Column name → float array of shape (cycles,); NaN where a node published nothing. Units: `units`.
+        """
+        cycles = round(seconds / self.period)
+        if command is None or callable(command):
+            return self._loop.run(cycles, command)
+        return self._loop.run(cycles, lambda _time: command)
+
+    @property
+    def time(self) -> float:
+        """Time [s] of the next sample."""
+        return self._loop.time
+
+    @property
+    def cycle(self) -> int:
+        """Number of the next cycle."""
+        return self._loop.cycle
+
+    @property
+    def period(self) -> float:
+        """s"""
+        return self._loop.period
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Column name → unit, or the name of the enum that an integer column holds."""
+        return dict(self._loop.columns)
