@@ -44,29 +44,29 @@ struct JointModel {
 };
 
 struct WheelModel {
-  std::size_t joint = 0;       ///< index into RobotModel::joints
-  Vector3 centre_base{};       ///< m, centre of the wheel's shape
-  double radius = 0;           ///< m
-  double width = 0;            ///< m
-  double sign = 1;             ///< +1: positive joint velocity drives forward
-  double inertia = 0;          ///< kg·m² about the axle
+  std::size_t joint = 0;  ///< index into RobotModel::joints
+  Vector3 centre_base{};  ///< m, centre of the wheel's shape
+  double radius = 0;      ///< m
+  double width = 0;       ///< m
+  double sign = 1;        ///< +1: positive joint velocity drives forward
+  double inertia = 0;     ///< kg·m² about the axle
 };
 
 struct RobotModel {
   std::string name;
   std::string source;
-  std::string urdf;            ///< the text itself
-  std::uint64_t hash = 0;      ///< of the URDF text and every override; equal hash = same robot
+  std::string urdf;        ///< the text itself
+  std::uint64_t hash = 0;  ///< of the URDF text and every override; equal hash = same robot
   std::vector<JointModel> joints;
   WheelModel left;
   WheelModel right;
-  double wheel_base = 0;       ///< m, distance between the left and right wheel centres
-  double mass = 0;             ///< kg, all links
+  double wheel_base = 0;             ///< m, distance between the left and right wheel centres
+  double mass = 0;                   ///< kg, all links
   Vector3 centre_of_gravity_base{};  ///< m
-  double yaw_inertia = 0;      ///< kg·m² about the vertical through the middle of the axle
+  double yaw_inertia = 0;            ///< kg·m² about the vertical through the middle of the axle
   std::string base_link;
-  std::string imu_link;        ///< empty: the IMU sits in base_link
-  Pose imu_in_base;            ///< orientation rotates from IMU axes to base axes
+  std::string imu_link;  ///< empty: the IMU sits in base_link
+  Pose imu_in_base;      ///< orientation rotates from IMU axes to base axes
 };
 
 /// Reads a file; throws RobotError naming it.

@@ -1,0 +1,20 @@
+#pragma once
+/// The kinematic tree of a URDF, and where its links are while every joint stands at zero.
+
+#include <Eigen/Geometry>
+#include <kdl/tree.hpp>
+#include <map>
+#include <string>
+
+#include "robot/urdf_document.h"
+
+namespace robot_control {
+
+/// One KDL segment per link but the root, named after the link. Throws RobotError for joints that a KDL joint
+/// cannot say (floating, planar).
+KDL::Tree kdl_tree(const UrdfDocument& document);
+
+/// Link name → its frame in the root link's, by KDL's forward kinematics at the zero pose. The root is identity.
+std::map<std::string, Eigen::Isometry3d> links_at_zero(const KDL::Tree& tree);
+
+}  // namespace robot_control

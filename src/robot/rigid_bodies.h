@@ -1,0 +1,76 @@
+#pragma once
+/// What moves as one: the links of a URDF that fixed joints weld together, lumped into one rigid body each.
+///
+///   m = Σ mᵢ    c = Σ mᵢ cᵢ / m    I = Σ Rᵢ Iᵢ Rᵢᵀ + mᵢ (|dᵢ|² 1 − dᵢ dᵢᵀ),  dᵢ = cᵢ − c
+///
+/// A body's frame is that of the link its joint moves (the root link's for body 0), at the zero pose.
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+enum class ShapeType { kSphere, kCylinder, kBox, kMesh };
+
+/// A collision shape. A cylinder stands along its z.
+struct Shape {
+  ShapeType type = ShapeType::kSphere;
+  Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();
+  double radius = 0;                               ///< m; sphere, cylinder
+  double length = 0;                               ///< m; cylinder
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< m, full lengths; box
+  std::string link;                                ///< that it stands in, for messages
+};
+
+enum class JointType { kRoot, kFixed, kRevolute, kContinuous, kPrismatic };
+
+struct BodyJoint {
+  std::string name;
+  JointType type = JointType::kRoot;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, body axes
+  double effort_limit = 0;                          ///< N·m or N; 0: passive
+  double velocity_limit = 0;                        ///< rad/s or m/s
+  double lower = 0, upper = 0;                      ///< rad or m; revolute and prismatic
+  double damping = 0;                               ///< N·m·s/rad or N·s/m
+  double friction = 0;                              ///< N·m or N
+};
+
+struct RigidBody {
+  std::string name;        ///< of the link that the joint moves
+  std::size_t parent = 0;  ///< index; meaningless for body 0
+  BodyJoint joint;         ///< to the parent
+  Eigen::Isometry3d in_root = Eigen::Isometry3d::Identity();
+  double mass = 0;                                              ///< kg
+  Eigen::Vector3d centre_of_gravity = Eigen::Vector3d::Zero();  ///< m, body frame
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();            ///< kg·m², about the centre of gravity, body axes
+  std::vector<Shape> shapes;
+};
+
+/// Where a link went.
+struct LinkPlace {
+  std::size_t body = 0;
+  Eigen::Isometry3d in_body = Eigen::Isometry3d::Identity();
+};
+
+struct RigidBodies {
+  std::string name;
+  std::string source;
+  std::vector<RigidBody> bodies;  ///< parents before children; 0 is the root
+  std::map<std::string, LinkPlace> links;
+  std::vector<std::string> moving_joints;   ///< in the order of the file
+  std::map<std::string, JointType> joints;  ///< all, fixed ones too
+
+  /// Null when no moving joint has this name.
+  const RigidBody* moved_by(const std::string& joint) const;
+};
+
+/// Throws RobotError: what parse_urdf refuses, negative masses, inertias that no mass distribution has
+/// (I ≥ 0 and A + B ≥ C for the principal moments), moving bodies without mass.
+RigidBodies read_rigid_bodies(const RobotDescription& description);
+
+}  // namespace robot_control

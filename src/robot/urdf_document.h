@@ -1,0 +1,27 @@
+#pragma once
+/// A URDF text as urdfdom understands it, or a message that says what is wrong and where.
+
+#include <urdf_world/types.h>
+
+#include <string>
+#include <vector>
+
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+struct UrdfDocument {
+  std::string source;                    ///< for messages
+  urdf::ModelInterfaceSharedPtr model;   ///< never null
+  std::vector<std::string> joint_order;  ///< names as they stand in the file (urdfdom sorts by name)
+};
+
+/// Throws RobotError: not well-formed (with the line), no `<robot>`, or whatever urdfdom objects to, in its own
+/// words. What urdfdom would print on the console goes into the message.
+UrdfDocument parse_urdf(const RobotDescription& description);
+
+/// "<source>: <element>: <what>. <remedy>."
+[[noreturn]] void refuse(const std::string& source, const std::string& element, const std::string& what,
+                         const std::string& remedy);
+
+}  // namespace robot_control
