@@ -15,16 +15,17 @@ CommandScript load_script(const LoopParameters& loop) {
 
 Now clock_of(const LoopParameters& loop) { return loop.clock == ClockMode::kLockstep ? nullptr : &monotonic_ns; }
 
-/// Refuses a driver that runs another robot.
-void check_robot(const FrameReader<SensorFrame>& sensors, const RobotModel& robot, bool need) {
-  if (need && sensors.memory() != nullptr) check_same_robot(sensors.memory()->head, robot.hash, robot.source);
+/// Has the living driver announced this robot? Throws BusError when it runs another one.
+bool robot_agrees(const Input<SensorFrame>& sensors, const RobotModel& robot) {
+  if (sensors.reader.memory() == nullptr || !sensors.channel.locked()) return false;
+  return same_robot(sensors.reader.memory()->head, robot.hash, robot.source);
 }
 
 /// Tells the driver that this node waits on the sensors of its current run.
 template <class Frame>
 void attach(const FrameReader<SensorFrame>& sensors, FrameWriter<Frame>& own) noexcept {
   const auto* memory = sensors.memory();
-  if (memory != nullptr) own.memory()->head.attached_run.store(memory->head.attached_run.load());
+  if (memory != nullptr) attach_to_run(own.memory()->head, attached_run(memory->head));
 }
 
 /// The loop of every consumer: the frame that is there first, then one step per wake.
@@ -60,11 +61,11 @@ std::vector<std::string> EstimatorProcess::missing() const {
 void EstimatorProcess::poll_channels() {
   sensors_.poll();
   trace_.poll();
-  check_robot(sensors_.reader, robot_, sensors_.channel.locked());
+  robot_agrees_ = robot_agrees(sensors_, robot_);
 }
 
 bool EstimatorProcess::ready() {
-  return sensors_.reader.memory() != nullptr && (!loop_parameters().wait_for_telemetry || trace_.reader_present());
+  return robot_agrees_ && (!loop_parameters().wait_for_telemetry || trace_.reader_present());
 }
 
 void EstimatorProcess::loop() noexcept {
@@ -98,12 +99,12 @@ void ControllerProcess::poll_channels() {
   state_.poll();
   permit_.poll();
   trace_.poll();
-  check_robot(sensors_.reader, robot_, sensors_.channel.locked());
+  robot_agrees_ = robot_agrees(sensors_, robot_);
 }
 
 bool ControllerProcess::ready() {
-  return sensors_.reader.memory() != nullptr && state_.reader.memory() != nullptr &&
-         permit_.reader.memory() != nullptr && (!loop_parameters().wait_for_telemetry || trace_.reader_present());
+  return robot_agrees_ && state_.reader.memory() != nullptr && permit_.reader.memory() != nullptr &&
+         (!loop_parameters().wait_for_telemetry || trace_.reader_present());
 }
 
 void ControllerProcess::loop() noexcept {
@@ -137,12 +138,12 @@ void MonitorProcess::poll_channels() {
   state_.poll();
   command_.poll();
   trace_.poll();
-  check_robot(sensors_.reader, robot_, sensors_.channel.locked());
+  robot_agrees_ = robot_agrees(sensors_, robot_);
 }
 
 bool MonitorProcess::ready() {
   const bool all = state_.reader.memory() != nullptr && command_.reader.memory() != nullptr;
-  return sensors_.reader.memory() != nullptr && (all || !loop_parameters().wait_for_nodes) &&
+  return robot_agrees_ && (all || !loop_parameters().wait_for_nodes) &&
          (!loop_parameters().wait_for_telemetry || trace_.reader_present());
 }
 

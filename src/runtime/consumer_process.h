@@ -28,6 +28,7 @@ class EstimatorProcess final : public Process {
   void loop() noexcept override;
 
   RobotModel robot_;
+  bool robot_agrees_ = false;
   Output<StateFrame> state_;
   Input<SensorFrame> sensors_;
   TraceSink<EstimatorTrace> trace_;
@@ -50,6 +51,7 @@ class ControllerProcess final : public Process {
   void loop() noexcept override;
 
   RobotModel robot_;
+  bool robot_agrees_ = false;
   Output<CommandFrame> command_;
   Input<SensorFrame> sensors_;
   Input<StateFrame> state_;
@@ -74,6 +76,7 @@ class MonitorProcess final : public Process {
   void loop() noexcept override;
 
   RobotModel robot_;
+  bool robot_agrees_ = false;
   Output<Permit> permit_;
   Input<SensorFrame> sensors_;
   Input<StateFrame> state_;

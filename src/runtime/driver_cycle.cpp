@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "hal/bus.h"
+
 namespace robot_control {
 namespace {
 
@@ -17,11 +19,7 @@ std::vector<double> effort_limits(const RobotModel& robot) {
 DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns,
                          Now now)
     : driver_(driver), channels_(channels), gate_(effort_limits(robot)), period_ns_(period_ns), now_(now) {
-  auto& head = channels_.sensors.memory()->head;
-  for (std::size_t i = 0; i < head.robot_source.size(); ++i) {
-    head.robot_source[i].store(i + 1 < head.robot_source.size() && i < robot.source.size() ? robot.source[i] : '\0');
-  }
-  head.robot_hash.store(robot.hash, std::memory_order_release);
+  announce_robot(channels_.sensors.memory()->head, robot.hash, robot.source);
 }
 
 void DriverCycle::begin_run(std::uint64_t run) noexcept {
@@ -32,7 +30,7 @@ void DriverCycle::begin_run(std::uint64_t run) noexcept {
   gate_.reset();
   trace_ = {};
   auto* memory = channels_.sensors.memory();
-  memory->head.attached_run.store(run, std::memory_order_release);
+  attach_to_run(memory->head, run);
   memory->sequence.fetch_add(1, std::memory_order_release);
   futex_wake_all(memory->sequence);
 }

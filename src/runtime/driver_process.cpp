@@ -21,7 +21,7 @@ std::uint64_t mint() {
 template <class Frame>
 bool attached(const Input<Frame>& input, std::uint64_t run) {
   const auto* memory = input.channel.memory();
-  return memory != nullptr && memory->head.attached_run.load() == run && input.channel.locked();
+  return memory != nullptr && attached_run(memory->head) == run && input.channel.locked();
 }
 
 /// Lockstep: has cycle k passed on this channel, with or without content?
