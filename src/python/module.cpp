@@ -17,7 +17,9 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-Twist planar(double linear, double angular) { return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}}; }
+Twist planar(double linear, double angular) {
+  return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+}
 
 std::vector<Column> columns_of(const ClosedLoop& loop) {
   std::vector<std::string> names;

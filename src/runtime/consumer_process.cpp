@@ -13,7 +13,9 @@ CommandScript load_script(const LoopParameters& loop) {
   return loop.command_script.empty() ? CommandScript() : CommandScript(loop.command_script);
 }
 
-Now clock_of(const LoopParameters& loop) { return loop.clock == ClockMode::kLockstep ? nullptr : &monotonic_ns; }
+Now clock_of(const LoopParameters& loop) {
+  return loop.clock == ClockMode::kLockstep ? nullptr : &monotonic_ns;
+}
 
 /// Has the living driver announced this robot? Throws BusError when it runs another one.
 bool robot_agrees(const Input<SensorFrame>& sensors, const RobotModel& robot) {

@@ -58,8 +58,9 @@ bool ControllerCycle::step() noexcept {
 
   receive(cycle);
   ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};
-  if (cycle > 0 && channels_.permit->newest_within(run, cycle - std::min(cycle, kPermitLife), cycle - 1, permit_) ==
-                       Lookup::kFrame &&
+  if (cycle > 0 &&
+      channels_.permit->newest_within(run, cycle - std::min(cycle, kPermitLife), cycle - 1, permit_) ==
+          Lookup::kFrame &&
       permit_.expiry >= cycle) {
     input.permit = &permit_;
   }

@@ -43,8 +43,8 @@ class ControllerCycle {
   CommandScript script_;
   std::uint64_t robot_hash_;
   LatestValue<VelocityCommand> inbox_;
-  VelocityCommand received_;        ///< what the inbox held when last looked at
-  VelocityCommand request_;         ///< inbox and script merged in the order of arrival
+  VelocityCommand received_;  ///< what the inbox held when last looked at
+  VelocityCommand request_;   ///< inbox and script merged in the order of arrival
   SensorFrame sensors_;
   StateFrame state_;
   Permit permit_;

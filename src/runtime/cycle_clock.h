@@ -22,7 +22,7 @@ enum class Arrival {
 
 class CycleClock {
  public:
-  explicit CycleClock(Now now) noexcept : now_(now) {}
+  explicit CycleClock(Now clock) noexcept : now_(clock) {}
 
   Arrival judge(const FrameHead& head) const noexcept {
     if (head.run != run_) return Arrival::kNewRun;

@@ -65,8 +65,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   driver->start();
   driver_ = std::move(driver);
   cycle_ = std::make_unique<DriverCycle>(
-      *driver_, robot_,
-      DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
+      *driver_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
       loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns);
   cycle_->set_boot(mint());
   cycle_->begin_run(mint());
@@ -97,7 +96,9 @@ void DriverProcess::poll_channels() {
   trace_.poll();
 }
 
-bool DriverProcess::ready() { return cycle_ != nullptr && missing().empty(); }
+bool DriverProcess::ready() {
+  return cycle_ != nullptr && missing().empty();
+}
 
 void DriverProcess::loop() noexcept {
   if (lockstep()) {

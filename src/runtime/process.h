@@ -46,9 +46,9 @@ class Process {
   std::vector<std::string> realtime_messages() const;
 
  protected:
-  virtual void poll_channels() = 0;         ///< maps what appeared
-  virtual bool ready() = 0;                 ///< may the real-time thread start?
-  virtual void loop() noexcept = 0;         ///< its body; ends when `stopping()`
+  virtual void poll_channels() = 0;  ///< maps what appeared
+  virtual bool ready() = 0;          ///< may the real-time thread start?
+  virtual void loop() noexcept = 0;  ///< its body; ends when `stopping()`
 
   const std::atomic<bool>& stopping() const noexcept { return stopping_; }
   void finish() noexcept { finished_.store(true); }

@@ -29,8 +29,7 @@ CommandScript load_script(const Parameters& parameters) {
 
 RobotModel load_robot(const Parameters& parameters) {
   RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
-  const std::vector<std::string> problems =
-      control_problems(parameters.controller, robot, parameters.loop.period());
+  const std::vector<std::string> problems = control_problems(parameters.controller, robot, parameters.loop.period());
   if (problems.empty()) return robot;
   std::string message;
   for (const std::string& problem : problems) message += problem + "\n";
@@ -82,9 +81,15 @@ void ClosedLoop::command(const Twist& twist) noexcept {
   parts_->request = {.twist = twist, .count = parts_->request.count + 1};
 }
 
-void ClosedLoop::e_stop() noexcept { ++parts_->operator_input.e_stop_services; }
-void ClosedLoop::e_stop_reset() noexcept { ++parts_->operator_input.resets; }
-void ClosedLoop::heartbeat() noexcept { ++parts_->operator_input.heartbeats; }
+void ClosedLoop::e_stop() noexcept {
+  ++parts_->operator_input.e_stop_services;
+}
+void ClosedLoop::e_stop_reset() noexcept {
+  ++parts_->operator_input.resets;
+}
+void ClosedLoop::heartbeat() noexcept {
+  ++parts_->operator_input.heartbeats;
+}
 
 void ClosedLoop::step() noexcept {
   Parts& parts = *parts_;
@@ -106,10 +111,20 @@ void ClosedLoop::step() noexcept {
                .monitor = monitored ? &parts.monitor.trace() : nullptr};
 }
 
-std::uint64_t ClosedLoop::cycle() const noexcept { return parts_->driver.next_cycle(); }
-double ClosedLoop::time() const noexcept { return row_time(cycle(), parts_->parameters.loop.period()); }
-const JoinedRow& ClosedLoop::row() const noexcept { return parts_->row; }
-const RobotModel& ClosedLoop::robot() const noexcept { return parts_->robot; }
-const Parameters& ClosedLoop::parameters() const noexcept { return parts_->parameters; }
+std::uint64_t ClosedLoop::cycle() const noexcept {
+  return parts_->driver.next_cycle();
+}
+double ClosedLoop::time() const noexcept {
+  return row_time(cycle(), parts_->parameters.loop.period());
+}
+const JoinedRow& ClosedLoop::row() const noexcept {
+  return parts_->row;
+}
+const RobotModel& ClosedLoop::robot() const noexcept {
+  return parts_->robot;
+}
+const Parameters& ClosedLoop::parameters() const noexcept {
+  return parts_->parameters;
+}
 
 }  // namespace robot_control
