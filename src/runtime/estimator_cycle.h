@@ -1,6 +1,7 @@
 #pragma once
 /// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on.
 
+#include <atomic>
 #include <cstdint>
 
 #include "estimation/estimator.h"

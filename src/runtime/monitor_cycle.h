@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "robot/robot_model.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
