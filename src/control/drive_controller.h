@@ -1,8 +1,31 @@
 #pragma once
 /// diff_drive_controller's chain in one step: request → limits → kinematics → wheel loops → torque.
+///
+/// Every joint is braked (JointMode::kBrake) when
+///   - there is no live permit, it orders the brake, or its ramp is over;
+///   - the sensors are not valid, not finite, for another number of joints, or their cycle does not advance;
+///   - the robot holds: zero wish, zero limited twist and both wheels standing (standstill.h). The driver's brake law
+///     keeps the position; the next wish ≠ 0 ends it.
+/// Under a ramp permit the wish is zero and the limits apply. Joints that are not wheels are always braked.
+///
+/// While the wheels do not follow this controller (it brakes, or the gate reports that tick k−1 was braked) limiter
+/// and wheel loops are seeded with the measured speed, cycle by cycle, so nothing jumps at release: the first torque
+/// is unaccelerated, and the ramp starts once the gate has passed it. The integrators take over what the brake was
+/// holding (the measured effort) while the wheels stand; while they still turn the brake's effort is no load, and the
+/// integrators keep what they last knew.
+///
+/// A state frame that is missing, held or invalid does not stop the drive: the wheel loops need only the encoders.
+/// Skipped cycles: dt = (k − k_previous)·period. After more than kHeldCycles the driver has braked by itself.
 
 #include <cstdint>
+#include <optional>
 
+#include "control/command_watch.h"
+#include "control/feed_forward.h"
+#include "control/kinematics.h"
+#include "control/speed_limiter.h"
+#include "control/standstill.h"
+#include "control/wheel_loop.h"
 #include "robot/robot_model.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
@@ -28,9 +51,12 @@ struct DriveControllerParameters {
 struct ControlInput {
   const SensorFrame* sensors = nullptr;  ///< never null
   const StateFrame* state = nullptr;
-  const Permit* permit = nullptr;        ///< the newest unexpired one ≤ k-1
-  VelocityCommand request;               ///< the inbox; a new message is one with a new count
+  const Permit* permit = nullptr;  ///< the newest unexpired one ≤ k-1
+  VelocityCommand request;         ///< the inbox; a new message is one with a new count
 };
+
+/// The gate executes a command in at most this many ticks (DESIGN: commands of cycles k−4 … k−1).
+inline constexpr std::uint64_t kHeldCycles = 4;
 
 class DriveController {
  public:
@@ -41,6 +67,31 @@ class DriveController {
 
   /// Fills everything but `out.head`.
   void step(const ControlInput& input, CommandFrame& out) noexcept;
+
+ private:
+  bool measure(const SensorFrame& sensors) noexcept;
+  bool usable(const SensorFrame& sensors) const noexcept;
+  std::uint64_t permit_reasons(const Permit* permit, std::uint64_t cycle) const noexcept;
+  std::uint64_t state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept;
+  void follow_measured(const SensorFrame& sensors) noexcept;
+  void drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept;
+
+  double period_;
+  std::uint64_t joint_count_;
+  std::size_t left_joint_;
+  std::size_t right_joint_;
+  DriveKinematics kinematics_;
+  FeedForward feed_forward_;
+  CommandWatch watch_;
+  SpeedLimiter limiter_;
+  Standstill standstill_;
+  WheelLoop left_;
+  WheelLoop right_;
+  std::optional<std::uint64_t> last_cycle_;  ///< of the last usable sample
+  double periods_ = 1;                       ///< between the last two usable samples
+  bool driving_ = false;                     ///< the last command was not the brake
+  std::uint64_t state_cycle_ = 0;
+  std::uint64_t permit_cycle_ = 0;
 };
 
 }  // namespace robot_control

@@ -1,0 +1,21 @@
+#pragma once
+/// The start-up check: would these gains hold this robot at this rate?
+
+#include <string>
+#include <vector>
+
+#include "control/drive_controller.h"
+#include "control/wheel_loop.h"
+
+namespace robot_control {
+
+/// The gains as the controller uses them for this wheel: model_inertia = kModelInertiaFactor·wheel.inertia.
+WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, const WheelModel& wheel) noexcept;
+
+/// One message per problem, with value, rule and remedy; empty: none. Each wheel must have a spectral radius < 1
+/// lifted, turning, straight and straight with the robot's mass doubled, and a torque limit above 0.
+/// `parameters` within their ranges, `period` s > 0.
+std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& robot,
+                                          double period);
+
+}  // namespace robot_control

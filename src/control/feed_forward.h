@@ -1,0 +1,44 @@
+#pragma once
+/// The torque that a planned motion needs: Newton and Euler for a body on two driven wheels.
+///
+/// Body of mass m (all links), yaw inertia I about the vertical through the middle of the axle (the point that
+/// v and ω belong to), centre of gravity x_c ahead of the axle. Force F along x and moment M about z from the wheels:
+///
+///   F = m·(v̇ − x_c·ω²)        F_left  = F/2 − M/b
+///   M = I·ω̇ + m·x_c·v·ω       F_right = F/2 + M/b
+///
+/// A wheel of radius r and axle inertia J passes F_wheel to the ground and spins up with its rim's acceleration a:
+///
+///   τ = r·F_wheel + J·a/r     (times the joint's sign)
+///
+/// So a wheel sees, per rad/s² of its own, the inertia
+///   straight: J + m·r²/2      turning: J + 2·I·r²/b²      lifted: J
+/// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m: 0.065, 0.045 and 0.005 kg·m².
+/// Friction and slopes are left to the integrator: RobotModel does not know them.
+
+#include "control/planar_twist.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+/// kg·m² about the axle of one wheel.
+double straight_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept;
+double turning_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept;
+
+class FeedForward {
+ public:
+  explicit FeedForward(const RobotModel& robot);
+
+  /// N·m per joint for moving at `twist` with `acceleration` (m/s², rad/s²).
+  WheelPair efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;
+
+ private:
+  double mass_;
+  double yaw_inertia_;
+  double centre_ahead_;  ///< m, x_c
+  double wheel_base_;
+  WheelPair effort_per_force_;         ///< m: sign·r
+  WheelPair effort_per_acceleration_;  ///< N·m·s²/m: sign·J/r
+};
+
+}  // namespace robot_control

@@ -1,0 +1,37 @@
+#pragma once
+/// Do both wheels stand? Each has moved less than kStandstillSpeed·kStandstillTime for kStandstillTime.
+///
+/// Judged on angles, not on speeds: one encoder count at the edge (0.0015 rad of 4096) jumps the speed of any filter
+/// above the threshold, but not the angle out of the window of 0.005 rad.
+
+#include <cstdint>
+
+#include "control/planar_twist.h"
+
+namespace robot_control {
+
+inline constexpr double kStandstillSpeed = 0.02;  ///< rad/s; 2 mm/s on a 0.1 m wheel
+inline constexpr double kStandstillTime = 0.25;   ///< s; the wheel loops have settled by then
+
+class Standstill {
+ public:
+  /// `period` > 0, s.
+  explicit Standstill(double period);
+
+  /// Forgets the past: the robot may be moving.
+  void reset() noexcept;
+
+  /// rad of both joints, `cycle` of the sample.
+  void step(const WheelPair& angles, std::uint64_t cycle) noexcept;
+
+  bool standing() const noexcept { return standing_; }
+
+ private:
+  std::uint64_t cycles_needed_;
+  WheelPair anchor_;
+  std::uint64_t since_ = 0;
+  bool anchored_ = false;
+  bool standing_ = false;
+};
+
+}  // namespace robot_control

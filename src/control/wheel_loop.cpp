@@ -1,0 +1,54 @@
+#include "control/wheel_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+
+WheelLoop::WheelLoop(const WheelLoopGains& gains, double bandwidth, double effort_limit, double period)
+    : gains_(gains), effort_limit_(effort_limit), period_(period), tracking_(bandwidth, period) {}
+
+void WheelLoop::reset() noexcept {
+  tracked_ = false;
+  integral_ = 0;
+  saturated_ = false;
+}
+
+void WheelLoop::measure(const JointSample& sample, double periods) noexcept {
+  if (!tracked_) {
+    tracking_.seed(sample.position, sample.velocity);
+    tracked_ = true;
+    resume();
+    return;
+  }
+  // While commands were skipped the driver held the last one.
+  if (periods > 1) plans_[1] = plans_[0];
+  const double surprise = sample.effort - plans_[1].feed_forward;
+  tracking_.step(sample.position, plans_[1].acceleration + surprise / gains_.model_inertia, periods);
+}
+
+void WheelLoop::resume() noexcept {
+  plans_.fill({.velocity = velocity()});
+  saturated_ = false;
+}
+
+void WheelLoop::carry(double effort) noexcept {
+  integral_ = std::clamp(effort + gains_.kd * tracking_.acceleration(), -effort_limit_, effort_limit_);
+}
+
+double WheelLoop::step(const WheelPlan& plan, double periods) noexcept {
+  const double error = plans_[1].velocity - velocity();
+  const double direct = plan.feed_forward + gains_.kp * error - gains_.kd * tracking_.acceleration();
+  const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
+  const bool winds_up = std::abs(direct + integral) > effort_limit_ && (direct + integral) * error > 0;
+  if (!winds_up) integral_ = integral;
+
+  const double wanted = direct + integral_;
+  const double effort = std::clamp(wanted, -effort_limit_, effort_limit_);
+  saturated_ = effort != wanted;
+  plans_[1] = plans_[0];
+  plans_[0] = plan;
+  return effort;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,94 @@
+#pragma once
+/// One driven wheel: planned motion → torque. Feed-forward, PID on the tracked speed, clamp.
+///
+///   error    = velocity_plan(k−2) − velocity
+///   integral = integral + ki·error·dt
+///   effort   = feed_forward + kp·error + integral − kd·acceleration,   |effort| ≤ effort_limit
+///
+/// velocity, acceleration: of the tracking loop on the encoder angle. The torque of cycle k acts over
+/// [t_k+1, t_k+2), so what was planned at k−2 is what an ideal wheel does at t_k: comparing with that plan, the
+/// integrator has nothing to learn from a ramp that feed-forward drives perfectly.
+///
+/// The tracking loop is told what the wheel should do anyway and what the measured torque adds to it,
+///   known acceleration over [t_k-1, t_k) = acceleration_plan(k−2) + (effort_measured −
+///   feed_forward(k−2))/model_inertia
+/// (a plain tracking loop of 20 Hz lags so much that a lifted wheel is stable only up to kp = 0.87: see below). The
+/// plan and the torque need not be right, the loop's residual finds the rest.
+///
+/// Anti-windup by conditional integration: the integrator stops while the clamped sum is pushed further out, and
+/// |integral| ≤ effort_limit. Bumpless: `carry` gives the integrator the load that the brake was holding, so the first
+/// torque after a brake is the torque before it and a robot on a slope does not sag.
+///
+/// Default gains for 12 kg, 1 kHz (wheel inertia J: lifted 0.005, turning 0.045, straight 0.065 kg·m²):
+///   model_inertia = 2·J_lifted = 0.01. Between 1 and 3 times J_lifted the loop is robust against the load; at 2 the
+///     limit of kp is 10 N·m·s/rad for *every* inertia from 0.005 to 0.13 kg·m² (kp·dt/model_inertia = 1), while
+///     damping of the lifted wheel and of the loaded one are balanced (0.28 and 0.62 of critical).
+///   kp = 2: kp·dt/model_inertia = 0.2, a fifth of the limit. Loaded, J/kp = 33 ms.
+///   ki = 10: kp/ki = 0.2 s, slow against 33 ms (critical damping of the loaded wheel would be kp²/(4·J) = 15).
+///   kd = 0: the acceleration of the tracking loop adds phase lag, not damping.
+/// Spectral radius (wheel_loop_stability.h), all at 1 kHz and 20 Hz:
+///   kp 2, ki 10: 0.9949 lifted, 0.9943 turning, 0.9938 straight, 0.9916 payload doubled (the slow integrator);
+///     gain margin 5.0, 5.0, 5.0, 5.0
+///   the article's kp 20, ki 0.1, kd 0.5: 4.3 lifted, 4.0 straight: unstable as torque gains.
+
+#include <array>
+
+#include "control/tracking_loop.h"
+#include "signals/joint.h"
+
+namespace robot_control {
+
+/// The tracking loop's idea of the wheel, as a multiple of the lifted wheel's inertia.
+inline constexpr double kModelInertiaFactor = 2.0;
+
+struct WheelLoopGains {
+  double kp = 2.0;              ///< N·m·s/rad
+  double ki = 10.0;             ///< N·m/rad
+  double kd = 0.0;              ///< N·m·s²/rad
+  double model_inertia = 0.01;  ///< kg·m²; infinity: the tracking loop is not told the torque
+};
+
+/// What the wheel shall do in one cycle.
+struct WheelPlan {
+  double velocity = 0;      ///< rad/s
+  double acceleration = 0;  ///< rad/s²
+  double feed_forward = 0;  ///< N·m
+};
+
+/// All in the joint's own sign. Order in a cycle: `measure`, then either `resume` (braked) or `step`.
+class WheelLoop {
+ public:
+  /// `bandwidth` Hz of the tracking loop, `effort_limit` N·m, `period` s.
+  WheelLoop(const WheelLoopGains& gains, double bandwidth, double effort_limit, double period);
+
+  /// A new run: the next sample seeds the tracking loop.
+  void reset() noexcept;
+
+  /// The sample of this cycle, `periods` ≥ 1 after the last one. Finite.
+  void measure(const JointSample& sample, double periods) noexcept;
+
+  /// The wheel does not follow this loop: whatever was planned is forgotten, the plan is the measured speed.
+  void resume() noexcept;
+
+  /// The next torque of an unaccelerated plan shall be `effort`, N·m.
+  void carry(double effort) noexcept;
+
+  /// N·m.
+  double step(const WheelPlan& plan, double periods) noexcept;
+
+  double velocity() const noexcept { return tracking_.velocity(); }  ///< rad/s
+  double integral() const noexcept { return integral_; }             ///< N·m
+  bool saturated() const noexcept { return saturated_; }             ///< the last step was clamped
+
+ private:
+  WheelLoopGains gains_;
+  double effort_limit_;
+  double period_;
+  TrackingLoop tracking_;
+  std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
+  double integral_ = 0;
+  bool tracked_ = false;
+  bool saturated_ = false;
+};
+
+}  // namespace robot_control

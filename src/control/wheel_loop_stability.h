@@ -1,0 +1,23 @@
+#pragma once
+/// Is the wheel loop stable? The eigenvalues of what really runs: tracking loop, PID and the bus's delay.
+///
+/// One wheel of inertia J, linear, sampled: the torque of cycle k acts over [t_k+1, t_k+2). State
+///
+///   x = (θ̂ − θ, ω̂, residual, ω, τ of [t_k, t_k+1), τ of [t_k-1, t_k), integral)
+///
+/// where θ, ω are the wheel's and θ̂, ω̂, residual the tracking loop's. x_k+1 = A·x_k; the loop is stable if and only if
+/// the spectral radius max|λ(A)| < 1. After n cycles a disturbance has faded to about radius^n, so
+/// ln(radius)/period is the slowest decay rate in 1/s.
+
+#include "control/wheel_loop.h"
+
+namespace robot_control {
+
+/// `inertia` kg·m² that the wheel really drives, `period` s, `bandwidth` Hz of the tracking loop; all > 0.
+double wheel_loop_spectral_radius(const WheelLoopGains& gains, double inertia, double period, double bandwidth);
+
+/// kp·dt/model_inertia: the quick rule. For every inertia ≥ model_inertia/2 the loop loses stability near 1 or above
+/// it (kd = 0); aim at ≤ 0.5.
+double stability_number(const WheelLoopGains& gains, double period) noexcept;
+
+}  // namespace robot_control
