@@ -1,0 +1,86 @@
+#pragma once
+/// The simulated machine: robot and scene in MuJoCo.
+///
+/// A period is n = ⌈period / 1 ms⌉ MuJoCo steps of period/n. `write` does for each of them
+///
+///   joint law (q, q̇ → τ)  →  mj_step2 (accelerations, integration)  →  mj_step1 (kinematics of the new state)
+///
+/// and collects what `read` and `truth` hand out, so that after `write` k everything describes t_k+1: positions,
+/// velocities and gyro at that instant; accelerometer, contact forces and efforts as means over [t_k, t_k+1), as
+/// SensorFrame promises.
+///
+/// `start` sets the robot down on the site `start` of the scene and lets it settle with the brakes on; where it
+/// then rests is time zero and the origin of truth. Same model and commands, same bits, also after another `start`.
+///
+/// Faults: a warning of MuJoCo is kFaultSimulationDiverged, an error kFaultSimulationError, NaN or infinity in what
+/// would be handed out kFaultNotFinite. The simulation then stands; `read` and `truth` keep the last good values,
+/// with state kFault and nothing valid. `start` recovers from all but an error, which is for good.
+///
+/// Sensors: encoders (exact), gyro and accelerometer at the IMU, exact. No battery, no contact sensors.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "drivers/joint_law.h"
+#include "drivers/mujoco_model.h"
+#include "drivers/mujoco_plant_parameters.h"
+#include "hal/driver.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+class MujocoPlant final : public Driver {
+ public:
+  /// `period` in s. Throws DriverError: see compile_model and check_brake.
+  MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
+
+  void start() override;
+  void read(SensorFrame& sensors) noexcept override;
+  void write(std::span<const JointCommand> commands) noexcept override;
+  void stop() noexcept override;
+  bool truth(TruthFrame& truth) noexcept override;
+
+  /// What MuJoCo said when the fault came; "" without one.
+  const char* fault_message() const noexcept { return fault_message_.data(); }
+
+  /// For tests and tools: model and data. Null data before `start`.
+  const MujocoModel& model() const noexcept { return model_; }
+  const mjData* data() const noexcept { return data_.get(); }
+
+ private:
+  static void substep(void* plant);
+  bool advance(std::span<const JointCommand> commands) noexcept;
+  void settle();
+  bool at_rest() const noexcept;
+  void add_normal_forces() noexcept;
+  void collect() noexcept;
+  void collect_truth() noexcept;
+  double wheel_slip(int shape) const noexcept;
+  bool finite() const noexcept;
+  void fail(std::uint64_t fault, const char* message) noexcept;
+
+  MujocoModel model_;
+  MujocoData data_;
+  std::string scene_;
+  std::vector<JointLaw> laws_;
+  std::vector<JointCommand> brakes_;
+  std::array<double, 7> origin_{};  ///< qpos of the base at time zero
+
+  DriverState state_ = DriverState::kStarting;
+  std::uint64_t faults_ = 0;
+  std::array<char, 256> fault_message_{};
+  bool stopped_ = false;
+
+  // sums over the steps of a period
+  std::array<double, kMaxJoints> effort_sum_{};
+  std::array<double, 2> normal_force_sum_{};
+  std::array<double, 3> acceleration_sum_{};
+
+  // of t_k, as handed out
+  std::array<JointSample, kMaxJoints> joints_{};
+  ImuSample imu_;
+  TruthFrame truth_;
+};
+
+}  // namespace robot_control
