@@ -35,6 +35,7 @@
 
 namespace robot_control {
 
+/// The gains are derived in wheel_loop.h.
 struct DriveControllerParameters {
   double max_linear_speed = 1.0;          ///< m/s
   double max_angular_speed = 2.0;         ///< rad/s
@@ -42,7 +43,7 @@ struct DriveControllerParameters {
   double max_angular_acceleration = 4.0;  ///< rad/s²
   double cmd_vel_timeout = 1.25;          ///< s; 0 = never
   double pid_kp = 2.0;                    ///< N·m·s/rad
-  double pid_ki = 10.0;                   ///< N·m/rad
+  double pid_ki = 20.0;                   ///< N·m/rad
   double pid_kd = 0.0;                    ///< N·m·s²/rad
   double tracking_bandwidth = 20.0;       ///< Hz, of the wheel speed's tracking loop
 };

@@ -16,8 +16,8 @@ namespace robot_control {
 /// `inertia` kg·m² that the wheel really drives, `period` s, `bandwidth` Hz of the tracking loop; all > 0.
 double wheel_loop_spectral_radius(const WheelLoopGains& gains, double inertia, double period, double bandwidth);
 
-/// kp·dt/model_inertia: the quick rule. For every inertia ≥ model_inertia/2 the loop loses stability near 1 or above
-/// it (kd = 0); aim at ≤ 0.5.
+/// kp·dt/model_inertia: the quick rule. With kd = 0 the loop is unstable above 1 whatever the wheel drives; aim at
+/// ≤ 0.5. The spectral radius is the criterion.
 double stability_number(const WheelLoopGains& gains, double period) noexcept;
 
 }  // namespace robot_control
