@@ -1,13 +1,9 @@
 #include "runtime/command_script.h"
 
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "parameters/problem_list.h"
+#include "parameters/text_file.h"
 
 namespace robot_control {
 namespace {
@@ -35,18 +31,6 @@ bool parse_number(std::string_view text, Number& number) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-std::string read_text(const std::string& path, ProblemList& problems) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  std::error_code ignored;
-  const bool folder = std::filesystem::is_directory(path, ignored);
-  if (!file || folder || (file.peek() != std::ifstream::traits_type::eof() && !(text << file.rdbuf()))) {
-    problems.add({path, "", std::string("cannot be read: ") + (folder ? "is a folder" : std::strerror(errno)), "",
-                  "name a CSV file or leave robot.command_script empty"});
-  }
-  return text.str();
-}
-
 }  // namespace
 
 class CommandScript::Parser {
@@ -59,7 +43,7 @@ class CommandScript::Parser {
     if (content.empty() || content.starts_with('#')) return;
     const std::vector<std::string_view> cells = cells_of(content);
     if (columns_ == 0) {
-      header(cells);
+      header(cells, content);
     } else {
       row(cells, content);
     }
@@ -75,13 +59,14 @@ class CommandScript::Parser {
   void problem(std::string_view column, std::string_view value, const std::string& rule, const std::string& remedy) {
     std::string path = "line " + std::to_string(line_);
     if (!column.empty()) path += ", " + std::string(column);
-    problems_.add({path, printable(value), rule, source_, remedy});
+    const bool named_but_empty = value.empty() && !column.empty();
+    problems_.add({path, named_but_empty ? "(empty)" : printable(value), rule, source_, remedy});
   }
 
-  void header(const std::vector<std::string_view>& cells) {
+  void header(const std::vector<std::string_view>& cells, std::string_view content) {
     const std::vector<std::string_view> full{"cycle", "linear", "angular", "event"};
     const bool right = cells == full || cells == std::vector(full.begin(), full.end() - 1);
-    if (!right) problem("header", "", "must be cycle,linear,angular or cycle,linear,angular,event", "");
+    if (!right) problem("header", content, "must be cycle,linear,angular or cycle,linear,angular,event", "");
     columns_ = right ? cells.size() : full.size();
   }
 
@@ -143,9 +128,9 @@ CommandScript CommandScript::parse(std::string_view text, const std::string& sou
 
 CommandScript::CommandScript(const std::string& path) {
   ProblemList problems;
-  const std::string text = read_text(path, problems);
+  const auto text = read_text_file(path, "name a CSV file or leave robot.command_script empty", problems);
   problems.throw_if_any("command script refused");
-  *this = parse(text, path);
+  *this = parse(*text, path);
 }
 
 ScriptEvents CommandScript::advance(std::uint64_t cycle) noexcept {

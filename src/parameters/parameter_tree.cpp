@@ -1,0 +1,117 @@
+#include "parameters/parameter_tree.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include "parameters/text_file.h"
+
+namespace robot_control {
+namespace {
+
+std::string at_line(const std::string& source, const YAML::Mark& mark) {
+  return mark.is_null() ? source : source + ":" + std::to_string(mark.line + 1);
+}
+
+Entry entry_of(const YAML::Node& node) {
+  Entry entry;
+  if (node.IsScalar()) {
+    entry.text = node.Scalar();
+    entry.kind = node.Tag() == "!" ? Entry::Kind::kQuoted : Entry::Kind::kPlain;
+  } else if (node.IsSequence()) {
+    entry.kind = Entry::Kind::kList;
+  } else if (node.IsMap()) {
+    entry.kind = Entry::Kind::kMap;
+  }
+  return entry;
+}
+
+// Calls `visit(name, key node, value node)` for every key of a map, once per name.
+template <class Visit>
+void for_each_key(const YAML::Node& map, const std::string& prefix, const std::string& source, ProblemList& problems,
+                  Visit visit) {
+  std::map<std::string, std::string> seen;
+  for (const auto& pair : map) {
+    const std::string origin = at_line(source, pair.first.Mark());
+    if (!pair.first.IsScalar()) {
+      problems.add({prefix + "?", "", "a key must be a plain word", origin, ""});
+      continue;
+    }
+    const std::string& name = pair.first.Scalar();
+    const auto [first, fresh] = seen.emplace(name, origin);
+    if (fresh) {
+      visit(name, origin, pair.second);
+    } else {
+      problems.add({prefix + printable(name), "", "given twice, first at " + first->second, origin, "remove one"});
+    }
+  }
+}
+
+void read_document(const YAML::Node& root, const std::string& source, const std::filesystem::path& folder,
+                   ParameterTree& tree, ProblemList& problems) {
+  if (!root.IsMap()) {
+    problems.add({source, "", "must consist of blocks (robot:, mujoco_plant:, …)", "", ""});
+    return;
+  }
+  for_each_key(root, "", source, problems, [&](const auto& block, const auto& block_origin, const YAML::Node& keys) {
+    tree.blocks.push_back({block, block_origin});
+    if (keys.IsNull()) return;
+    if (!keys.IsMap()) {
+      problems.add(
+          {printable(block), "", "must be a block of keys", block_origin, "indent `key: value` lines below it"});
+      return;
+    }
+    for_each_key(keys, block + ".", source, problems,
+                 [&](const auto& name, const auto& origin, const YAML::Node& value) {
+                   Entry entry = entry_of(value);
+                   entry.origin = origin;
+                   entry.folder = folder;
+                   tree.entries.emplace(block + "." + name, std::move(entry));
+                 });
+  });
+}
+
+void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& problems) {
+  std::error_code ignored;
+  const std::filesystem::path path = std::filesystem::absolute(yaml_path, ignored);
+  const auto text = read_text_file(yaml_path, "name a YAML file like config/robot_params.yaml", problems);
+  if (!text) return;
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(*text);
+    if (documents.size() != 1) {
+      problems.add({yaml_path, "", "must hold one YAML document, not " + std::to_string(documents.size()), "", ""});
+      return;
+    }
+    read_document(documents.front(), yaml_path, path.parent_path(), tree, problems);
+  } catch (const YAML::Exception& error) {
+    problems.add({yaml_path, "", "is not YAML: " + printable(error.msg), at_line(yaml_path, error.mark), ""});
+  }
+}
+
+void lay_over(const Overlay& overlay, ParameterTree& tree, ProblemList& problems) {
+  Entry entry;
+  try {
+    const YAML::Node node = YAML::Load(overlay.text);
+    entry = entry_of(node);
+  } catch (const YAML::Exception& error) {
+    problems.add(
+        {printable(overlay.path), printable(overlay.text), "is not YAML: " + printable(error.msg), overlay.origin, ""});
+    return;
+  }
+  if (overlay.text.empty()) entry.kind = Entry::Kind::kQuoted;  // an empty string has no other spelling on a server
+  entry.origin = overlay.origin;
+  std::error_code ignored;
+  entry.folder = std::filesystem::current_path(ignored);
+  entry.overlay = true;
+  tree.entries.insert_or_assign(overlay.path, std::move(entry));
+}
+
+}  // namespace
+
+ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems) {
+  ParameterTree tree;
+  if (!yaml_path.empty()) read_file(yaml_path, tree, problems);
+  if (!problems.empty() && tree.blocks.empty()) return tree;
+  for (const Overlay& overlay : overlays) lay_over(overlay, tree, problems);
+  return tree;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,37 @@
+#pragma once
+/// The values as they were written, before anybody asked what they mean.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "parameters/parameters.h"
+#include "parameters/problem_list.h"
+
+namespace robot_control {
+
+struct Entry {
+  enum class Kind { kPlain, kQuoted, kNothing, kList, kMap };
+  Kind kind = Kind::kNothing;
+  std::string text;              ///< scalars only
+  std::string origin;            ///< "robot_params.yaml:12", or the overlay's own
+  std::filesystem::path folder;  ///< what a relative path in it is relative to
+  bool overlay = false;
+};
+
+struct BlockEntry {
+  std::string name;
+  std::string origin;
+};
+
+struct ParameterTree {
+  std::map<std::string, Entry> entries;  ///< by path "block.key"
+  std::vector<BlockEntry> blocks;        ///< those of the file
+};
+
+/// Reads the file (none if `yaml_path` is empty), then lays the overlays over it, the last one on top.
+/// Unreadable and malformed YAML, duplicate keys and blocks that are no maps become problems.
+ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems);
+
+}  // namespace robot_control

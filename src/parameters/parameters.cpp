@@ -1,0 +1,154 @@
+#include "parameters/parameters.h"
+
+#include <set>
+
+#include "parameters/parameter_tree.h"
+#include "parameters/problem_list.h"
+#include "parameters/schema.h"
+#include "parameters/suggestion.h"
+#include "parameters/value_reader.h"
+
+namespace robot_control {
+namespace {
+
+class TreeReader {
+ public:
+  TreeReader(ParameterTree tree, std::string source, ProblemList& problems)
+      : tree_(std::move(tree)), source_(std::move(source)), problems_(problems) {}
+
+  Parameters read() {
+    overlays_replace_other_names();
+    refuse_unknown();
+    for (const Block& block : schema()) {
+      for (const Key& key : block.keys) read_key(block, key);
+    }
+    for (const Block& block : schema()) {
+      for (const Key& key : block.keys) check_against_others(block, key);
+    }
+    return std::move(parameters_);
+  }
+
+ private:
+  // An overlay that says wheel_separation means the file's wheel_base, and the other way round.
+  void overlays_replace_other_names() {
+    for (const Block& block : schema()) {
+      for (const Key& key : block.keys) {
+        if (key.other_name_of.empty()) continue;
+        const std::string one = path_of(block, key);
+        const std::string other = std::string(block.name) + "." + std::string(key.other_name_of);
+        if (overlaid(one) && !overlaid(other)) tree_.entries.erase(other);
+        if (overlaid(other) && !overlaid(one)) tree_.entries.erase(one);
+      }
+    }
+  }
+
+  bool overlaid(const std::string& path) const {
+    const auto entry = tree_.entries.find(path);
+    return entry != tree_.entries.end() && entry->second.overlay;
+  }
+
+  void refuse_unknown() {
+    std::set<std::string, std::less<>> blocks;
+    std::set<std::string, std::less<>> paths;
+    for (const Block& block : schema()) {
+      blocks.emplace(block.name);
+      for (const Key& key : block.keys) paths.insert(path_of(block, key));
+    }
+    for (const BlockEntry& block : tree_.blocks) {
+      if (blocks.contains(block.name)) continue;
+      problems_.add({printable(block.name), "", "unknown block", block.origin, suggest_block(block.name)});
+    }
+    for (const auto& [path, entry] : tree_.entries) {
+      const bool told_with_its_block = !entry.overlay && !blocks.contains(path.substr(0, path.find('.')));
+      if (paths.contains(path) || told_with_its_block) continue;
+      problems_.add({printable(path), printable(entry.text), "unknown key", entry.origin, suggest_key(path)});
+    }
+  }
+
+  void read_key(const Block& block, const Key& key) {
+    const std::string path = path_of(block, key);
+    const auto entry = tree_.entries.find(path);
+    if (entry != tree_.entries.end()) {
+      if (read_value(entry->second, path, key, key.field(parameters_), problems_)) sound_.insert(path);
+    } else if ((key.traits & kOptional) == 0) {
+      problems_.add({path, "", "missing", source_, "add it: " + rule_of(key)});
+    }
+  }
+
+  // Rules that need a second value; a value that was refused already is not judged again.
+  void check_against_others(const Block& block, const Key& key) {
+    const std::string path = path_of(block, key);
+    if (!sound_.contains(path)) return;
+    const Entry& entry = tree_.entries.at(path);
+    const auto refuse = [&](const std::string& rule, const std::string& remedy) {
+      problems_.add({path, printable(entry.text), rule, entry.origin, remedy});
+    };
+    const LoopParameters& loop = parameters_.loop;
+    const Field field = key.field(parameters_);
+    const bool rate_known = sound_.contains("robot.rate");
+    if ((key.traits & kTimeout) != 0 && rate_known) {
+      const double timeout = *std::get<double*>(field);
+      if (timeout != 0 && timeout < 2 * loop.period()) {
+        refuse("must be 0 (off) or at least two periods, " + shortest(2 * loop.period()) + " s at " +
+                   shortest(loop.rate) + " Hz",
+               "");
+      }
+    }
+    if ((key.traits & kPublishRate) != 0 && rate_known && *std::get<double*>(field) > loop.rate) {
+      refuse("must be at most the loop's rate, " + shortest(loop.rate) + " Hz", "lower it or raise robot.rate");
+    }
+    if (!key.other_name_of.empty()) check_other_name(block, key, refuse);
+  }
+
+  template <class Refuse>
+  void check_other_name(const Block& block, const Key& key, Refuse refuse) {
+    const std::string other = std::string(block.name) + "." + std::string(key.other_name_of);
+    if (!sound_.contains(other)) return;
+    Parameters one;
+    Parameters two;
+    ProblemList none;
+    read_value(tree_.entries.at(path_of(block, key)), other, key, key.field(one), none);
+    read_value(tree_.entries.at(other), other, key, key.field(two), none);
+    if (*std::get<std::optional<double>*>(key.field(one)) == *std::get<std::optional<double>*>(key.field(two))) return;
+    const Entry& entry = tree_.entries.at(other);
+    refuse("is another name of " + other + " = " + printable(entry.text) + " [" + entry.origin + "] and differs",
+           "give one of them");
+  }
+
+  ParameterTree tree_;
+  std::string source_;  ///< of what is missing
+  ProblemList& problems_;
+  Parameters parameters_;
+  std::set<std::string, std::less<>> sound_;  ///< paths whose value was accepted
+};
+
+}  // namespace
+
+Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays) {
+  const std::string source = yaml_path.empty() ? "the given values" : yaml_path;
+  const std::string subject = "parameters refused (" + source + ")";
+  ProblemList problems;
+  ParameterTree tree = read_tree(yaml_path, overlays, problems);
+  if (tree.blocks.empty() && !yaml_path.empty()) problems.throw_if_any(subject);  // not a file to ask further
+  Parameters parameters = TreeReader(std::move(tree), source, problems).read();
+  problems.throw_if_any(subject);
+  return parameters;
+}
+
+std::vector<ParameterDescription> describe_parameters() {
+  std::vector<ParameterDescription> descriptions;
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      descriptions.push_back({path_of(block, key), std::string(key.unit), rule_of(key), (key.traits & kOptional) != 0});
+    }
+  }
+  return descriptions;
+}
+
+std::vector<std::string> parameter_paths() {
+  std::vector<std::string> paths;
+  for (const ParameterDescription& description : describe_parameters()) paths.push_back(description.path);
+  return paths;
+}
+
+}  // namespace robot_control

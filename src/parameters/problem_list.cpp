@@ -1,0 +1,53 @@
+#include "parameters/problem_list.h"
+
+#include <array>
+#include <charconv>
+
+#include "parameters/parameters.h"
+
+namespace robot_control {
+namespace {
+
+std::string line_of(const Problem& problem) {
+  std::string line("  ");
+  line.append(problem.path);
+  if (!problem.value.empty()) line.append(" = ").append(problem.value);
+  line.append(": ").append(problem.rule);
+  if (!problem.origin.empty()) line.append(" [").append(problem.origin).append("]");
+  if (!problem.remedy.empty()) line.append("; ").append(problem.remedy);
+  return line;
+}
+
+}  // namespace
+
+void ProblemList::throw_if_any(std::string_view subject) const {
+  if (problems_.empty()) return;
+  std::string message(subject);
+  message.append(": ").append(std::to_string(problems_.size()));
+  message.append(problems_.size() == 1 ? " problem" : " problems");
+  for (const Problem& problem : problems_) message.append("\n").append(line_of(problem));
+  throw ParameterError(message);
+}
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string result;
+  for (const char character : text.substr(0, kLongest)) {
+    const auto byte = static_cast<unsigned char>(character);
+    if (byte >= 0x20 && byte != 0x7f) {
+      result += character;
+    } else {
+      result += {'\\', 'x', kDigits[byte / 16], kDigits[byte % 16]};
+    }
+  }
+  return text.size() > kLongest ? result + "…" : result;
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,37 @@
+#pragma once
+/// Collects what is wrong with an input, so that one error tells all of it.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace robot_control {
+
+/// Printed as one line: `path = value: rule [origin]; remedy`. Empty parts are left out.
+struct Problem {
+  std::string path;    ///< "robot.rate"
+  std::string value;   ///< as it was written
+  std::string rule;    ///< what would have been right, with unit
+  std::string origin;  ///< file:line, or where an overlay came from
+  std::string remedy;  ///< what to do about it
+};
+
+class ProblemList {
+ public:
+  void add(Problem problem) { problems_.push_back(std::move(problem)); }
+  bool empty() const { return problems_.empty(); }
+
+  /// Throws ParameterError with every problem on a line of its own below `subject`; returns if there is none.
+  void throw_if_any(std::string_view subject) const;
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+/// Text from outside made fit for a message: control characters escaped, cut after 60 bytes.
+std::string printable(std::string_view text);
+
+/// Shortest text that reads back as the same number.
+std::string shortest(double value);
+
+}  // namespace robot_control

@@ -1,0 +1,165 @@
+#include "parameters/schema.h"
+
+#include <array>
+
+#include "parameters/problem_list.h"
+
+namespace robot_control {
+namespace {
+
+template <auto Group, auto Member>
+Field in(Parameters& parameters) {
+  return &(parameters.*Group.*Member);
+}
+template <auto Member>
+Field in(Parameters& parameters) {
+  return &(parameters.*Member);
+}
+
+using P = Parameters;
+
+// seed and cycles: any value that a YAML integer, a Python int and a ROS parameter can all carry.
+constexpr double kAnyCount = 9007199254740992.0;  // 2^53
+
+constexpr auto kRobot = std::to_array<Key>({
+    {"urdf", in<&P::urdf>, {}, 0, 0, kPath},
+    {"left_wheel_joint", in<&P::robot, &RobotParameters::left_wheel_joint>},
+    {"right_wheel_joint", in<&P::robot, &RobotParameters::right_wheel_joint>},
+    {"wheel_base", in<&P::robot, &RobotParameters::wheel_base>, "m", 0.01, 10, kOptional},
+    {"wheel_separation", in<&P::robot, &RobotParameters::wheel_base>, "m", 0.01, 10, kOptional, "wheel_base"},
+    {"wheel_radius", in<&P::robot, &RobotParameters::wheel_radius>, "m", 0.005, 2, kOptional},
+    {"rate", in<&P::loop, &LoopParameters::rate>, "Hz", 100, 2000},
+    {"clock", in<&P::loop, &LoopParameters::clock>},
+    {"realtime", in<&P::loop, &LoopParameters::realtime>},
+    {"core", in<&P::loop, &LoopParameters::core>, {}, -1, 1023},
+    {"bus", in<&P::loop, &LoopParameters::bus>, {}, 0, 0, kMayBeEmpty},
+    {"command_script", in<&P::loop, &LoopParameters::command_script>, {}, 0, 0, kPath | kMayBeEmpty},
+    {"wait_for_nodes", in<&P::loop, &LoopParameters::wait_for_nodes>},
+    {"wait_for_telemetry", in<&P::loop, &LoopParameters::wait_for_telemetry>},
+});
+
+constexpr auto kMujocoPlant = std::to_array<Key>({
+    {"scene", in<&P::plant, &MujocoPlantParameters::scene>, {}, 0, 0, kPath},
+    {"seed", in<&P::plant, &MujocoPlantParameters::seed>, {}, 0, kAnyCount},
+    {"cycles", in<&P::plant, &MujocoPlantParameters::cycles>, "cycles", 0, kAnyCount, kZeroIsOff},
+    {"brake_effort", in<&P::plant, &MujocoPlantParameters::brake_effort>, "N·m", 0.001, 10000},
+    {"brake_damping", in<&P::plant, &MujocoPlantParameters::brake_damping>, "N·m·s/rad", 0, 10000},
+    {"brake_stiffness", in<&P::plant, &MujocoPlantParameters::brake_stiffness>, "N·m/rad", 0, 1.0e6},
+    {"brake_hold_speed", in<&P::plant, &MujocoPlantParameters::brake_hold_speed>, "rad/s", 0, 10},
+    {"imu_rate", in<&P::report, &ReportParameters::imu_rate>, "Hz", 0.1, 2000, kPublishRate},
+    {"truth_rate", in<&P::report, &ReportParameters::truth_rate>, "Hz", 0.1, 2000, kPublishRate},
+});
+
+constexpr auto kStateEstimator = std::to_array<Key>({
+    {"wheel_slip_noise", in<&P::estimator, &EstimatorParameters::wheel_slip_noise>, "m/√m", 1.0e-6, 1},
+    {"gyro_noise", in<&P::estimator, &EstimatorParameters::gyro_noise>, "rad/s/√Hz", 1.0e-9, 1},
+    {"standstill_speed", in<&P::estimator, &EstimatorParameters::standstill_speed>, "rad/s", 0, 1},
+    {"joint_states_rate", in<&P::report, &ReportParameters::joint_states_rate>, "Hz", 0.1, 2000, kPublishRate},
+    {"odom_rate", in<&P::report, &ReportParameters::odom_rate>, "Hz", 0.1, 2000, kPublishRate},
+    {"publish_tf", in<&P::report, &ReportParameters::publish_tf>},
+    {"odom_frame", in<&P::report, &ReportParameters::odom_frame>},
+    {"base_frame", in<&P::report, &ReportParameters::base_frame>},
+});
+
+using Drive = DriveControllerParameters;
+constexpr auto kDiffDriveController = std::to_array<Key>({
+    {"max_linear_speed", in<&P::controller, &Drive::max_linear_speed>, "m/s", 0.001, 50},
+    {"max_angular_speed", in<&P::controller, &Drive::max_angular_speed>, "rad/s", 0.001, 50},
+    {"max_linear_acceleration", in<&P::controller, &Drive::max_linear_acceleration>, "m/s²", 0.001, 100},
+    {"max_angular_acceleration", in<&P::controller, &Drive::max_angular_acceleration>, "rad/s²", 0.001, 1000},
+    {"cmd_vel_timeout", in<&P::controller, &Drive::cmd_vel_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
+    {"pid_kp", in<&P::controller, &Drive::pid_kp>, "N·m·s/rad", 0, 10000},
+    {"pid_ki", in<&P::controller, &Drive::pid_ki>, "N·m/rad", 0, 1.0e6},
+    {"pid_kd", in<&P::controller, &Drive::pid_kd>, "N·m·s²/rad", 0, 1000},
+    {"tracking_bandwidth", in<&P::controller, &Drive::tracking_bandwidth>, "Hz", 0.1, 500},
+    {"command_rate", in<&P::report, &ReportParameters::command_rate>, "Hz", 0.1, 2000, kPublishRate},
+});
+
+constexpr auto kSafetyMonitor = std::to_array<Key>({
+    // More than the four cycles over which the gate holds a command: a held command is not yet a lost node.
+    {"loss_cycles", in<&P::safety, &SafetyParameters::loss_cycles>, "cycles", 5, 10000},
+    {"heartbeat_timeout", in<&P::safety, &SafetyParameters::heartbeat_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
+    {"ramp_time", in<&P::safety, &SafetyParameters::ramp_time>, "s", 0.01, 60},
+    {"standstill_speed", in<&P::safety, &SafetyParameters::standstill_speed>, "rad/s", 1.0e-6, 10},
+});
+
+constexpr auto kTelemetry = std::to_array<Key>({
+    {"directory", in<&P::telemetry, &TelemetryParameters::directory>, {}, 0, 0, kMayBeEmpty},
+});
+
+constexpr auto kBlocks = std::to_array<Block>({
+    {"robot", kRobot},
+    {"mujoco_plant", kMujocoPlant},
+    {"state_estimator", kStateEstimator},
+    {"diff_drive_controller", kDiffDriveController},
+    {"safety_monitor", kSafetyMonitor},
+    {"telemetry", kTelemetry},
+});
+
+constexpr auto kClockWords = std::to_array<Word>({
+    {"wall", static_cast<int>(ClockMode::kWall)},
+    {"lockstep", static_cast<int>(ClockMode::kLockstep)},
+});
+
+constexpr auto kRealtimeWords = std::to_array<Word>({
+    {"required", static_cast<int>(RealtimePolicy::kRequired)},
+    {"preferred", static_cast<int>(RealtimePolicy::kPreferred)},
+    {"off", static_cast<int>(RealtimePolicy::kOff)},
+});
+
+std::string range_of(const Key& key, std::string_view noun) {
+  std::string rule = (key.traits & kZeroIsOff) != 0 && key.min > 0 ? "0 (off) or " : "";
+  rule += std::string(noun) + " of " + shortest(key.min) + " … " + shortest(key.max);
+  if (!key.unit.empty()) rule.append(" ").append(key.unit);
+  if ((key.traits & kZeroIsOff) != 0 && key.min <= 0) rule += " (0 = off)";
+  return rule;
+}
+
+template <class... Case>
+struct Cases : Case... {
+  using Case::operator()...;
+};
+
+}  // namespace
+
+std::span<const Block> schema() {
+  return kBlocks;
+}
+
+std::string path_of(const Block& block, const Key& key) {
+  return std::string(block.name) + "." + std::string(key.name);
+}
+
+std::string rule_of(const Key& key) {
+  Parameters somewhere;
+  const Field field = key.field(somewhere);
+  const auto number = [&](auto*) { return range_of(key, "a number"); };
+  const auto whole = [&](auto*) { return range_of(key, "a whole number"); };
+  const auto word = [&](auto*) {
+    std::string rule = "one of ";
+    for (const Word& allowed : words_of(field)) rule += std::string(allowed.text) + ", ";
+    return rule.substr(0, rule.size() - 2);
+  };
+  return std::visit(Cases{
+                        [&](double* to) { return number(to); },
+                        [&](std::optional<double>* to) { return number(to); },
+                        [&](std::int64_t* to) { return whole(to); },
+                        [&](std::uint64_t* to) { return whole(to); },
+                        [&](bool*) { return std::string("true or false"); },
+                        [&](std::string*) {
+                          const std::string noun = (key.traits & kPath) != 0 ? "a path" : "a text";
+                          return (key.traits & kMayBeEmpty) != 0 ? noun + ", \"\" = none" : noun + ", not empty";
+                        },
+                        [&](ClockMode* to) { return word(to); },
+                        [&](RealtimePolicy* to) { return word(to); },
+                    },
+                    field);
+}
+
+std::span<const Word> words_of(const Field& field) {
+  if (std::holds_alternative<ClockMode*>(field)) return kClockWords;
+  if (std::holds_alternative<RealtimePolicy*>(field)) return kRealtimeWords;
+  return {};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,60 @@
+#pragma once
+/// The only place that knows a YAML key: one table per block, one line per parameter.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "parameters/parameters.h"
+
+namespace robot_control {
+
+/// Where a value goes; the type of the pointer is the type of the parameter.
+using Field = std::variant<double*, std::optional<double>*, std::int64_t*, std::uint64_t*, bool*, std::string*,
+                           ClockMode*, RealtimePolicy*>;
+
+/// What a key allows beyond its range; bits of Key::traits.
+enum KeyTrait : unsigned {
+  kOptional = 1u << 0,     ///< may be absent
+  kZeroIsOff = 1u << 1,    ///< 0 is allowed beside the range and switches the thing off
+  kTimeout = 1u << 2,      ///< s; at least two periods of the loop, else jitter alone would trip it
+  kPublishRate = 1u << 3,  ///< Hz; at most the rate of the loop
+  kPath = 1u << 4,         ///< a file; made absolute
+  kMayBeEmpty = 1u << 5,   ///< a text that may be ""
+};
+
+struct Key {
+  std::string_view name;
+  Field (*field)(Parameters&);
+  std::string_view unit = {};
+  double min = 0;  ///< numbers only
+  double max = 0;
+  unsigned traits = 0;
+  std::string_view other_name_of = {};  ///< the key of this block whose value this one is, too
+};
+
+struct Block {
+  std::string_view name;
+  std::span<const Key> keys;
+};
+
+std::span<const Block> schema();
+
+/// "block.key".
+std::string path_of(const Block& block, const Key& key);
+
+/// What is allowed, in words: "a number of 100 … 2000 Hz", "one of wall, lockstep".
+std::string rule_of(const Key& key);
+
+/// The words an enum may take in YAML. `off` comes back from ROS and PyYAML, which follow YAML 1.1, as `false`.
+struct Word {
+  std::string_view text;
+  int value;
+};
+std::span<const Word> words_of(const Field& field);
+
+}  // namespace robot_control

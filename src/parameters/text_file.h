@@ -1,0 +1,14 @@
+#pragma once
+/// A whole file as text.
+
+#include <optional>
+#include <string>
+
+#include "parameters/problem_list.h"
+
+namespace robot_control {
+
+/// Nothing, and a problem with `remedy`, when it cannot be read.
+std::optional<std::string> read_text_file(const std::string& path, const std::string& remedy, ProblemList& problems);
+
+}  // namespace robot_control

@@ -1,0 +1,127 @@
+#include "parameters/value_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace robot_control {
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  return text;
+}
+
+// YAML's own spellings beside those of from_chars.
+std::optional<double> not_finite(const std::string& text) {
+  const std::string word = lower(text);
+  const std::string bare = word.starts_with('+') || word.starts_with('-') ? word.substr(1) : word;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (bare == ".nan" || bare == "nan") return std::numeric_limits<double>::quiet_NaN();
+  if (bare == ".inf" || bare == "inf" || bare == "infinity") return word[0] == '-' ? -kInfinity : kInfinity;
+  return std::nullopt;
+}
+
+template <class Number>
+std::errc parse(std::string_view text, Number& number) {
+  if (text.starts_with('+') && !text.substr(1).starts_with('-')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end != text.data() + text.size()) return std::errc::invalid_argument;
+  return error;
+}
+
+class Reader {
+ public:
+  Reader(const Entry& entry, const std::string& path, const Key& key, const Field& field, ProblemList& problems)
+      : entry_(entry), path_(path), key_(key), field_(field), problems_(problems) {}
+
+  bool operator()(double* to) { return number(*to); }
+  bool operator()(std::int64_t* to) { return number(*to); }
+  bool operator()(std::uint64_t* to) { return number(*to); }
+
+  bool operator()(std::optional<double>* to) {
+    double value = 0;
+    if (!number(value)) return false;
+    *to = value;
+    return true;
+  }
+
+  bool operator()(bool* to) {
+    constexpr auto kYes = std::to_array<std::string_view>({"true", "yes", "on"});
+    constexpr auto kNo = std::to_array<std::string_view>({"false", "no", "off"});
+    const std::string word = lower(entry_.text);
+    const bool yes = std::find(kYes.begin(), kYes.end(), word) != kYes.end();
+    const bool no = std::find(kNo.begin(), kNo.end(), word) != kNo.end();
+    if (!plain() || (!yes && !no)) return refuse("must be " + rule_of(key_));
+    *to = yes;
+    return true;
+  }
+
+  bool operator()(std::string* to) {
+    if (!plain() && entry_.kind != Entry::Kind::kQuoted) return refuse("must be " + rule_of(key_));
+    if (entry_.text.empty() && (key_.traits & kMayBeEmpty) == 0) return refuse("must be " + rule_of(key_));
+    if (entry_.text.find('\0') != std::string::npos) return refuse("must not contain the character 0");
+    const bool file = (key_.traits & kPath) != 0 && !entry_.text.empty();
+    *to = file ? (entry_.folder / entry_.text).lexically_normal().string() : entry_.text;
+    return true;
+  }
+
+  bool operator()(ClockMode* to) { return word(*to); }
+  bool operator()(RealtimePolicy* to) { return word(*to); }
+
+ private:
+  bool plain() const { return entry_.kind == Entry::Kind::kPlain; }
+
+  bool refuse(const std::string& rule) {
+    std::string value = printable(entry_.text);
+    if (entry_.kind == Entry::Kind::kQuoted) value = "\"" + value + "\"";
+    if (entry_.kind == Entry::Kind::kNothing) value = "(nothing)";
+    if (entry_.kind == Entry::Kind::kList) value = "(a list)";
+    if (entry_.kind == Entry::Kind::kMap) value = "(a block)";
+    problems_.add({path_, value, rule, entry_.origin, ""});
+    return false;
+  }
+
+  template <class Number>
+  bool number(Number& to) {
+    if (!plain()) return refuse("must be " + rule_of(key_));
+    if (not_finite(entry_.text)) return refuse("must be finite, " + rule_of(key_));
+    Number value = 0;
+    if (parse(entry_.text, value) != std::errc()) return refuse("must be " + rule_of(key_));
+    const auto real = static_cast<double>(value);
+    const bool off = (key_.traits & kZeroIsOff) != 0 && value == Number{0};
+    if (!off && !(real >= key_.min && real <= key_.max)) return refuse("must be " + rule_of(key_));
+    to = value;
+    return true;
+  }
+
+  template <class Enum>
+  bool word(Enum& to) {
+    // YAML 1.1 (PyYAML, the parameter server) turns a plain `off` into a boolean.
+    const std::string text = lower(entry_.text) == "false" ? "off" : entry_.text;
+    for (const Word& allowed : words_of(field_)) {
+      if (allowed.text != text) continue;
+      to = static_cast<Enum>(allowed.value);
+      return true;
+    }
+    return refuse("must be " + rule_of(key_));
+  }
+
+  const Entry& entry_;
+  const std::string& path_;
+  const Key& key_;
+  const Field& field_;
+  ProblemList& problems_;
+};
+
+}  // namespace
+
+bool read_value(const Entry& entry, const std::string& path, const Key& key, const Field& field,
+                ProblemList& problems) {
+  return std::visit(Reader(entry, path, key, field, problems), field);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,88 @@
+#pragma once
+/// A YAML file of the test's own: the shipped one with lines replaced.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "parameters/parameters.h"
+
+namespace robot_control {
+
+inline std::string shipped_path() {
+  return PROJECT_DIRECTORY "/config/robot_params.yaml";
+}
+
+inline std::string shipped_text() {
+  std::ostringstream text;
+  text << std::ifstream(shipped_path()).rdbuf();
+  return text.str();
+}
+
+class ParameterFile {
+ public:
+  ParameterFile() {
+    std::string name = (std::filesystem::temp_directory_path() / "robot_control_XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    write(shipped_text());
+  }
+  ~ParameterFile() { std::filesystem::remove_all(folder_); }
+  ParameterFile(const ParameterFile&) = delete;
+  ParameterFile& operator=(const ParameterFile&) = delete;
+
+  std::string path() const { return (folder_ / "params.yaml").string(); }
+  std::filesystem::path folder() const { return folder_; }
+
+  void write(const std::string& text) {
+    text_ = text;
+    std::ofstream(path(), std::ios::trunc | std::ios::binary) << text;
+  }
+
+  void append(const std::string& text) { write(text_ + text); }
+
+  /// Replaces the line of `key` (the `nth` of that name) by `line`; an empty `line` removes it.
+  void set(const std::string& key, const std::string& line, int nth = 1) {
+    std::istringstream from(text_);
+    std::string result;
+    for (std::string old; std::getline(from, old);) {
+      if (old.starts_with("  " + key + ":") && --nth == 0) {
+        if (!line.empty()) result += line + "\n";
+      } else {
+        result += old + "\n";
+      }
+    }
+    EXPECT_LE(nth, 0) << key << " does not stand in the file";
+    write(result);
+  }
+
+  /// 1-based number of the `nth` line that begins with `start`.
+  int line_of(const std::string& start, int nth = 1) const {
+    std::istringstream from(text_);
+    int number = 0;
+    for (std::string line; std::getline(from, line);) {
+      ++number;
+      if (line.starts_with(start) && --nth == 0) return number;
+    }
+    return 0;
+  }
+
+  /// What read_parameters says; empty when it is content.
+  std::string refusal(const std::vector<Overlay>& overlays = {}) const {
+    try {
+      read_parameters(path(), overlays);
+      return "";
+    } catch (const ParameterError& error) {
+      return error.what();
+    }
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string text_;
+};
+
+}  // namespace robot_control

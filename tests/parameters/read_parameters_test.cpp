@@ -1,0 +1,400 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "parameters/parameter_file.h"
+#include "parameters/parameters.h"
+#include "parameters/schema.h"
+#include "parameters/suggestion.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Healthy: a copy of the shipped file. Each test breaks one thing.
+class ReadParameters : public ::testing::Test {
+ protected:
+  std::string at(const std::string& start, int nth = 1) const {
+    return "[" + file.path() + ":" + std::to_string(file.line_of(start, nth)) + "]";
+  }
+
+  ParameterFile file;
+};
+
+std::size_t problems_in(const std::string& message) {
+  return static_cast<std::size_t>(std::count(message.begin(), message.end(), '\n'));
+}
+
+TEST_F(ReadParameters, AcceptsTheShippedFile) {
+  EXPECT_EQ(file.refusal(), "");
+}
+
+// A file that says something else than the structs would make tests and nodes disagree.
+TEST_F(ReadParameters, ShippedValuesAreTheDefaultsOfTheStructs) {
+  Parameters shipped = read_parameters(shipped_path());
+  Parameters defaults;
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      if (key.name == "urdf" || key.name == "scene") continue;  // files have no default
+      std::visit(
+          [&](auto* value) {
+            using Value = std::remove_pointer_t<decltype(value)>;
+            EXPECT_EQ(*value, *std::get<Value*>(key.field(defaults))) << path_of(block, key);
+          },
+          key.field(shipped));
+    }
+  }
+}
+
+TEST_F(ReadParameters, PathsCountFromTheFileAndComeOutAbsolute) {
+  file.set("command_script", "  command_script: scripts/square.csv");
+  const Parameters parameters = read_parameters(file.path());
+  EXPECT_EQ(parameters.urdf, file.folder().parent_path() / "urdf/diffbot.urdf");
+  EXPECT_EQ(parameters.plant.scene, file.folder().parent_path() / "urdf/scenes/flat.xml");
+  EXPECT_EQ(parameters.loop.command_script, file.folder() / "scripts/square.csv");
+}
+
+TEST_F(ReadParameters, PathsOfOverlaysCountFromTheCurrentFolder) {
+  const Parameters parameters = read_parameters(file.path(), {{"robot.urdf", "other.urdf", "/robot/urdf"}});
+  EXPECT_EQ(parameters.urdf, std::filesystem::current_path() / "other.urdf");
+}
+
+TEST_F(ReadParameters, AbsolutePathsStay) {
+  const Parameters parameters = read_parameters(file.path(), {{"robot.urdf", "/opt/other.urdf", "/robot/urdf"}});
+  EXPECT_EQ(parameters.urdf, "/opt/other.urdf");
+}
+
+// The sweep of bad input: one start shows everything that is wrong.
+TEST_F(ReadParameters, ReportsEveryProblemAtOnce) {
+  file.set("rate", "  rate: fast");
+  file.set("core", "");
+  file.set("clock", "  clock: sundial");
+  file.set("seed", "  seed: -1");
+  file.set("gyro_noise", "  gyro_noise: .nan");
+  file.set("odom_frame", "  odom_frame:");
+  file.set("publish_tf", "  publish_tf: 3");
+  file.set("max_linear_speed", "  max_linear_speed: .inf");
+  file.set("max_angular_speed", "  max_angular_speed: -2");
+  file.set("pid_kp", "  pid_kp: [2.0]");
+  file.set("ramp_time", "  ramp_time: 2.0\n  rampe_time: 2.0");
+  file.set("loss_cycles", "  loss_cycles: 20.5");
+  file.append("mujoco_plnat:\n  seed: 0\n");
+  const std::string message = file.refusal({{"robot.bogus", "1", "/robot/bogus"}});
+
+  EXPECT_THAT(message, HasSubstr("robot.rate = fast: must be a number of 100 … 2000 Hz " + at("  rate:")));
+  EXPECT_THAT(message, HasSubstr("robot.core: missing [" + file.path() + "]; add it: a whole number of -1 … 1023"));
+  EXPECT_THAT(message, HasSubstr("robot.clock = sundial: must be one of wall, lockstep " + at("  clock:")));
+  EXPECT_THAT(message, HasSubstr("mujoco_plant.seed = -1: must be a whole number of 0 …"));
+  EXPECT_THAT(message, HasSubstr("state_estimator.gyro_noise = .nan: must be finite, a number of"));
+  EXPECT_THAT(message, HasSubstr("state_estimator.odom_frame = (nothing): must be a text, not empty"));
+  EXPECT_THAT(message, HasSubstr("state_estimator.publish_tf = 3: must be true or false"));
+  EXPECT_THAT(message, HasSubstr("diff_drive_controller.max_linear_speed = .inf: must be finite"));
+  EXPECT_THAT(message, HasSubstr("diff_drive_controller.max_angular_speed = -2: must be a number of 0.001 … 50 rad/s"));
+  EXPECT_THAT(message, HasSubstr("diff_drive_controller.pid_kp = (a list): must be a number"));
+  EXPECT_THAT(message, HasSubstr("safety_monitor.rampe_time = 2.0: unknown key " + at("  rampe_time:") +
+                                 "; did you mean ramp_time?"));
+  EXPECT_THAT(message, HasSubstr("safety_monitor.loss_cycles = 20.5: must be a whole number of 5 … 10000 cycles"));
+  EXPECT_THAT(message,
+              HasSubstr("mujoco_plnat: unknown block " + at("mujoco_plnat:") + "; did you mean mujoco_plant?"));
+  EXPECT_THAT(message, HasSubstr("robot.bogus = 1: unknown key [/robot/bogus]"));
+  EXPECT_THAT(message, HasSubstr("14 problems"));
+  EXPECT_EQ(problems_in(message), 14u) << message;
+}
+
+TEST_F(ReadParameters, RefusesTheAbsenceOfAnyKeyThatIsNotOptional) {
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      if ((key.traits & kOptional) != 0) continue;
+      ParameterFile without;
+      const bool second = block.name == "safety_monitor" && key.name == "standstill_speed";
+      without.set(std::string(key.name), "", second ? 2 : 1);
+      const std::string message = without.refusal();
+      EXPECT_THAT(message, HasSubstr(path_of(block, key) + ": missing"));
+      EXPECT_EQ(problems_in(message), 1u) << message;
+    }
+  }
+}
+
+TEST_F(ReadParameters, AnOverlayMayBringWhatTheFileLacks) {
+  file.set("rate", "");
+  EXPECT_EQ(read_parameters(file.path(), {{"robot.rate", "500", "/robot/rate"}}).loop.rate, 500);
+}
+
+TEST_F(ReadParameters, OverlaysAloneAreEnough) {
+  std::vector<Overlay> all;
+  for (const std::string& path : parameter_paths()) {
+    if (path == "robot.wheel_base" || path == "robot.wheel_separation" || path == "robot.wheel_radius") continue;
+    all.push_back({path, "", "dict"});
+  }
+  // Values as a Python dict would bring them.
+  const std::map<std::string, std::string> values{{"robot.urdf", "a.urdf"},
+                                                  {"robot.left_wheel_joint", "l"},
+                                                  {"robot.right_wheel_joint", "r"},
+                                                  {"robot.rate", "200"},
+                                                  {"robot.clock", "lockstep"},
+                                                  {"robot.realtime", "false"},
+                                                  {"robot.core", "-1"},
+                                                  {"robot.wait_for_nodes", "True"},
+                                                  {"robot.wait_for_telemetry", "False"},
+                                                  {"mujoco_plant.scene", "b.xml"},
+                                                  {"state_estimator.publish_tf", "no"},
+                                                  {"state_estimator.odom_frame", "odom"},
+                                                  {"state_estimator.base_frame", "base"}};
+  for (Overlay& overlay : all) {
+    const auto value = values.find(overlay.path);
+    const bool text =
+        overlay.path == "robot.bus" || overlay.path == "robot.command_script" || overlay.path == "telemetry.directory";
+    if (value != values.end()) {
+      overlay.text = value->second;
+    } else if (!text) {
+      overlay.text = "10";  // within the range of all the others
+    }
+    if (overlay.path == "state_estimator.wheel_slip_noise" || overlay.path == "state_estimator.gyro_noise" ||
+        overlay.path == "state_estimator.standstill_speed") {
+      overlay.text = "1";
+    }
+  }
+  const Parameters parameters = read_parameters("", all);
+  EXPECT_EQ(parameters.loop.rate, 200);
+  EXPECT_EQ(parameters.loop.clock, ClockMode::kLockstep);
+  EXPECT_EQ(parameters.loop.realtime, RealtimePolicy::kOff);
+  EXPECT_EQ(parameters.loop.core, -1);
+  EXPECT_TRUE(parameters.loop.wait_for_nodes);
+  EXPECT_FALSE(parameters.report.publish_tf);
+  EXPECT_EQ(parameters.loop.bus, "");
+}
+
+TEST_F(ReadParameters, TheLastOverlayWins) {
+  const Parameters parameters =
+      read_parameters(file.path(), {{"robot.rate", "500", "first"}, {"robot.rate", "200", "second"}});
+  EXPECT_EQ(parameters.loop.rate, 200);
+}
+
+TEST_F(ReadParameters, NamesTheOriginOfABadOverlay) {
+  EXPECT_THAT(file.refusal({{"robot.rate", "5000", "/robot/rate"}}),
+              HasSubstr("robot.rate = 5000: must be a number of 100 … 2000 Hz [/robot/rate]"));
+}
+
+TEST_F(ReadParameters, RefusesAnOverlayThatIsNotYaml) {
+  EXPECT_THAT(file.refusal({{"robot.rate", "[1, ", "/robot/rate"}}), HasSubstr("robot.rate = [1, : is not YAML"));
+}
+
+TEST_F(ReadParameters, RefusesAnOverlayThatIsNoScalar) {
+  EXPECT_THAT(file.refusal({{"robot.rate", "{a: 1}", "/robot/rate"}}), HasSubstr("robot.rate = (a block): must be"));
+}
+
+TEST_F(ReadParameters, NamesTheLineOfMalformedYaml) {
+  file.write("robot:\n  rate: 1000\n  clock: [wall\nother: 1\n");
+  EXPECT_THAT(file.refusal(), HasSubstr("is not YAML"));
+  EXPECT_THAT(file.refusal(), HasSubstr(file.path() + ":4]"));
+}
+
+TEST_F(ReadParameters, RefusesAFileThatIsNotThere) {
+  EXPECT_THROW(
+      {
+        try {
+          read_parameters("/nowhere/robot_params.yaml");
+        } catch (const ParameterError& error) {
+          EXPECT_THAT(error.what(), HasSubstr("/nowhere/robot_params.yaml: cannot be read: No such file"));
+          throw;
+        }
+      },
+      ParameterError);
+}
+
+TEST_F(ReadParameters, RefusesAFolder) {
+  EXPECT_THROW(read_parameters("/tmp"), ParameterError);
+}
+
+TEST_F(ReadParameters, RefusesAnEmptyFile) {
+  file.write("");
+  EXPECT_NE(file.refusal(), "");
+}
+
+TEST_F(ReadParameters, RefusesASecondDocument) {
+  file.write(shipped_text() + "---\nrobot: {}\n");
+  EXPECT_THAT(file.refusal(), HasSubstr("must hold one YAML document, not 2"));
+}
+
+TEST_F(ReadParameters, RefusesAListInPlaceOfBlocks) {
+  file.write("- robot\n");
+  EXPECT_THAT(file.refusal(), HasSubstr("must consist of blocks"));
+}
+
+TEST_F(ReadParameters, RefusesABlockThatIsAScalar) {
+  file.write(shipped_text() + "more: 1\n");
+  EXPECT_THAT(file.refusal(), HasSubstr("more: must be a block of keys"));
+}
+
+TEST_F(ReadParameters, RefusesAKeyGivenTwiceAndNamesBothLines) {
+  file.set("rate", "  rate: 1000\n  rate: 500");
+  EXPECT_THAT(file.refusal(),
+              HasSubstr("robot.rate: given twice, first at " + at("  rate:").substr(1, at("  rate:").size() - 2)));
+  EXPECT_THAT(file.refusal(), HasSubstr(at("  rate:", 2)));
+}
+
+TEST_F(ReadParameters, RefusesABlockGivenTwice) {
+  file.write(shipped_text() + "telemetry:\n  directory: elsewhere\n");
+  EXPECT_THAT(file.refusal(), HasSubstr("telemetry: given twice"));
+}
+
+TEST_F(ReadParameters, AcceptsEitherNameOfTheWheelBase) {
+  file.set("rate", "  rate: 1000\n  wheel_separation: 0.6");
+  EXPECT_EQ(read_parameters(file.path()).robot.wheel_base, 0.6);
+  file.set("wheel_separation", "  wheel_base: 0.7");
+  EXPECT_EQ(read_parameters(file.path()).robot.wheel_base, 0.7);
+}
+
+TEST_F(ReadParameters, RefusesTwoNamesThatDiffer) {
+  file.set("rate", "  rate: 1000\n  wheel_base: 0.5\n  wheel_separation: 0.6");
+  const std::string message = file.refusal();
+  EXPECT_THAT(message,
+              HasSubstr("robot.wheel_separation = 0.6: is another name of robot.wheel_base = 0.5 " +
+                        at("  wheel_base:") + " and differs " + at("  wheel_separation:") + "; give one of them"));
+  EXPECT_EQ(problems_in(message), 1u);
+}
+
+TEST_F(ReadParameters, AcceptsTwoNamesThatAgree) {
+  file.set("rate", "  rate: 1000\n  wheel_base: 0.5\n  wheel_separation: 0.50");
+  EXPECT_EQ(read_parameters(file.path()).robot.wheel_base, 0.5);
+}
+
+TEST_F(ReadParameters, AnOverlayOfOneNameReplacesTheOther) {
+  file.set("rate", "  rate: 1000\n  wheel_base: 0.5");
+  const Parameters parameters = read_parameters(file.path(), {{"robot.wheel_separation", "0.6", "/robot"}});
+  EXPECT_EQ(parameters.robot.wheel_base, 0.6);
+}
+
+TEST_F(ReadParameters, LeavesTheWheelsToTheUrdf) {
+  const Parameters parameters = read_parameters(file.path());
+  EXPECT_FALSE(parameters.robot.wheel_base);
+  EXPECT_FALSE(parameters.robot.wheel_radius);
+}
+
+// Two periods of 1 ms.
+TEST_F(ReadParameters, RefusesATimeoutUnderTwoPeriods) {
+  file.set("cmd_vel_timeout", "  cmd_vel_timeout: 0.0019");
+  EXPECT_THAT(file.refusal(), HasSubstr("must be 0 (off) or at least two periods, 0.002 s at 1000 Hz"));
+  file.set("cmd_vel_timeout", "  cmd_vel_timeout: 0.002");
+  EXPECT_EQ(file.refusal(), "");
+  file.set("cmd_vel_timeout", "  cmd_vel_timeout: 0");
+  EXPECT_EQ(file.refusal(), "");
+}
+
+TEST_F(ReadParameters, AsksTwoPeriodsOfTheHeartbeatToo) {
+  file.set("heartbeat_timeout", "  heartbeat_timeout: 0.001");
+  EXPECT_THAT(file.refusal(), HasSubstr("safety_monitor.heartbeat_timeout = 0.001: must be 0 (off) or at least"));
+}
+
+TEST_F(ReadParameters, RefusesToPublishMoreOftenThanTheLoopRuns) {
+  file.set("rate", "  rate: 100");
+  file.set("imu_rate", "  imu_rate: 101");
+  EXPECT_THAT(file.refusal(), HasSubstr("mujoco_plant.imu_rate = 101: must be at most the loop's rate, 100 Hz"));
+}
+
+// The parameter server follows YAML 1.1, where a plain `off` is a boolean.
+TEST_F(ReadParameters, TakesTheBooleanThatYaml11MakesOfOff) {
+  for (const char* text : {"off", "false", "False"}) {
+    EXPECT_EQ(read_parameters(file.path(), {{"robot.realtime", text, "/robot/realtime"}}).loop.realtime,
+              RealtimePolicy::kOff)
+        << text;
+  }
+}
+
+TEST_F(ReadParameters, AnEmptyOverlayIsTheEmptyText) {
+  file.set("bus", "  bus: mine");
+  EXPECT_EQ(read_parameters(file.path(), {{"robot.bus", "", "/robot/bus"}}).loop.bus, "");
+  EXPECT_THAT(file.refusal({{"robot.rate", "", "/robot/rate"}}), HasSubstr("robot.rate = \"\": must be a number"));
+}
+
+TEST_F(ReadParameters, AQuotedNumberIsAText) {
+  file.set("rate", "  rate: \"1000\"");
+  EXPECT_THAT(file.refusal(), HasSubstr("robot.rate = \"1000\": must be a number"));
+}
+
+TEST_F(ReadParameters, RefusesWhatIsOnlyPartlyANumber) {
+  for (const char* text : {"1000Hz", "1e999", "0x3e8", "1_000", "1,000", "+-1000", "NaN", "-inf", "~", "null"}) {
+    file.set("rate", std::string("  rate: ") + text);
+    EXPECT_THAT(file.refusal(), HasSubstr("robot.rate = ")) << text;
+  }
+}
+
+TEST_F(ReadParameters, TakesEverySpellingOfANumber) {
+  for (const char* text : {"500", "500.", "+500.0", "5e2", "5.0E+2"}) {
+    file.set("rate", std::string("  rate: ") + text);
+    EXPECT_EQ(read_parameters(file.path()).loop.rate, 500) << text;
+  }
+}
+
+TEST_F(ReadParameters, EscapesWhatATerminalWouldObey) {
+  file.set("rate", "  rate: \"\\e[31m\"");
+  EXPECT_THAT(file.refusal(), HasSubstr("\\x1b[31m"));
+  EXPECT_THAT(file.refusal(), Not(HasSubstr("\x1b")));
+}
+
+TEST(Schema, PathsAreUnique) {
+  const std::vector<std::string> paths = parameter_paths();
+  EXPECT_EQ(std::set<std::string>(paths.begin(), paths.end()).size(), paths.size());
+}
+
+// Two keys that write one field would let the later one win without a word.
+TEST(Schema, EveryKeyHasAFieldOfItsOwn) {
+  Parameters parameters;
+  std::set<Field> fields;
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      const bool fresh = fields.insert(key.field(parameters)).second;
+      EXPECT_EQ(fresh, key.other_name_of.empty()) << path_of(block, key);
+    }
+  }
+}
+
+TEST(Schema, EveryNumberHasARange) {
+  Parameters parameters;
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      const Field field = key.field(parameters);
+      const bool number = std::holds_alternative<double*>(field) || std::holds_alternative<std::int64_t*>(field) ||
+                          std::holds_alternative<std::uint64_t*>(field) ||
+                          std::holds_alternative<std::optional<double>*>(field);
+      EXPECT_EQ(number, key.min < key.max) << path_of(block, key);
+    }
+  }
+}
+
+TEST(Schema, DescribesWhatIsAllowed) {
+  for (const ParameterDescription& description : describe_parameters()) {
+    if (description.path != "diff_drive_controller.cmd_vel_timeout") continue;
+    EXPECT_EQ(description.rule, "a number of 0 … 60 s (0 = off)");
+    EXPECT_EQ(description.unit, "s");
+    EXPECT_FALSE(description.optional);
+  }
+}
+
+TEST(Suggestion, CountsLettersThatDiffer) {
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("wheel_bas", "wheel_base"), 1u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+}
+
+TEST(Suggestion, NamesTheNearestKey) {
+  EXPECT_EQ(suggest_key("robot.wheel_bas"), "did you mean wheel_base?");
+  EXPECT_EQ(suggest_key("robot.wheel_seperation"), "did you mean wheel_separation?");
+}
+
+// The article keeps wheel_base in the controller's block.
+TEST(Suggestion, NamesTheBlockOfAKeyThatStandsElsewhere) {
+  EXPECT_EQ(suggest_key("diff_drive_controller.wheel_base"), "did you mean robot.wheel_base?");
+}
+
+TEST(Suggestion, IsSilentWhenNothingIsNear) {
+  EXPECT_EQ(suggest_key("robot.colour_of_hull"), "");
+}
+
+}  // namespace
+}  // namespace robot_control
