@@ -1,0 +1,32 @@
+# The repository as one catkin package: messages, the Python package, launch files and where things are installed.
+#
+# Debian's ROS belongs to Debian's Python; the python3 on PATH may be another one.
+set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "the Python that ROS was built for")
+
+find_package(catkin REQUIRED COMPONENTS
+  diagnostic_msgs geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs roslib sensor_msgs std_msgs std_srvs
+  tf2_msgs)
+
+catkin_python_setup()
+add_message_files(FILES SafetyStatus.msg)
+generate_messages(DEPENDENCIES std_msgs)
+catkin_package(CATKIN_DEPENDS message_runtime std_msgs)
+
+# robot_control_ros(TARGET): ROS headers, generated messages included, for one target.
+function(robot_control_ros target)
+  target_include_directories(${target} SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
+  target_link_libraries(${target} PUBLIC ${catkin_LIBRARIES})
+  add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp)
+endfunction()
+
+# robot_control_node(NAME): src/nodes/NAME.cpp, started with `rosrun robot_control NAME`.
+function(robot_control_node name)
+  add_executable(${name} ${name}.cpp)
+  target_link_libraries(${name} PRIVATE rc_bridge)
+  set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+endfunction()
+
+install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+catkin_install_python(PROGRAMS scripts/send_cmd.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

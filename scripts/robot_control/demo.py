@@ -1,0 +1,226 @@
+"""Launches the closed loop in wall-clock time, drives it, ends it, and judges what it did."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import FrameType
+from typing import IO
+
+from robot_control.loop_timing import processor_time, stolen_share
+from robot_control.run_log import LogError, read_log
+from robot_control.run_picture import draw_run
+from robot_control.run_summary import summarize, to_json, to_table
+
+LINEAR, ANGULAR = 0.5, 0.2
+"""m/s, rad/s: what send_cmd.py sends by default; the source article's command."""
+START_LIMIT = 60.0
+"""s for master, nodes and first rows; 3 s on an idle machine."""
+RAMP_TIME = 1.5
+"""s between the sender's zero and the end of the log: 0.5 s of ramp at 1 m/s², tripled."""
+END_LIMIT = 20.0
+"""s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
+OUTPUTS = ("run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log")
+
+
+class DemoError(RuntimeError):
+    """Something did not start, or died; the message says where to look."""
+
+
+class Child:
+    """A program of ours in a process group of its own, its output in a file."""
+
+    def __init__(self, command: Sequence[str], output: Path) -> None:
+        self.output = output
+        self._file: IO[bytes] = output.open("wb")
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
+        )
+
+    @property
+    def running(self) -> bool:
+        """Has it not ended?"""
+        return self._process.poll() is None
+
+    def end(self, limit: float = END_LIMIT) -> bool:
+        """SIGINT; after `limit` seconds SIGTERM, then SIGKILL to its group. True when SIGINT was enough."""
+        orderly = True
+        if self.running:
+            self._process.send_signal(signal.SIGINT)
+            orderly = self._wait(limit)
+        for harder in (signal.SIGTERM, signal.SIGKILL):
+            if self.running:
+                os.killpg(self._process.pid, harder)
+                self._wait(5.0)
+        self._file.close()
+        return orderly
+
+    def _wait(self, limit: float) -> bool:
+        try:
+            self._process.wait(limit)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+
+def run_demo(seconds: float, out: Path) -> int:
+    """Drives for `seconds` and writes everything to `out`; the exit code."""
+    out.mkdir(parents=True, exist_ok=True)
+    for name in OUTPUTS:
+        (out / name).unlink(missing_ok=True)
+    os.environ["ROS_HOME"] = str(out / "ros")
+    shutil.rmtree(out / "ros", ignore_errors=True)
+
+    before = processor_time()
+    driven = _drive(seconds, out)
+    stolen = stolen_share(before, processor_time())
+
+    _print_refusals((out / "launch.log").read_text(errors="replace"))
+    try:
+        log = read_log(out / "run.csv")
+    except (OSError, LogError) as error:
+        raise DemoError(f"no log of the run: {error}; see {out / 'launch.log'}") from error
+    summary = summarize(log, LINEAR, ANGULAR, driven, stolen)
+    (out / "summary.json").write_text(to_json(summary))
+    verdict = "tracked" if summary.passed else "NOT TRACKED"
+    draw_run(log, summary, f"{LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png")
+    print(f"\n{to_table(summary)}\n\n{verdict}; see {out}/summary.json, run.csv, run.png")
+    return 0 if summary.passed else 1
+
+
+def refusals(launch_log: str) -> list[str]:
+    """What real-time privileges were not granted, each kind once although every node says it, with its remedy."""
+    found: dict[str, str] = {}
+    for line in launch_log.splitlines():
+        match = re.search(r"(memory is not locked|SCHED_FIFO priority|core \d+ is not granted).*", line)
+        if match and "remedy" in match.group(0):
+            text = re.sub(r"\x1b\[[0-9;]*m", "", match.group(0))
+            found.setdefault(match.group(1), text)
+    return list(found.values())
+
+
+def _drive(seconds: float, out: Path) -> float:
+    """Starts everything, drives, ends everything. Returns the seconds for which the command was sent."""
+    log = out / "run.csv"
+    with _ended_at_the_end() as children:
+        print("starting roscore, mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry")
+        port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
+        launch = Child(
+            ["roslaunch", "-p", port, "robot_control", "sim.launch", "telemetry:=true", f"out:={out}"],
+            out / "launch.log",
+        )
+        children.append(launch)
+        _wait_for_rows(log, launch)
+        print(f"sending {LINEAR} m/s and {ANGULAR} rad/s for {seconds:g} s")
+        sender = Child(["rosrun", "robot_control", "send_cmd.py"], out / "send_cmd.log")
+        children.append(sender)
+        start = time.monotonic()
+        while (driven := time.monotonic() - start) < seconds:
+            time.sleep(max(0.0, min(1.0, seconds - driven)))
+            for child in children:
+                if not child.running:
+                    raise DemoError(f"a part of the loop has died:\n{_tail(child.output)}")
+            print(_progress(log, time.monotonic() - start))
+        print("stopping")
+        if not sender.end():
+            print(f"send_cmd.py had to be killed; see {sender.output}")
+        time.sleep(RAMP_TIME)
+        if not launch.end():
+            print(f"roslaunch had to be killed; see {launch.output}")
+    return driven
+
+
+@contextlib.contextmanager
+def _ended_at_the_end() -> Iterator[list[Child]]:
+    """Whatever happens, what was started is ended, the last one first."""
+    children: list[Child] = []
+    try:
+        yield children
+    finally:
+        for child in reversed(children):
+            child.end()
+
+
+def _wait_for_rows(log: Path, launch: Child) -> None:
+    deadline = time.monotonic() + START_LIMIT
+    while _last_row(log) is None:
+        if not launch.running:
+            raise DemoError(f"the nodes did not start:\n{_tail(launch.output)}")
+        if time.monotonic() > deadline:
+            raise DemoError(f"no cycle within {START_LIMIT:g} s:\n{_tail(launch.output)}")
+        time.sleep(0.1)
+
+
+def _progress(log: Path, driven: float) -> str:
+    row = _last_row(log)
+    if row is None:
+        return f"{driven:5.1f} s"
+    values = {name: float(row.get(name) or "nan") for name in ("truth_x", "truth_y", "truth_linear", "truth_angular")}
+    return (
+        f"{driven:5.1f} s  true: {values['truth_linear']:6.3f} m/s {values['truth_angular']:6.3f} rad/s"
+        f" at ({values['truth_x']:.2f}, {values['truth_y']:.2f}) m"
+    )
+
+
+def _last_row(log: Path) -> dict[str, str] | None:
+    """The last complete row of a CSV that is being written."""
+    try:
+        with log.open("rb") as file:
+            header = file.readline().decode().rstrip("\n").split(",")
+            begin = file.tell()
+            file.seek(max(begin, log.stat().st_size - 8192))
+            lines = file.read().decode().split("\n")[:-1]
+    except OSError:
+        return None
+    cells = lines[-1].split(",") if lines else []
+    return dict(zip(header, cells, strict=True)) if len(cells) == len(header) > 1 else None
+
+
+def _print_refusals(launch_log: str) -> None:
+    for refusal in refusals(launch_log):
+        print(f"real time: {refusal}")
+
+
+def _tail(path: Path, lines: int = 25) -> str:
+    return "\n".join(path.read_text(errors="replace").splitlines()[-lines:])
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 5 <= value <= 3600:
+        raise argparse.ArgumentTypeError(f"{text} is not 5 … 3600 s: ramp, settling and a steady part must fit")
+    return value
+
+
+def _interrupt(signal_number: int, _frame: FrameType | None) -> None:
+    raise KeyboardInterrupt(signal.Signals(signal_number).name)
+
+
+def main() -> int:
+    """Entry point of scripts/demo."""
+    parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
+    parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
+    parser.add_argument("--out", type=Path, default=Path("demo_out"), help="folder (default ./demo_out)")
+    given = parser.parse_args()
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        return run_demo(given.seconds, given.out.resolve())
+    except DemoError as error:
+        print(f"scripts/demo: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("scripts/demo: interrupted", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,120 @@
+"""A run as one picture: the path, the speeds, the torques."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402 - the backend must be chosen before
+import numpy as np
+
+from robot_control.run_log import Log, joint_names
+from robot_control.run_summary import RunSummary
+from robot_control.tracking import CYCLE_TOLERANCE, commanded_path
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COMMANDED, TRUE, ESTIMATED = "#9a9a9a", "#1f5fa8", "#e07b00"
+JOINTS = ("#1f5fa8", "#c0392b", "#2e8b57", "#7d3c98")
+STYLE = {
+    "font.size": 11,
+    "axes.titlesize": 12,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e3e3e3",
+    "axes.axisbelow": True,
+    "legend.frameon": False,
+    "savefig.dpi": 110,
+}
+
+
+def draw_run(log: Log, summary: RunSummary, title: str, path: Path) -> None:
+    """Writes a PNG of 1760 × 990 pixels."""
+    with mpl.rc_context(STYLE):
+        figure = plt.figure(figsize=(16, 9), layout="constrained")
+        figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)  # type: ignore[union-attr,call-arg]
+        grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.35))
+        figure.suptitle(title, fontsize=15, fontweight="bold", x=0.01, ha="left")
+        _draw_path(figure.add_subplot(grid[:, 0]), log, summary)
+        linear = figure.add_subplot(grid[0, 1])
+        angular = figure.add_subplot(grid[1, 1], sharex=linear)
+        torque = figure.add_subplot(grid[2, 1], sharex=linear)
+        _draw_speed(linear, log, summary, "linear", "Speed", "m/s")
+        _draw_speed(angular, log, summary, "angular", "Yaw rate", "rad/s")
+        _draw_torques(torque, log)
+        for axes in (linear, angular):
+            axes.tick_params(labelbottom=False)
+        torque.set_xlabel("time [s]")
+        linear.set_xlim(float(log["time"][0]), float(log["time"][-1]))
+        figure.savefig(path)
+        plt.close(figure)
+
+
+def _draw_path(axes: Axes, log: Log, summary: RunSummary) -> None:
+    x, y, _ = commanded_path(log)
+    axes.plot(x, y, color=COMMANDED, linewidth=5, alpha=0.5, label="commanded")
+    axes.plot(log["truth_x"], log["truth_y"], color=TRUE, linewidth=2, label="true")
+    axes.plot(log["estimate_x"], log["estimate_y"], color=ESTIMATED, linewidth=2, linestyle=(0, (3, 2)), label="estimated")
+    axes.plot(0, 0, "o", color="black", markersize=7)
+    axes.annotate("start", (0, 0), xytext=(8, -14), textcoords="offset points")
+    known = np.flatnonzero(~np.isnan(log["truth_x"]))
+    if known.size:
+        end = known[-1]
+        yaw = float(log["truth_yaw"][end])
+        marker = (3, 0, float(np.degrees(yaw)) - 90)
+        axes.plot(log["truth_x"][end], log["truth_y"][end], marker=marker, color=TRUE, markersize=14, linestyle="none")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.08)
+    axes.set_title(_path_title(summary))
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.legend(loc="upper left")
+
+
+def _path_title(summary: RunSummary) -> str:
+    tracking = summary.tracking
+    if tracking is None:
+        return "Path"
+    return f"Path: {tracking.distance:.2f} m, estimate off by {tracking.position_error * 1000:.1f} mm"
+
+
+def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str, name: str, unit: str) -> None:
+    time = log["time"]
+    axes.plot(time, log[f"requested_{component}"], color=COMMANDED, linewidth=1.2, linestyle=":", label="requested")
+    axes.plot(time, log[f"limited_{component}"], color=COMMANDED, linewidth=4, alpha=0.5, label="within limits")
+    axes.plot(time, log[f"truth_{component}"], color=TRUE, linewidth=1.4, label="true")
+    axes.plot(
+        time, log[f"estimate_{component}"], color=ESTIMATED, linewidth=1, linestyle=(0, (3, 2)), label="estimated"
+    )
+    if summary.tracking is not None:
+        tracking = summary.tracking
+        commanded = tracking.linear.commanded if component == "linear" else tracking.angular.commanded
+        band = abs(commanded) * CYCLE_TOLERANCE
+        axes.fill_between(
+            [tracking.begin, tracking.end], commanded - band, commanded + band, color=TRUE, alpha=0.12, linewidth=0,
+            label=f"±{CYCLE_TOLERANCE * 100:.0f} %, judged",
+        )  # fmt: skip
+    axes.set_title(name)
+    axes.set_ylabel(f"{name.lower()} [{unit}]")
+    _legend_beside(axes)
+
+
+def _draw_torques(axes: Axes, log: Log) -> None:
+    for joint, color in zip(joint_names(log), JOINTS, strict=False):
+        name = joint.removesuffix("_joint").replace("_", " ")
+        axes.plot(log["time"], log[f"{joint}_effort_command"], color=color, linewidth=0.8, alpha=0.45, label=f"{name}, commanded")
+        axes.plot(log["time"], log[f"{joint}_effort"], color=color, linewidth=1.2, label=f"{name}, actual")
+    axes.set_title("Torque")
+    axes.set_ylabel("torque [N·m]")
+    _legend_beside(axes)
+
+
+def _legend_beside(axes: Axes) -> None:
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=10)

@@ -1,0 +1,50 @@
+"""What send_cmd.py sends and when; no ROS in here."""
+
+import argparse
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class SendPlan:
+    """A constant velocity command, repeated."""
+
+    linear: float = 0.5  # m/s, forward
+    angular: float = 0.2  # rad/s, to the left
+    period: float = 0.5  # s, between two sends
+    count: int | None = None  # sends; None: until interrupted
+
+    def sends_left(self, sent: int) -> bool:
+        """Is there another one to send after `sent`?"""
+        return self.count is None or sent < self.count
+
+    def describe(self, sent: int) -> str:
+        """One line for the log."""
+        return f"cmd_vel {sent}: {self.linear:g} m/s, {self.angular:g} rad/s"
+
+
+def positive(text: str) -> float:
+    """argparse type: a finite number above zero."""
+    value = float(text)
+    if not (math.isfinite(value) and value > 0):
+        raise argparse.ArgumentTypeError(f"{text} is not a number above zero")
+    return value
+
+
+def parse_plan(arguments: list[str]) -> SendPlan:
+    """Reads the command line (without the program's name); ends the program on a wrong one.
+
+    NaN and infinity are allowed as a velocity: the controller refuses them, and that can be seen with this tool.
+    """
+    parser = argparse.ArgumentParser(prog="send_cmd.py", description="Repeats one velocity command on cmd_vel.")
+    parser.add_argument("--linear", type=float, default=SendPlan.linear, help="m/s (default %(default)s)")
+    parser.add_argument("--angular", type=float, default=SendPlan.angular, help="rad/s (default %(default)s)")
+    parser.add_argument("--period", type=positive, default=SendPlan.period, help="s between sends (default %(default)s)")
+    end = parser.add_mutually_exclusive_group()
+    end.add_argument("--count", type=int, help="end after so many sends")
+    end.add_argument("--seconds", type=positive, help="end after so many seconds")
+    given = parser.parse_args(arguments)
+    count = given.count
+    if given.seconds is not None:
+        count = max(1, math.ceil(given.seconds / given.period))
+    return SendPlan(given.linear, given.angular, given.period, count)
