@@ -58,7 +58,7 @@ class CycleStatistics {
   static std::size_t bucket_of(std::int64_t value_ns) noexcept {
     const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(value_ns, 0, std::int64_t{1} << kMaxBits));
     if (value < kPerOctave) return value;
-    const int shift = std::bit_width(value) - 1 - kBits;
+    const int shift = static_cast<int>(std::bit_width(value)) - 1 - kBits;
     return static_cast<std::size_t>(shift) * kPerOctave + (value >> shift);
   }
 

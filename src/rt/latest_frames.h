@@ -110,7 +110,10 @@ class FrameReader {
     for (int tries = 0; tries < kReadTries; ++tries) {
       const std::uint64_t newest = memory->newest.load(std::memory_order_acquire);
       if (newest == 0 || newest > kFrameSlots) return Lookup::kMissing;
-      if (copy(memory->slots[newest - 1], out)) return judge(out);
+      if (!copy(memory->slots[newest - 1], out)) continue;
+      // A reader that slept in between holds the slot's next frame already: taking it, and then the one
+      // before it, would turn time back.
+      if (memory->newest.load(std::memory_order_acquire) == newest) return judge(out);
     }
     return Lookup::kMissing;
   }

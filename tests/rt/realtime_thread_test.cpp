@@ -1,0 +1,237 @@
+/// Every test runs in a child: locked memory, limits and capabilities belong to a whole process.
+
+#include "rt/realtime_thread.h"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <thread>
+
+#include "support/child_process.h"
+
+namespace robot_control {
+namespace {
+
+int first_core() {
+  cpu_set_t cores;
+  sched_getaffinity(0, sizeof cores, &cores);
+  for (std::size_t core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &cores)) return static_cast<int>(core);
+  }
+  return -1;
+}
+
+/// What the calling thread finds about itself.
+struct Self {
+  int policy = -1;
+  int priority = -1;
+  int cores = -1;
+  int core = -1;
+  std::string name;
+};
+
+Self self() {
+  Self found;
+  sched_param parameter{};
+  pthread_getschedparam(pthread_self(), &found.policy, &parameter);
+  found.priority = parameter.sched_priority;
+  cpu_set_t cores;
+  pthread_getaffinity_np(pthread_self(), sizeof cores, &cores);
+  found.cores = CPU_COUNT(&cores);
+  found.core = sched_getcpu();
+  char name[16] = {};
+  pthread_getname_np(pthread_self(), name, sizeof name);
+  found.name = name;
+  return found;
+}
+
+/// No limit and no capability that would grant anything. False where that cannot be had.
+bool drop_privileges() {
+  for (const auto resource : {RLIMIT_RTPRIO, RLIMIT_MEMLOCK}) {
+    const rlimit none{0, 0};
+    if (setrlimit(resource, &none) != 0) return false;
+  }
+  if (geteuid() == 0 && setresuid(65534, 65534, 65534) != 0) return false;
+  const sched_param parameter{.sched_priority = 1};
+  const bool granted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
+  return !granted && mlockall(MCL_CURRENT) != 0;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Exit codes of a child: 0 as claimed, kSkip not to be tried here, else the number of the claim that failed.
+constexpr int kSkip = 77;
+
+template <class Body>
+void expect_in_child(Body body) {
+  ChildProcess child(body);
+  const int code = child.wait();
+  if (code == kSkip) GTEST_SKIP() << "this process has, or has not, the privileges that this test is about";
+  EXPECT_EQ(code, 0) << "number of the claim";
+}
+
+TEST(RealtimeThread, RunsItsBodyUnderItsName) {
+  expect_in_child([] {
+    Self found;
+    {
+      const RealtimeThread thread({.name = "loop_of_the_test", .policy = RealtimePolicy::kOff},
+                                  [&] { found = self(); });
+    }
+    return found.name == "loop_of_the_tes" ? 0 : 1;
+  });
+}
+
+TEST(RealtimeThread, AloneTakesTheCore) {
+  expect_in_child([] {
+    if (self().cores < 2) return kSkip;
+    Self inside;
+    std::atomic<bool> stop{false};
+    Self before;
+    std::thread earlier([&] {
+      while (!stop.load()) std::this_thread::yield();
+      before = self();
+    });
+    const int core = first_core();
+    RealtimeThread thread({.policy = RealtimePolicy::kOff, .core = core}, [&] { inside = self(); });
+    thread.join();
+    stop.store(true);
+    earlier.join();
+    Self after;
+    std::thread later([&] { after = self(); });
+    later.join();
+    if (inside.cores != 1 || inside.core != core) return 1;
+    if (thread.report().core != Grant::kGranted) return 2;
+    if (before.cores < 2 || after.cores < 2 || self().cores < 2) return 3;
+    return thread.report().refusals.empty() ? 0 : 4;
+  });
+}
+
+TEST(RealtimeThread, TakesTheCoreWithoutAnyPrivilege) {
+  expect_in_child([] {
+    if (!drop_privileges()) return kSkip;
+    Self inside;
+    RealtimeThread thread({.policy = RealtimePolicy::kPreferred, .priority = 80, .core = first_core()},
+                          [&] { inside = self(); });
+    thread.join();
+    if (inside.cores != 1) return 1;
+    return thread.report().core == Grant::kGranted ? 0 : 2;
+  });
+}
+
+TEST(RealtimeThread, AsksNothingElseWhenOff) {
+  expect_in_child([] {
+    Self inside;
+    RealtimeThread thread({.policy = RealtimePolicy::kOff, .priority = 80}, [&] { inside = self(); });
+    thread.join();
+    if (inside.policy != SCHED_OTHER || inside.priority != 0) return 1;
+    const RealtimeReport& report = thread.report();
+    return report.memory_lock == Grant::kNotAsked && report.priority == Grant::kNotAsked &&
+                   report.core == Grant::kNotAsked && report.refusals.empty()
+               ? 0
+               : 2;
+  });
+}
+
+TEST(RealtimeThread, PreferredRunsWithoutPrivilegesAndSaysOnceWhatIsMissingWithTheRemedy) {
+  expect_in_child([] {
+    if (!drop_privileges()) return kSkip;
+    bool ran = false;
+    RealtimeThread thread({.policy = RealtimePolicy::kPreferred, .priority = 80}, [&] { ran = true; });
+    thread.join();
+    const RealtimeReport& report = thread.report();
+    if (!ran) return 1;
+    if (report.memory_lock != Grant::kRefused || report.priority != Grant::kRefused) return 2;
+    if (report.refusals.size() != 2) return 3;
+    if (!contains(report.refusals[0], "memlock unlimited") || !contains(report.refusals[0], "CAP_IPC_LOCK")) return 4;
+    if (!contains(report.refusals[1], "rtprio") || !contains(report.refusals[1], "CAP_SYS_NICE")) return 5;
+    return contains(report.refusals[1], "80") ? 0 : 6;
+  });
+}
+
+TEST(RealtimeThread, RequiredRefusesWithoutPrivilegesAndTheBodyNeverRuns) {
+  expect_in_child([] {
+    if (!drop_privileges()) return kSkip;
+    bool ran = false;
+    try {
+      const RealtimeThread thread({.policy = RealtimePolicy::kRequired, .priority = 80}, [&] { ran = true; });
+      return 1;
+    } catch (const RealtimeError& error) {
+      if (ran) return 2;
+      return contains(error.what(), "memlock") && contains(error.what(), "rtprio") ? 0 : 3;
+    }
+  });
+}
+
+TEST(RealtimeThread, RequiredRefusesACoreThatIsNotThere) {
+  expect_in_child([] {
+    if (prepare_process(RealtimePolicy::kRequired).memory_lock != Grant::kGranted) return kSkip;
+    try {
+      const RealtimeThread thread({.policy = RealtimePolicy::kRequired, .core = 5000}, [] {});
+      return 1;
+    } catch (const RealtimeError& error) {
+      return contains(error.what(), "core 5000") && contains(error.what(), "taskset") ? 0 : 2;
+    }
+  });
+}
+
+TEST(RealtimeThread, PreferredRunsUnpinnedWhereTheCoreIsNotThere) {
+  expect_in_child([] {
+    bool ran = false;
+    RealtimeThread thread({.policy = RealtimePolicy::kOff, .core = 1000}, [&] { ran = true; });
+    thread.join();
+    return ran && thread.report().core == Grant::kRefused && thread.report().refusals.size() == 1 ? 0 : 1;
+  });
+}
+
+TEST(RealtimeThread, AloneHasThePriorityWhereItIsGranted) {
+  expect_in_child([] {
+    Self inside;
+    RealtimeThread thread({.policy = RealtimePolicy::kPreferred, .priority = 80}, [&] { inside = self(); });
+    thread.join();
+    if (thread.report().priority != Grant::kGranted) return kSkip;
+    if (inside.policy != SCHED_FIFO || inside.priority != 80) return 1;
+    return self().policy == SCHED_OTHER ? 0 : 2;
+  });
+}
+
+TEST(PrepareProcess, LocksNothingUnderAFiniteLimitSoThatLaterMappingsSucceed) {
+  expect_in_child([] {
+    if (!drop_privileges()) return kSkip;
+    if (prepare_process(RealtimePolicy::kPreferred).memory_lock != Grant::kRefused) return 1;
+    void* memory = mmap(nullptr, 64 << 20, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return memory != MAP_FAILED ? 0 : 2;
+  });
+}
+
+TEST(PrepareProcess, LaterThreadsHaveSmallStacksWhereMemoryIsLocked) {
+  expect_in_child([] {
+    if (prepare_process(RealtimePolicy::kPreferred).memory_lock != Grant::kGranted) return kSkip;
+    std::size_t bytes = 0;
+    std::thread later([&] {
+      pthread_attr_t attributes;
+      pthread_getattr_np(pthread_self(), &attributes);
+      pthread_attr_getstacksize(&attributes, &bytes);
+      pthread_attr_destroy(&attributes);
+    });
+    later.join();
+    return bytes <= 2u << 20 ? 0 : 1;
+  });
+}
+
+TEST(PrepareProcess, SaysTheSameEachTime) {
+  expect_in_child([] {
+    const RealtimeReport first = prepare_process(RealtimePolicy::kPreferred);
+    const RealtimeReport second = prepare_process(RealtimePolicy::kRequired);
+    return first.memory_lock == second.memory_lock && first.refusals == second.refusals ? 0 : 1;
+  });
+}
+
+}  // namespace
+}  // namespace robot_control

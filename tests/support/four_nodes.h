@@ -1,0 +1,79 @@
+#pragma once
+/// The four nodes as four processes, without ROS: estimator, controller and monitor forked, the driver here,
+/// and a telemetry beside it on request.
+
+#include <sys/prctl.h>
+
+#include <csignal>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "drivers/mujoco_plant.h"
+#include "rt/clock.h"
+#include "rt/futex.h"
+#include "runtime/consumer_process.h"
+#include "runtime/driver_process.h"
+#include "runtime/telemetry_process.h"
+#include "support/child_process.h"
+#include "support/scoped_bus.h"
+
+namespace robot_control {
+
+class FourNodes {
+ public:
+  /// Ends by itself after `parameters.plant.cycles`. `record`: telemetry writes into parameters.telemetry.directory.
+  FourNodes(const Parameters& parameters, const RobotModel& robot, bool record)
+      : parameters_(parameters),
+        robot_(robot),
+        record_(record),
+        estimator_([this] { return consume<EstimatorProcess>(); }),
+        controller_([this] { return consume<ControllerProcess>(); }),
+        monitor_([this] { return consume<MonitorProcess>(); }) {}
+
+  /// Real-time factor of the run. Throws std::runtime_error when it does not end within `patience_s`.
+  double run(double patience_s) {
+    std::unique_ptr<TelemetryProcess> telemetry;
+    if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_, bus_.name());
+    DriverProcess driver(parameters_, robot_, bus_.name());
+    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
+    const std::int64_t give_up_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+    while (!driver.finished()) {
+      if (monotonic_ns() > give_up_ns) throw std::runtime_error("the four nodes did not end in time");
+      driver.poll();
+      if (telemetry != nullptr) {
+        telemetry->poll();
+        telemetry->drain();
+      }
+      sleep_ns(kPollNs);
+    }
+    sleep_ns(10 * kPollNs);  // the others append their last rows after the driver has their frames
+    if (telemetry != nullptr) telemetry->finish();
+    return driver.real_time_factor();
+  }
+
+  ChildProcess& controller() noexcept { return controller_; }
+
+ private:
+  static constexpr std::int64_t kPollNs = 10'000'000;
+
+  template <class Node>
+  int consume() {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    Node node(parameters_, robot_, bus_.name());
+    for (;;) {
+      node.poll();
+      sleep_ns(kPollNs);
+    }
+  }
+
+  ScopedBus bus_;
+  Parameters parameters_;
+  RobotModel robot_;
+  bool record_;
+  ChildProcess estimator_;
+  ChildProcess controller_;
+  ChildProcess monitor_;
+};
+
+}  // namespace robot_control
