@@ -1,0 +1,205 @@
+#include "telemetry/columns.h"
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace robot_control {
+namespace {
+
+template <class Part>
+const Part& part_of(const JoinedRow& row) {
+  if constexpr (std::is_same_v<Part, DriverTrace>) return *row.driver;
+  if constexpr (std::is_same_v<Part, EstimatorTrace>) return *row.estimator;
+  if constexpr (std::is_same_v<Part, ControllerTrace>) return *row.controller;
+  if constexpr (std::is_same_v<Part, MonitorTrace>) return *row.monitor;
+  if constexpr (std::is_same_v<Part, JoinedRow>) return row;
+}
+
+template <class Part>
+constexpr ColumnSource source_of() {
+  if (std::is_same_v<Part, DriverTrace>) return ColumnSource::kDriver;
+  if (std::is_same_v<Part, EstimatorTrace>) return ColumnSource::kEstimator;
+  if (std::is_same_v<Part, ControllerTrace>) return ColumnSource::kController;
+  if (std::is_same_v<Part, MonitorTrace>) return ColumnSource::kMonitor;
+  return ColumnSource::kRow;
+}
+
+// `get` is a stateless lambda over one part and a joint; what it returns decides real or integer.
+template <class Part, class Get>
+Column column(std::string name, std::string unit, Get, std::size_t joint = 0) {
+  using Value = std::invoke_result_t<Get, const Part&, std::size_t>;
+  Column result;
+  result.name = std::move(name);
+  result.unit = std::move(unit);
+  result.source = source_of<Part>();
+  result.joint = joint;
+  if constexpr (std::is_floating_point_v<Value>) {
+    result.real = [](const JoinedRow& row, std::size_t j) -> double { return Get{}(part_of<Part>(row), j); };
+  } else {
+    result.integer = [](const JoinedRow& row, std::size_t j) {
+      return static_cast<std::int64_t>(Get{}(part_of<Part>(row), j));
+    };
+  }
+  return result;
+}
+
+double yaw_of(const Quaternion& q) {
+  const auto [x, y, z, w] = q;
+  return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+}
+
+using D = DriverTrace;
+using E = EstimatorTrace;
+using C = ControllerTrace;
+using M = MonitorTrace;
+using J = std::size_t;
+using Columns = std::vector<Column>;
+
+void add_row(Columns& to) {
+  to.push_back(column<JoinedRow>("run", "", [](const JoinedRow& row, J) { return row.run; }));
+  to.push_back(column<JoinedRow>("cycle", "", [](const JoinedRow& row, J) { return row.cycle; }));
+  to.push_back(column<JoinedRow>("time", "s", [](const JoinedRow& row, J) { return row.time; }));
+}
+
+void add_truth(Columns& to) {
+  to.push_back(column<D>("truth_x", "m", [](const D& d, J) { return d.truth.pose_world.position[0]; }));
+  to.push_back(column<D>("truth_y", "m", [](const D& d, J) { return d.truth.pose_world.position[1]; }));
+  to.push_back(column<D>("truth_yaw", "rad", [](const D& d, J) { return yaw_of(d.truth.pose_world.orientation); }));
+  to.push_back(column<D>("truth_linear", "m/s", [](const D& d, J) { return d.truth.twist_base.linear[0]; }));
+  to.push_back(column<D>("truth_angular", "rad/s", [](const D& d, J) { return d.truth.twist_base.angular[2]; }));
+}
+
+void add_estimate(Columns& to) {
+  constexpr std::size_t kYaw = 5;  // Matrix6: x, y, z, roll, pitch, yaw
+  to.push_back(column<E>("estimate_x", "m", [](const E& e, J) { return e.state.pose_odom.position[0]; }));
+  to.push_back(column<E>("estimate_y", "m", [](const E& e, J) { return e.state.pose_odom.position[1]; }));
+  to.push_back(column<E>("estimate_yaw", "rad", [](const E& e, J) { return yaw_of(e.state.pose_odom.orientation); }));
+  to.push_back(column<E>("estimate_linear", "m/s", [](const E& e, J) { return e.state.twist_base.linear[0]; }));
+  to.push_back(column<E>("estimate_angular", "rad/s", [](const E& e, J) { return e.state.twist_base.angular[2]; }));
+  to.push_back(column<E>("estimate_x_variance", "m²", [](const E& e, J) { return e.state.pose_covariance[0]; }));
+  to.push_back(column<E>("estimate_y_variance", "m²", [](const E& e, J) { return e.state.pose_covariance[7]; }));
+  to.push_back(column<E>("estimate_yaw_variance", "rad²",
+                         [](const E& e, J) { return e.state.pose_covariance[kYaw * 6 + kYaw]; }));
+  to.push_back(
+      column<E>("confidence_left_encoder", "0…1", [](const E& e, J) { return e.state.confidence[kLeftEncoder]; }));
+  to.push_back(
+      column<E>("confidence_right_encoder", "0…1", [](const E& e, J) { return e.state.confidence[kRightEncoder]; }));
+  to.push_back(column<E>("confidence_gyro", "0…1", [](const E& e, J) { return e.state.confidence[kGyro]; }));
+  to.push_back(
+      column<E>("confidence_accelerometer", "0…1", [](const E& e, J) { return e.state.confidence[kAccelerometer]; }));
+  to.push_back(column<E>("estimate_flags", "StateFlag", [](const E& e, J) { return e.state.flags; }));
+  to.push_back(column<E>("estimate_distance", "m", [](const E& e, J) { return e.state.distance; }));
+  to.push_back(column<E>("estimate_skipped", "", [](const E& e, J) { return e.state.skipped; }));
+}
+
+void add_command(Columns& to) {
+  to.push_back(column<C>("requested_linear", "m/s", [](const C& c, J) { return c.command.twist_requested.linear[0]; }));
+  to.push_back(
+      column<C>("requested_angular", "rad/s", [](const C& c, J) { return c.command.twist_requested.angular[2]; }));
+  to.push_back(column<C>("limited_linear", "m/s", [](const C& c, J) { return c.command.twist_limited.linear[0]; }));
+  to.push_back(column<C>("limited_angular", "rad/s", [](const C& c, J) { return c.command.twist_limited.angular[2]; }));
+  to.push_back(column<C>("command_reasons", "CommandReason", [](const C& c, J) { return c.command.reasons; }));
+  to.push_back(column<C>("requests_received", "", [](const C& c, J) { return c.command.requests_received; }));
+  to.push_back(column<C>("requests_refused", "", [](const C& c, J) { return c.command.requests_refused; }));
+  to.push_back(column<C>("timeouts", "", [](const C& c, J) { return c.command.timeouts; }));
+}
+
+void add_joint(Columns& to, const std::string& name, std::size_t joint) {
+  to.push_back(column<D>(
+      name + "_position", "rad", [](const D& d, J j) { return d.sensors.joints[j].position; }, joint));
+  to.push_back(column<D>(
+      name + "_velocity", "rad/s", [](const D& d, J j) { return d.sensors.joints[j].velocity; }, joint));
+  to.push_back(column<D>(
+      name + "_effort", "N·m", [](const D& d, J j) { return d.sensors.joints[j].effort; }, joint));
+  to.push_back(column<C>(
+      name + "_mode", "JointMode", [](const C& c, J j) { return c.command.joints[j].mode; }, joint));
+  to.push_back(column<C>(
+      name + "_effort_command", "N·m", [](const C& c, J j) { return c.command.joints[j].effort; }, joint));
+  to.push_back(column<C>(
+      name + "_velocity_command", "rad/s", [](const C& c, J j) { return c.command.joints[j].velocity; }, joint));
+  to.push_back(column<C>(
+      name + "_velocity_measured", "rad/s", [](const C& c, J j) { return c.command.velocity_measured[j]; }, joint));
+}
+
+void add_imu(Columns& to) {
+  to.push_back(column<D>("gyro_x", "rad/s", [](const D& d, J) { return d.sensors.imu.angular_velocity[0]; }));
+  to.push_back(column<D>("gyro_y", "rad/s", [](const D& d, J) { return d.sensors.imu.angular_velocity[1]; }));
+  to.push_back(column<D>("gyro_z", "rad/s", [](const D& d, J) { return d.sensors.imu.angular_velocity[2]; }));
+  to.push_back(column<D>("accel_x", "m/s²", [](const D& d, J) { return d.sensors.imu.linear_acceleration[0]; }));
+  to.push_back(column<D>("accel_y", "m/s²", [](const D& d, J) { return d.sensors.imu.linear_acceleration[1]; }));
+  to.push_back(column<D>("accel_z", "m/s²", [](const D& d, J) { return d.sensors.imu.linear_acceleration[2]; }));
+}
+
+void add_safety(Columns& to) {
+  to.push_back(column<M>("permit_action", "PermitAction", [](const M& m, J) { return m.permit.action; }));
+  to.push_back(column<M>("supervisor_state", "SupervisorState", [](const M& m, J) { return m.permit.state; }));
+  to.push_back(column<M>("permit_causes", "StopCause", [](const M& m, J) { return m.permit.causes; }));
+  to.push_back(column<M>("permit_active", "StopCause", [](const M& m, J) { return m.permit.active; }));
+  to.push_back(column<M>("permit_missing", "MissingNode", [](const M& m, J) { return m.permit.missing; }));
+  to.push_back(column<M>("reset_refusal", "ResetRefusal", [](const M& m, J) { return m.permit.reset_refusal; }));
+  to.push_back(column<D>("gate_verdict", "GateVerdict", [](const D& d, J) { return d.gate.verdict; }));
+  to.push_back(column<D>("gate_reasons", "GateReason", [](const D& d, J) { return d.gate.reasons; }));
+  to.push_back(column<D>("gate_command_cycle", "", [](const D& d, J) { return d.gate.command_cycle; }));
+  to.push_back(column<D>("gate_permit_cycle", "", [](const D& d, J) { return d.gate.permit_cycle; }));
+  to.push_back(column<D>("held", "", [](const D& d, J) { return d.gate.held; }));
+  to.push_back(column<D>("missed", "", [](const D& d, J) { return d.gate.missed; }));
+  to.push_back(column<D>("late_permits", "", [](const D& d, J) { return d.gate.late_permits; }));
+  to.push_back(column<D>("refused", "", [](const D& d, J) { return d.gate.refused; }));
+  to.push_back(column<D>("driver_state", "DriverState", [](const D& d, J) { return d.sensors.driver_state; }));
+  to.push_back(column<D>("faults", "DriverFault", [](const D& d, J) { return d.sensors.faults; }));
+}
+
+void add_timing(Columns& to) {
+  const std::size_t first = to.size();
+  to.push_back(column<D>("stamp_ns", "ns", [](const D& d, J) { return d.sensors.head.stamp_ns; }));
+  to.push_back(column<D>("driver_woke_ns", "ns", [](const D& d, J) { return d.timing.woke_ns; }));
+  to.push_back(column<D>("sensors_published_ns", "ns", [](const D& d, J) { return d.timing.published_ns; }));
+  to.push_back(column<E>("estimator_woke_ns", "ns", [](const E& e, J) { return e.timing.woke_ns; }));
+  to.push_back(column<E>("state_published_ns", "ns", [](const E& e, J) { return e.timing.published_ns; }));
+  to.push_back(column<C>("controller_woke_ns", "ns", [](const C& c, J) { return c.timing.woke_ns; }));
+  to.push_back(column<C>("command_published_ns", "ns", [](const C& c, J) { return c.timing.published_ns; }));
+  to.push_back(column<M>("monitor_woke_ns", "ns", [](const M& m, J) { return m.timing.woke_ns; }));
+  to.push_back(column<M>("permit_published_ns", "ns", [](const M& m, J) { return m.timing.published_ns; }));
+  to.push_back(column<D>("overruns", "", [](const D& d, J) { return d.sensors.overruns; }));
+  to.push_back(column<D>("slipped_ns", "ns", [](const D& d, J) { return d.sensors.slipped_ns; }));
+  for (std::size_t i = first; i < to.size(); ++i) to[i].kind = ColumnKind::kTiming;
+}
+
+}  // namespace
+
+bool Column::present(const JoinedRow& row) const noexcept {
+  switch (source) {
+    case ColumnSource::kRow:
+      return true;
+    case ColumnSource::kDriver:
+      return row.driver != nullptr;
+    case ColumnSource::kEstimator:
+      return row.estimator != nullptr;
+    case ColumnSource::kController:
+      return row.controller != nullptr;
+    case ColumnSource::kMonitor:
+      return row.monitor != nullptr;
+  }
+  return false;
+}
+
+double Column::value(const JoinedRow& row) const noexcept {
+  if (!present(row)) return std::numeric_limits<double>::quiet_NaN();
+  return real != nullptr ? real(row, joint) : static_cast<double>(integer(row, joint));
+}
+
+std::vector<Column> log_columns(const std::vector<std::string>& joints, bool timing) {
+  Columns columns;
+  add_row(columns);
+  add_truth(columns);
+  add_estimate(columns);
+  add_command(columns);
+  for (std::size_t j = 0; j < joints.size(); ++j) add_joint(columns, joints[j], j);
+  add_imu(columns);
+  add_safety(columns);
+  if (timing) add_timing(columns);
+  return columns;
+}
+
+}  // namespace robot_control

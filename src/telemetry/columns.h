@@ -1,0 +1,43 @@
+#pragma once
+/// Every column of the log, once: name, unit, where it comes from and how to get it out of a row.
+///
+/// Names are those of the frames' members. Bits and enums are integers; their meaning stands where `unit`
+/// points: the enum of that name in signals/. Poses are planar (x, y, yaw): truth in the world minus the pose at
+/// cycle 0, the estimate in odom; twists in base axes; yaw in (−π, π].
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "telemetry/joined_row.h"
+
+namespace robot_control {
+
+enum class ColumnSource { kRow, kDriver, kEstimator, kController, kMonitor };
+
+enum class ColumnKind {
+  kPhysical,  ///< the same in every run of the same seed, script and parameters, whatever the clock
+  kTiming,    ///< when it happened: wall-clock runs only
+};
+
+struct Column {
+  std::string name;
+  std::string unit;  ///< "m", "rad/s", "" for counts, or the name of the enum
+  ColumnSource source = ColumnSource::kRow;
+  ColumnKind kind = ColumnKind::kPhysical;
+  std::size_t joint = 0;  ///< index handed to the getters; columns of one joint only
+  /// Exactly one of the two is set. Call only when `present`.
+  double (*real)(const JoinedRow& row, std::size_t joint) = nullptr;
+  std::int64_t (*integer)(const JoinedRow& row, std::size_t joint) = nullptr;
+
+  /// False: the row's cell is empty.
+  bool present(const JoinedRow& row) const noexcept;
+
+  /// As a double, for arrays: NaN where the cell is empty. Integers are exact up to 2^53.
+  double value(const JoinedRow& row) const noexcept;
+};
+
+/// `joints`: names in the order of RobotModel::joints. `timing`: with the columns of kind kTiming.
+std::vector<Column> log_columns(const std::vector<std::string>& joints, bool timing);
+
+}  // namespace robot_control

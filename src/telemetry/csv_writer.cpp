@@ -1,0 +1,109 @@
+#include "telemetry/csv_writer.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace robot_control {
+namespace {
+
+constexpr std::size_t kBufferBytes = 1 << 18;  // some 300 rows: few system calls, little to lose
+
+// 24 characters hold the longest shortest double; integers need 20.
+template <class Number>
+void append_number(std::string& to, Number value) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  to.append(digits.data(), end);
+}
+
+void append_real(std::string& to, double value) {
+  // The sign of a NaN is an accident of the instruction that made it.
+  if (value != value) {
+    to.append("nan");
+  } else {
+    append_number(to, value);
+  }
+}
+
+}  // namespace
+
+CsvWriter::CsvWriter(std::string path, std::vector<Column> columns)
+    : path_(std::move(path)), columns_(std::move(columns)) {
+  open();
+  buffer_.reserve(kBufferBytes + 4096);
+  for (const Column& column : columns_) buffer_.append(column.name).push_back(',');
+  buffer_.back() = '\n';
+  flush();
+}
+
+CsvWriter::~CsvWriter() {
+  try {
+    close();
+  } catch (const LogError&) {
+    // Whoever needs to know has called close().
+  }
+}
+
+void CsvWriter::open() {
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) fail("cannot make its folder", error.value());
+  file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file_ < 0) fail("cannot be opened", errno);
+}
+
+void CsvWriter::write(const JoinedRow& row) {
+  if (file_ < 0) return;
+  for (const Column& column : columns_) {
+    if (column.present(row)) {
+      if (column.real != nullptr) {
+        append_real(buffer_, column.real(row, column.joint));
+      } else {
+        append_number(buffer_, column.integer(row, column.joint));
+      }
+    }
+    buffer_.push_back(',');
+  }
+  buffer_.back() = '\n';
+  if (buffer_.size() >= kBufferBytes) flush();
+}
+
+void CsvWriter::flush() {
+  std::size_t done = 0;
+  while (file_ >= 0 && done < buffer_.size()) {
+    const ssize_t count = ::write(file_, buffer_.data() + done, buffer_.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail("cannot be written", errno);
+    done += static_cast<std::size_t>(count);
+  }
+  buffer_.clear();
+}
+
+void CsvWriter::close() {
+  if (file_ < 0) return;
+  flush();
+  // Pipes and devices have nothing to synchronise.
+  if (::fsync(file_) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be completed", errno);
+  const int file = std::exchange(file_, -1);
+  if (::close(file) != 0) fail("cannot be closed", errno);
+}
+
+void CsvWriter::fail(const std::string& what, int error) {
+  if (file_ >= 0) ::close(std::exchange(file_, -1));
+  buffer_.clear();
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  throw LogError("log " + path_ + " " + what + ": " + std::strerror(error) +
+                 (full ? "; make room or name another folder" : "; name a folder that can be written") +
+                 " (telemetry.directory)");
+}
+
+}  // namespace robot_control

@@ -1,0 +1,27 @@
+#pragma once
+/// One row of the log: what all four nodes did in one cycle.
+
+#include <cstdint>
+
+#include "signals/trace.h"
+
+namespace robot_control {
+
+/// Row k joins sensors k, state k, command k and permit k; the gate's report is that of tick k, which used
+/// command and permit k-1. Null: that node has no frame for this cycle (lost, or a token passed).
+struct JoinedRow {
+  std::int64_t run = 0;     ///< 0, 1, … in the order in which the runs began
+  std::uint64_t cycle = 0;  ///< k
+  double time = 0;          ///< s since the run began: k · period
+  const DriverTrace* driver = nullptr;
+  const EstimatorTrace* estimator = nullptr;
+  const ControllerTrace* controller = nullptr;
+  const MonitorTrace* monitor = nullptr;
+};
+
+/// The one way to compute `time`, so that equal cycles have equal bits wherever a row is made.
+inline double row_time(std::uint64_t cycle, double period) noexcept {
+  return static_cast<double>(cycle) * period;
+}
+
+}  // namespace robot_control

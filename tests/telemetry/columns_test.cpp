@@ -1,0 +1,184 @@
+#include "telemetry/columns.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "telemetry/traces.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::IsSupersetOf;
+
+const std::vector<std::string> kJoints{"left_wheel_joint", "right_wheel_joint"};
+
+std::vector<std::string> names_of(const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  return names;
+}
+
+class Columns : public ::testing::Test {
+ protected:
+  Columns() {
+    row.run = 2;
+    row.cycle = 1234;
+    row.time = row_time(1234, 0.001);
+    row.driver = &driver;
+    row.estimator = &estimator;
+    row.controller = &controller;
+    row.monitor = &monitor;
+  }
+
+  double value(const std::string& name) const {
+    const auto column = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    EXPECT_NE(column, columns.end()) << name;
+    return column == columns.end() ? std::nan("") : column->value(row);
+  }
+
+  DriverTrace driver = driver_row(1, 1234);
+  EstimatorTrace estimator = estimator_row(1, 1234);
+  ControllerTrace controller = controller_row(1, 1234);
+  MonitorTrace monitor = monitor_row(1, 1234);
+  JoinedRow row;
+  std::vector<Column> columns = log_columns(kJoints, true);
+};
+
+TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
+  EXPECT_THAT(names_of(columns), IsSupersetOf({"run",
+                                               "cycle",
+                                               "time",
+                                               "truth_x",
+                                               "truth_y",
+                                               "truth_yaw",
+                                               "truth_linear",
+                                               "truth_angular",
+                                               "estimate_x",
+                                               "estimate_y",
+                                               "estimate_yaw",
+                                               "estimate_linear",
+                                               "estimate_angular",
+                                               "estimate_x_variance",
+                                               "estimate_y_variance",
+                                               "estimate_yaw_variance",
+                                               "confidence_left_encoder",
+                                               "confidence_right_encoder",
+                                               "confidence_gyro",
+                                               "confidence_accelerometer",
+                                               "estimate_flags",
+                                               "requested_linear",
+                                               "requested_angular",
+                                               "limited_linear",
+                                               "limited_angular",
+                                               "command_reasons",
+                                               "gyro_x",
+                                               "gyro_y",
+                                               "gyro_z",
+                                               "accel_x",
+                                               "accel_y",
+                                               "accel_z",
+                                               "permit_action",
+                                               "supervisor_state",
+                                               "permit_causes",
+                                               "gate_verdict",
+                                               "gate_reasons",
+                                               "gate_command_cycle",
+                                               "held",
+                                               "missed",
+                                               "driver_state",
+                                               "faults",
+                                               "stamp_ns",
+                                               "driver_woke_ns",
+                                               "sensors_published_ns",
+                                               "estimator_woke_ns",
+                                               "state_published_ns",
+                                               "command_published_ns",
+                                               "permit_published_ns",
+                                               "overruns",
+                                               "slipped_ns"}));
+  for (const std::string& joint : kJoints) {
+    EXPECT_THAT(names_of(columns),
+                IsSupersetOf({joint + "_position", joint + "_velocity", joint + "_effort", joint + "_effort_command",
+                              joint + "_velocity_command", joint + "_velocity_measured"}));
+  }
+}
+
+TEST_F(Columns, HaveNamesOfTheirOwn) {
+  const std::vector<std::string> names = names_of(columns);
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+}
+
+TEST_F(Columns, HaveOneGetterEach) {
+  for (const Column& column : columns) EXPECT_NE(column.real == nullptr, column.integer == nullptr) << column.name;
+}
+
+TEST_F(Columns, OfTimeAreAllAndAloneAbsentFromLockstep) {
+  std::vector<std::string> physical;
+  for (const Column& column : columns) {
+    if (column.kind == ColumnKind::kPhysical) physical.push_back(column.name);
+  }
+  EXPECT_EQ(names_of(log_columns(kJoints, false)), physical);
+  for (const std::string& name : physical) EXPECT_FALSE(name.ends_with("_ns")) << name;
+}
+
+TEST_F(Columns, AreEmptyWhereTheNodeHasNoFrame) {
+  row.estimator = nullptr;
+  for (const Column& column : columns) {
+    EXPECT_EQ(column.present(row), column.source != ColumnSource::kEstimator) << column.name;
+    EXPECT_EQ(std::isnan(column.value(row)), column.source == ColumnSource::kEstimator) << column.name;
+  }
+}
+
+TEST_F(Columns, OfTheRowNeedNoNode) {
+  row.driver = nullptr;
+  row.estimator = nullptr;
+  row.controller = nullptr;
+  row.monitor = nullptr;
+  EXPECT_EQ(value("run"), 2);
+  EXPECT_EQ(value("cycle"), 1234);
+  EXPECT_EQ(value("time"), 1234 * 0.001);
+}
+
+TEST_F(Columns, KeepTheJointsApart) {
+  driver.sensors.joints[0].effort = 1.5;
+  driver.sensors.joints[1].effort = -2.5;
+  controller.command.joints[1].velocity = 3;
+  controller.command.velocity_measured[0] = 4;
+  EXPECT_EQ(value("left_wheel_joint_effort"), 1.5);
+  EXPECT_EQ(value("right_wheel_joint_effort"), -2.5);
+  EXPECT_EQ(value("right_wheel_joint_velocity_command"), 3);
+  EXPECT_EQ(value("left_wheel_joint_velocity_measured"), 4);
+}
+
+// A turn by −2 rad about z: q = (0, 0, sin(−1), cos(−1)). Tolerance: a few roundings of numbers about 1.
+TEST_F(Columns, TakeYawFromTheQuaternion) {
+  estimator.state.pose_odom.orientation = {0, 0, std::sin(-1.0), std::cos(-1.0)};
+  EXPECT_NEAR(value("estimate_yaw"), -2.0, 1e-15);
+}
+
+TEST_F(Columns, TakeVariancesFromTheDiagonal) {
+  estimator.state.pose_covariance[0] = 1;
+  estimator.state.pose_covariance[7] = 2;
+  estimator.state.pose_covariance[35] = 3;
+  EXPECT_EQ(value("estimate_x_variance"), 1);
+  EXPECT_EQ(value("estimate_y_variance"), 2);
+  EXPECT_EQ(value("estimate_yaw_variance"), 3);
+}
+
+TEST_F(Columns, LogTheGateOfTickKNotOfTheTickBefore) {
+  driver.sensors.gate.verdict = GateVerdict::kPassed;
+  driver.gate.verdict = GateVerdict::kHeld;
+  EXPECT_EQ(value("gate_verdict"), static_cast<double>(GateVerdict::kHeld));
+}
+
+TEST_F(Columns, CarryBitsAsIntegers) {
+  monitor.permit.causes = kCauseDriverLost | kCauseNotFinite;
+  EXPECT_EQ(value("permit_causes"), (1 << 3) + (1 << 10));
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,41 @@
+#pragma once
+/// Rows as four healthy nodes would write them.
+
+#include "signals/trace.h"
+
+namespace robot_control {
+
+/// Run starts lie far apart, so that stamps order runs as a driver's do.
+inline FrameHead head_at(std::uint64_t run, std::uint64_t cycle) {
+  FrameHead head;
+  head.run = run;
+  head.cycle = cycle;
+  head.stamp_ns = static_cast<std::int64_t>(run * 1'000'000'000'000 + cycle * 1'000'000);
+  return head;
+}
+
+inline DriverTrace driver_row(std::uint64_t run, std::uint64_t cycle) {
+  DriverTrace row;
+  row.sensors.head = row.truth.head = head_at(run, cycle);
+  return row;
+}
+
+inline EstimatorTrace estimator_row(std::uint64_t run, std::uint64_t cycle) {
+  EstimatorTrace row;
+  row.state.head = head_at(run, cycle);
+  return row;
+}
+
+inline ControllerTrace controller_row(std::uint64_t run, std::uint64_t cycle) {
+  ControllerTrace row;
+  row.command.head = head_at(run, cycle);
+  return row;
+}
+
+inline MonitorTrace monitor_row(std::uint64_t run, std::uint64_t cycle) {
+  MonitorTrace row;
+  row.permit.head = head_at(run, cycle);
+  return row;
+}
+
+}  // namespace robot_control
