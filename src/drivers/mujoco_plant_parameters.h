@@ -13,7 +13,7 @@ struct MujocoPlantParameters {
   double brake_effort = 3.0;      ///< N·m, the brake's bound per joint
   double brake_damping = 2.0;     ///< N·m·s/rad
   double brake_stiffness = 300;   ///< N·m/rad, position hold below `brake_hold_speed`
-  double brake_hold_speed = 0.5;  ///< rad/s
+  double brake_hold_speed = 0.3;  ///< rad/s
 };
 
 }  // namespace robot_control

@@ -3,8 +3,7 @@
 #include <urdf_model/model.h>
 
 #include <kdl/frames.hpp>
-#include <kdl/jntarray.hpp>
-#include <kdl/treefksolverpos_recursive.hpp>
+#include <kdl/segment.hpp>
 
 namespace robot_control {
 namespace {
@@ -51,6 +50,14 @@ Eigen::Isometry3d eigen_frame(const KDL::Frame& frame) {
   return result;
 }
 
+void add_frames(KDL::SegmentMap::const_iterator element, const KDL::Frame& frame,
+                std::map<std::string, Eigen::Isometry3d>& frames) {
+  frames.emplace(element->first, eigen_frame(frame));
+  for (const auto& child : GetTreeElementChildren(element->second)) {
+    add_frames(child, frame * GetTreeElementSegment(child->second).pose(0), frames);
+  }
+}
+
 }  // namespace
 
 KDL::Tree kdl_tree(const UrdfDocument& document) {
@@ -61,15 +68,8 @@ KDL::Tree kdl_tree(const UrdfDocument& document) {
 }
 
 std::map<std::string, Eigen::Isometry3d> links_at_zero(const KDL::Tree& tree) {
-  KDL::TreeFkSolverPos_recursive solver(tree);
-  KDL::JntArray zero(tree.getNrOfJoints());
   std::map<std::string, Eigen::Isometry3d> frames;
-  for (const auto& [name, element] : tree.getSegments()) {
-    KDL::Frame frame;
-    if (element.segment.getName() != tree.getRootSegment()->second.segment.getName())
-      solver.JntToCart(zero, frame, name);
-    frames.emplace(name, eigen_frame(frame));
-  }
+  add_frames(tree.getRootSegment(), KDL::Frame::Identity(), frames);
   return frames;
 }
 

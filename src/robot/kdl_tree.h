@@ -14,7 +14,8 @@ namespace robot_control {
 /// cannot say (floating, planar).
 KDL::Tree kdl_tree(const UrdfDocument& document);
 
-/// Link name → its frame in the root link's, by KDL's forward kinematics at the zero pose. The root is identity.
+/// Link name → its frame in the root link's, the segments' poses chained at joint value zero. The root is identity.
+/// (TreeFkSolverPos_recursive does the same, but asserts on a tree without a moving joint.)
 std::map<std::string, Eigen::Isometry3d> links_at_zero(const KDL::Tree& tree);
 
 }  // namespace robot_control
