@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "hal/driver.h"
 #include "simulation/closed_loop.h"
 #include "telemetry/columns.h"
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "control/control_problems.h"
 #include "drivers/mujoco_plant.h"
 #include "runtime/controller_cycle.h"
 #include "runtime/driver_cycle.h"

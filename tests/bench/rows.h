@@ -1,0 +1,48 @@
+#pragma once
+/// What a benchmark prints: one JSON object, every absolute figure beside its ratio to a reference that was
+/// measured in the same run, interleaved.
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace robot_control::bench {
+
+struct Row {
+  std::string name;
+  double value = 0;
+  std::string unit;
+  double reference = 0;
+  std::string reference_name;
+  double ratio = 0;
+};
+
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Ratio pair by pair, so that a machine whose speed drifts does not distort it.
+inline double median_ratio(const std::vector<double>& values, const std::vector<double>& references) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < values.size(); ++i) ratios.push_back(values[i] / references[i]);
+  return median(ratios);
+}
+
+inline void print(const std::string& bench, const std::vector<Row>& rows) {
+  std::printf("{\"bench\": \"%s\", \"rows\": [", bench.c_str());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    std::printf(
+        "%s\n  {\"name\": \"%s\", \"value\": %.6g, \"unit\": \"%s\", \"reference\": %.6g, \"reference_name\": \"%s\", "
+        "\"ratio\": %.6g}",
+        i == 0 ? "" : ",", row.name.c_str(), row.value, row.unit.c_str(), row.reference, row.reference_name.c_str(),
+        row.ratio);
+  }
+  std::printf("\n]}\n");
+}
+
+}  // namespace robot_control::bench

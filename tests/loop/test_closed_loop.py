@@ -1,0 +1,213 @@
+"""The closed loop on the MuJoCo plant, in virtual time."""
+
+import math
+
+import numpy as np
+import pytest
+from robot_control import ClosedLoop, DriverError, ParameterError, RobotError
+from robot_control.share import share_file
+
+COMMAND = (0.5, 0.2)  # m/s, rad/s: the article's
+SLOPE = share_file("urdf/scenes/slope_5deg.xml")
+
+STOPPED = 4  # SupervisorState
+BRAKE, PASSED, RAMP = 0, 1, 4  # GateVerdict
+E_STOP_SERVICE, HEARTBEAT_LOST = 1 << 1, 1 << 7  # StopCause
+REFUSED = 1 << 2  # CommandReason
+
+
+def path_length(log):
+    return float(np.sum(np.hypot(np.diff(log["truth_x"]), np.diff(log["truth_y"]))))
+
+
+def moved(log, start=0):
+    """Largest distance [m] from the pose of row `start`."""
+    return float(np.max(np.hypot(log["truth_x"][start:] - log["truth_x"][start], log["truth_y"][start:] - log["truth_y"][start])))
+
+
+def drive(loop, seconds, command=COMMAND):
+    return loop.run(seconds, command)
+
+
+@pytest.fixture
+def loop():
+    return ClosedLoop()
+
+
+def test_tracks_the_command_on_a_physical_plant(loop):
+    log = drive(loop, 12.0)
+    steady = log["time"] >= 2.0
+    for wanted, name in zip(COMMAND, ("truth_linear", "truth_angular")):
+        true = log[name][steady]
+        assert abs(true.mean() / wanted - 1) < 0.01
+        assert np.max(np.abs(true / wanted - 1)) < 0.05
+
+
+@pytest.mark.parametrize("command", [(0.5, 0.2), (-0.5, 0.2), (0.0, 1.0), (0.8, -0.5)])
+def test_estimates_the_pose_within_one_percent_of_the_distance(loop, command):
+    log = drive(loop, 15.0, command)
+    error = math.hypot(log["estimate_x"][-1] - log["truth_x"][-1], log["estimate_y"][-1] - log["truth_y"][-1])
+    rim = 0.25 * np.sum(np.abs(np.diff(np.unwrap(log["truth_yaw"]))))  # a spin travels at the wheels
+    assert error < 0.01 * max(path_length(log), rim)
+    assert abs(math.remainder(log["estimate_yaw"][-1] - log["truth_yaw"][-1], 2 * math.pi)) < 0.01
+
+
+def test_the_estimate_is_signed_in_reverse(loop):
+    log = drive(loop, 3.0, (-0.3, 0.0))
+    assert log["estimate_linear"][-1] == pytest.approx(-0.3, rel=0.01)
+    assert log["estimate_x"][-1] < -0.5
+
+
+def test_a_silent_sender_ramps_the_robot_down_after_the_timeout(loop):
+    drive(loop, 3.0)
+    log = loop.run(4.0)
+    limited = log["limited_linear"]
+    timeout_row = int(np.argmax(limited < 0.5))
+    assert timeout_row * loop.period == pytest.approx(1.25, abs=2 * loop.period)
+    deceleration = -np.diff(limited[timeout_row - 1 :]) / loop.period
+    assert deceleration.max() <= 1.0 + 1e-9  # max_linear_acceleration
+    assert abs(log["truth_linear"][-1]) < 1e-3
+    assert np.all(log["supervisor_state"] != STOPPED), "a timeout is no emergency"
+
+
+def test_an_e_stop_brakes_in_the_next_cycle_and_latches(loop):
+    drive(loop, 3.0)
+    loop.e_stop()
+    log = drive(loop, 2.0)
+    assert np.all(log["gate_verdict"][1:] == BRAKE)
+    assert np.all(log["permit_causes"].astype(int) & E_STOP_SERVICE)
+    assert abs(log["truth_linear"][-1]) < 1e-3
+
+
+def test_a_reset_is_refused_while_a_motion_is_asked_for(loop):
+    drive(loop, 2.0)
+    loop.e_stop()
+    drive(loop, 2.0)
+    loop.e_stop_reset()
+    assert np.all(drive(loop, 0.5)["supervisor_state"] == STOPPED)
+
+
+def test_drives_again_after_a_reset_at_rest_without_a_jump(loop):
+    drive(loop, 2.0)
+    loop.e_stop()
+    loop.run(3.0, (0.0, 0.0))
+    loop.e_stop_reset()
+    rest = loop.run(0.5, (0.0, 0.0))
+    assert rest["supervisor_state"][-1] != STOPPED
+    assert moved(rest) < 1e-4
+    log = drive(loop, 3.0)
+    assert np.max(np.diff(log["truth_linear"])) < 2.0 * loop.period  # twice max_linear_acceleration
+    assert log["truth_linear"][-1] == pytest.approx(0.5, rel=0.01)
+
+
+@pytest.mark.parametrize("scene", [None, SLOPE], ids=["flat", "slope"])
+@pytest.mark.parametrize("command", [(0.5, 0.2), (-0.5, 0.0)])
+def test_stands_within_a_millimetre_for_a_minute(scene, command):
+    """From the first cycle of standstill, hand-over between drive and brake included."""
+    loop = ClosedLoop(scene=scene)
+    drive(loop, 2.0, command)
+    log = loop.run(62.0, (0.0, 0.0))
+    wheels = np.abs(log["left_wheel_joint_velocity"]) + np.abs(log["right_wheel_joint_velocity"])
+    start = int(np.argmax((log["limited_linear"] == 0) & (log["limited_angular"] == 0) & (wheels < 0.02)))
+    assert 0 < start < 2000
+    assert moved(log, start) < 1e-3
+
+
+def test_takes_over_from_the_brake_on_a_slope_without_sagging():
+    loop = ClosedLoop(scene=SLOPE)
+    loop.run(2.0, (0.0, 0.0))
+    log = loop.run(1.0, (1e-4, 0.0))  # the smallest motion: the controller holds the robot now
+    assert log["gate_verdict"][-1] == PASSED
+    assert moved(log) < 1e-3
+
+
+def test_a_command_that_is_not_a_number_is_refused_and_ramps_down(loop):
+    drive(loop, 2.0)
+    log = drive(loop, 3.0, (math.nan, 0.2))
+    assert int(log["command_reasons"][1]) & REFUSED
+    assert abs(log["truth_linear"][-1]) < 1e-3
+    assert np.max(-np.diff(log["limited_linear"])) <= 1.0 * loop.period + 1e-12
+
+
+def test_a_lost_heartbeat_ramps_then_brakes():
+    loop = ClosedLoop({"safety_monitor": {"heartbeat_timeout": 0.5}})
+    for _ in range(20):
+        loop.heartbeat()
+        drive(loop, 0.1)
+    log = drive(loop, 3.0)
+    verdicts = log["gate_verdict"]
+    ramp = int(np.argmax(verdicts == RAMP))
+    assert ramp * loop.period == pytest.approx(0.5, abs=0.11)
+    assert np.all(verdicts[ramp : ramp + 300] == RAMP), "category 1: down under supervision"
+    assert verdicts[-1] == BRAKE
+    assert int(log["permit_causes"][-1]) & HEARTBEAT_LOST
+    assert abs(log["truth_linear"][-1]) < 1e-3
+
+
+def test_same_seed_and_calls_give_the_same_bits(loop):
+    first = drive(loop, 2.0)
+    loop.reset()
+    second = drive(loop, 2.0)
+    for name, values in first.items():
+        assert values.tobytes() == second[name].tobytes(), name
+
+
+def test_steps_and_runs_are_the_same_cycles(loop):
+    other = ClosedLoop()
+    log = drive(loop, 0.2)
+    for row in range(200):
+        other.command(*COMMAND)
+        assert other.step(1)["truth_x"][0] == log["truth_x"][row]
+    assert other.time == loop.time == pytest.approx(0.2)
+
+
+def test_a_command_script_speaks_like_a_sender(tmp_path):
+    script = tmp_path / "script.csv"
+    rows = [f"{cycle},0.5,0.2," for cycle in range(1, 2000, 500)]
+    script.write_text("cycle,linear,angular,event\n" + "\n".join(rows) + "\n2500,,,e_stop\n")
+    loop = ClosedLoop({"robot": {"command_script": str(script)}})
+    log = loop.run(3.0)
+    assert log["truth_linear"][2400] == pytest.approx(0.5, rel=0.01)
+    assert log["gate_verdict"][2501] == BRAKE
+    by_hand = ClosedLoop()
+    commands = by_hand.run(2.4, lambda t: COMMAND)
+    assert np.array_equal(commands["truth_x"], log["truth_x"][:2400])
+
+
+@pytest.mark.parametrize("rate", [100, 500, 1000, 2000])
+def test_tracks_at_every_rate(rate):
+    loop = ClosedLoop({"robot": {"rate": rate}, "diff_drive_controller": {"pid_kp": 0.3 if rate == 100 else 2.0}})
+    log = drive(loop, 5.0)
+    assert log["truth_linear"][-1] == pytest.approx(0.5, rel=0.02)
+
+
+def test_refuses_wrong_parameters_all_at_once():
+    with pytest.raises(ParameterError) as refusal:
+        ClosedLoop({"robot": {"rate": 5}, "diff_drive_controller": {"pid_pk": 1, "max_linear_speed": math.nan}})
+    for word in ("robot.rate", "pid_pk", "pid_kp", "max_linear_speed"):
+        assert word in str(refusal.value)
+
+
+def test_refuses_the_articles_gains_as_torque_gains():
+    with pytest.raises(ParameterError, match="pid_kp"):
+        ClosedLoop({"diff_drive_controller": {"pid_kp": 20.0, "pid_ki": 0.1, "pid_kd": 0.5}})
+
+
+def test_refuses_a_scene_that_does_not_compile(tmp_path):
+    scene = tmp_path / "scene.xml"
+    scene.write_text("<mujoco><worldbody><geom type='no_such_type'/></worldbody></mujoco>")
+    with pytest.raises(DriverError, match="no_such_type|keyword"):
+        ClosedLoop(scene=scene)
+
+
+def test_refuses_a_robot_without_wheels(tmp_path):
+    urdf = tmp_path / "robot.urdf"
+    inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
+    urdf.write_text(f"<robot name='r'><link name='base_link'>{inertial}</link></robot>")
+    with pytest.raises(RobotError, match="left_wheel_joint"):
+        ClosedLoop(urdf=urdf)
+
+
+def test_refuses_a_missing_file():
+    with pytest.raises((RobotError, ParameterError), match="nowhere.urdf"):
+        ClosedLoop(urdf="/nowhere.urdf")

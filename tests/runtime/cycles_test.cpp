@@ -1,0 +1,210 @@
+#include <gtest/gtest.h>
+
+#include "cycle_fixture.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
+
+/// A loop in DRIVE with a standing command.
+class RunningLoop : public ::testing::Test {
+ protected:
+  RunningLoop() {
+    loop.step();  // a command from before the run would be dropped
+    loop.controller->inbox().store({.twist = kForward, .count = 1});
+    loop.steps(20);
+  }
+
+  Loop loop;
+};
+
+TEST_F(RunningLoop, PassesACommandExactlyOneCycleAfterItsSensors) {
+  ASSERT_EQ(loop.gate().verdict, GateVerdict::kPassed);
+  EXPECT_EQ(loop.gate().command_cycle, loop.driver.next_cycle() - 2);
+  EXPECT_EQ(loop.gate().permit_cycle, loop.driver.next_cycle() - 2);
+  EXPECT_EQ(loop.machine.mode, JointMode::kEffort);
+}
+
+TEST_F(RunningLoop, HoldsTheLastCommandForThreeMissedCyclesThenBrakes) {
+  for (int missed = 1; missed <= 3; ++missed) {
+    loop.driver.step();
+    loop.estimator->step();
+    loop.monitor->step();
+  }
+  // the first tick without the controller still found the command of the cycle before
+  loop.driver.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kHeld);
+  EXPECT_EQ(loop.gate().held, 3u);
+  loop.estimator->step();
+  loop.monitor->step();
+  loop.driver.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+  EXPECT_EQ(loop.gate().reasons & kGateNoCommand, kGateNoCommand);
+}
+
+TEST_F(RunningLoop, BrakesWhenTheMonitorStops) {
+  for (std::uint64_t tick = 0; tick <= kPermitLife; ++tick) {
+    loop.driver.step();
+    loop.estimator->step();
+    loop.controller->step();
+  }
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+  EXPECT_EQ(loop.machine.mode, JointMode::kBrake);
+}
+
+TEST_F(RunningLoop, LatchesTheLossOfTheController) {
+  for (int tick = 0; tick < 25; ++tick) {
+    loop.driver.step();
+    loop.estimator->step();
+    loop.monitor->step();
+  }
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+  EXPECT_NE(loop.newest_permit().causes & kCauseControllerLost, 0u);
+  loop.restart_controller();
+  loop.steps(5);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped) << "a stop latches";
+}
+
+TEST_F(RunningLoop, ResumesTheEstimateAfterARestart) {
+  const StateFrame before = loop.newest_state();
+  loop.restart_estimator();
+  loop.step();
+  const StateFrame after = loop.newest_state();
+  EXPECT_EQ(after.pose_odom.position, before.pose_odom.position);
+  EXPECT_NE(after.flags & kStateRestarted, 0u);
+  EXPECT_GT(after.pose_covariance[0], before.pose_covariance[0]);
+}
+
+TEST_F(RunningLoop, StopsWhenTheMonitorIsRestarted) {
+  loop.restart_monitor();
+  loop.step();
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+  EXPECT_NE(loop.newest_permit().causes & kCauseMonitorRestarted, 0u);
+}
+
+TEST_F(RunningLoop, BeginsInInitWhenDriverAndMonitorBothStartAnew) {
+  loop.driver.set_boot(100);
+  loop.driver.begin_run(2);
+  loop.restart_monitor();
+  loop.step();
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kInit);
+  loop.steps(3);
+  EXPECT_EQ(loop.newest_permit().action, PermitAction::kDrive);
+}
+
+TEST_F(RunningLoop, ForgetsTheCommandInANewRun) {
+  loop.driver.begin_run(2);
+  loop.steps(3);
+  EXPECT_NE(loop.newest_command().reasons & kReasonNoCommand, 0u);
+  EXPECT_EQ(loop.newest_command().requests_received, 0u);
+}
+
+TEST_F(RunningLoop, KeepsALatchInANewRun) {
+  loop.monitor->inbox().store({.e_stop_services = 1});
+  loop.steps(2);
+  ASSERT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+  loop.driver.begin_run(2);
+  loop.steps(5);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+}
+
+TEST_F(RunningLoop, ProcessesAFrameOnlyOnce) {
+  EXPECT_FALSE(loop.estimator->step());
+  EXPECT_FALSE(loop.controller->step());
+  EXPECT_FALSE(loop.monitor->step());
+}
+
+TEST_F(RunningLoop, IgnoresFramesOfAnotherRun) {
+  const std::uint64_t cycle = loop.driver.next_cycle() - 1;
+  CommandFrame foreign = loop.newest_command();
+  foreign.head.run = 12345;
+  loop.command.writer.publish(foreign);
+  loop.driver.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kHeld) << "cycle " << cycle << " was overwritten by a foreign run";
+  EXPECT_EQ(loop.gate().command_cycle, cycle - 1);
+}
+
+TEST_F(RunningLoop, BrakesOnACommandWhoseChecksumIsWrong) {
+  CommandFrame broken = loop.newest_command();
+  broken.joints[0].effort += 1;
+  loop.command.writer.store(broken);
+  loop.driver.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+  EXPECT_NE(loop.gate().reasons & kGateChecksum, 0u);
+}
+
+TEST_F(RunningLoop, IgnoresSensorsOfAnotherRobot) {
+  loop.sensors.memory->head.robot_hash.store(8);
+  loop.driver.step();
+  EXPECT_FALSE(loop.estimator->step());
+  EXPECT_FALSE(loop.monitor->step());
+}
+
+TEST_F(RunningLoop, PassesATokenOn) {
+  SensorFrame token{};
+  token.head = {.run = 1, .cycle = loop.driver.next_cycle(), .stamp_ns = 0, .kind = FrameKind::kToken};
+  loop.sensors.writer.publish(token);
+  StateFrame state;
+  CommandFrame command;
+  Permit permit;
+  EXPECT_FALSE(loop.estimator->step());
+  EXPECT_FALSE(loop.controller->step());
+  EXPECT_FALSE(loop.monitor->step());
+  EXPECT_EQ(loop.state.reader.at(1, token.head.cycle, state), Lookup::kToken);
+  EXPECT_EQ(loop.command.reader.at(1, token.head.cycle, command), Lookup::kToken);
+  EXPECT_EQ(loop.permit.reader.at(1, token.head.cycle, permit), Lookup::kToken);
+}
+
+TEST_F(RunningLoop, CountsATokenAsAMissingCommand) {
+  loop.driver.step();
+  loop.estimator->step();
+  loop.monitor->step();
+  CommandFrame token{};
+  token.head = {.run = 1, .cycle = loop.driver.next_cycle() - 1, .stamp_ns = 0, .kind = FrameKind::kToken};
+  loop.command.writer.publish(token);
+  loop.driver.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kHeld);
+}
+
+TEST_F(RunningLoop, LatchesTheLossOfTheDriverOnceItIsSilent) {
+  loop.monitor->silence();
+  EXPECT_NE(loop.newest_permit().causes & kCauseDriverLost, 0u);
+  loop.steps(5);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+}
+
+TEST_F(RunningLoop, NeverAllocates) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  const AllocationGuard guard;
+  loop.steps(100);
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST(FirstCycles, BrakeUntilEveryNodeWasSeen) {
+  Loop loop;
+  loop.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+  EXPECT_EQ(loop.gate().reasons & kGateFirstTick, kGateFirstTick);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kInit);
+  EXPECT_EQ(loop.newest_permit().missing, kMissingState | kMissingCommand);
+  loop.step();
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kReady);
+}
+
+TEST(FirstCycles, NameTheNodeThatIsMissing) {
+  Loop loop;
+  for (int tick = 0; tick < 50; ++tick) {
+    loop.driver.step();
+    loop.estimator->step();
+    loop.monitor->step();
+  }
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kInit);
+  EXPECT_EQ(loop.newest_permit().missing, kMissingCommand);
+  EXPECT_EQ(loop.newest_permit().causes, 0u) << "nothing latches before the loop was closed";
+}
+
+}  // namespace
+}  // namespace robot_control
