@@ -1,0 +1,53 @@
+#pragma once
+/// Speed of a wheel from its travel: a third-order tracking loop (fading-memory α-β-γ filter; A. Gelb, Applied
+/// Optimal Estimation, 1974, section 9.1; E. Brookner, Tracking and Kalman Filtering Made Easy, 1998, section 7).
+///
+///   predict  v̂ ← v + a·dt,  e = travel − (v·dt + a·dt²/2 + residual)
+///   correct  residual, v̂, a by  1 − β³,  3/2 (1 − β)² (1 + β) / dt,  (1 − β)³ / dt²  of e
+///   β = exp(−2π · bandwidth · dt)
+///
+/// Three equal poles; no steady error at constant speed or acceleration. Differencing a 4096-count encoder at
+/// 1 kHz has a quantum of 1.5 rad/s; at 20 Hz this loop leaves about 1 % of it.
+
+#include <cmath>
+#include <numbers>
+
+namespace robot_control {
+
+class SpeedTracker {
+ public:
+  /// Hz, s; both > 0.
+  SpeedTracker(double bandwidth, double period) noexcept
+      : bandwidth_(bandwidth), period_(period), period_beta_(beta(period)) {}
+
+  /// m/s
+  void reset(double speed) noexcept {
+    speed_ = speed;
+    acceleration_ = 0;
+    residual_ = 0;
+  }
+
+  /// `travel`: m over the last `dt` seconds, dt > 0.
+  void step(double travel, double dt) noexcept {
+    const double b = dt == period_ ? period_beta_ : beta(dt);
+    const double fade = 1 - b;
+    const double error = residual_ + travel - (speed_ + acceleration_ * dt / 2) * dt;
+    residual_ = b * b * b * error;
+    speed_ += acceleration_ * dt + 1.5 * fade * fade * (1 + b) * error / dt;
+    acceleration_ += fade * fade * fade * error / (dt * dt);
+  }
+
+  double speed() const noexcept { return speed_; }  ///< m/s
+
+ private:
+  double beta(double dt) const noexcept { return std::exp(-2 * std::numbers::pi * bandwidth_ * dt); }
+
+  double bandwidth_;
+  double period_;
+  double period_beta_;
+  double speed_ = 0;
+  double acceleration_ = 0;
+  double residual_ = 0;  ///< m: measured minus tracked position
+};
+
+}  // namespace robot_control
