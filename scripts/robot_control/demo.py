@@ -205,12 +205,17 @@ def _interrupt(signal_number: int, _frame: FrameType | None) -> None:
     raise KeyboardInterrupt(signal.Signals(signal_number).name)
 
 
-def main() -> int:
-    """Entry point of scripts/demo."""
+def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    """The command line of scripts/demo: `seconds` and `out`; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=Path, default=Path("demo_out"), help="folder (default ./demo_out)")
-    given = parser.parse_args()
+    return parser.parse_args(arguments)
+
+
+def main() -> int:
+    """Entry point of scripts/demo."""
+    given = parse()
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         return run_demo(given.seconds, given.out.resolve())

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import matplotlib as mpl
 
 mpl.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402 - the backend must be chosen before
+import matplotlib.pyplot as plt
 import numpy as np
 
 from robot_control.run_log import Log, joint_names
@@ -39,15 +39,15 @@ def draw_run(log: Log, summary: RunSummary, title: str, path: Path) -> None:
     """Writes a PNG of 1760 × 990 pixels."""
     with mpl.rc_context(STYLE):
         figure = plt.figure(figsize=(16, 9), layout="constrained")
-        figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)  # type: ignore[union-attr,call-arg]
+        figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
         grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.35))
         figure.suptitle(title, fontsize=15, fontweight="bold", x=0.01, ha="left")
         _draw_path(figure.add_subplot(grid[:, 0]), log, summary)
         linear = figure.add_subplot(grid[0, 1])
         angular = figure.add_subplot(grid[1, 1], sharex=linear)
         torque = figure.add_subplot(grid[2, 1], sharex=linear)
-        _draw_speed(linear, log, summary, "linear", "Speed", "m/s")
-        _draw_speed(angular, log, summary, "angular", "Yaw rate", "rad/s")
+        _draw_speed(linear, log, summary, "linear")
+        _draw_speed(angular, log, summary, "angular")
         _draw_torques(torque, log)
         for axes in (linear, angular):
             axes.tick_params(labelbottom=False)
@@ -61,7 +61,9 @@ def _draw_path(axes: Axes, log: Log, summary: RunSummary) -> None:
     x, y, _ = commanded_path(log)
     axes.plot(x, y, color=COMMANDED, linewidth=5, alpha=0.5, label="commanded")
     axes.plot(log["truth_x"], log["truth_y"], color=TRUE, linewidth=2, label="true")
-    axes.plot(log["estimate_x"], log["estimate_y"], color=ESTIMATED, linewidth=2, linestyle=(0, (3, 2)), label="estimated")
+    axes.plot(
+        log["estimate_x"], log["estimate_y"], color=ESTIMATED, linewidth=2, linestyle=(0, (3, 2)), label="estimated"
+    )
     axes.plot(0, 0, "o", color="black", markersize=7)
     axes.annotate("start", (0, 0), xytext=(8, -14), textcoords="offset points")
     known = np.flatnonzero(~np.isnan(log["truth_x"]))
@@ -85,7 +87,8 @@ def _path_title(summary: RunSummary) -> str:
     return f"Path: {tracking.distance:.2f} m, estimate off by {tracking.position_error * 1000:.1f} mm"
 
 
-def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str, name: str, unit: str) -> None:
+def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str) -> None:
+    name, unit = ("Speed", "m/s") if component == "linear" else ("Yaw rate", "rad/s")
     time = log["time"]
     axes.plot(time, log[f"requested_{component}"], color=COMMANDED, linewidth=1.2, linestyle=":", label="requested")
     axes.plot(time, log[f"limited_{component}"], color=COMMANDED, linewidth=4, alpha=0.5, label="within limits")
@@ -109,7 +112,14 @@ def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str, name:
 def _draw_torques(axes: Axes, log: Log) -> None:
     for joint, color in zip(joint_names(log), JOINTS, strict=False):
         name = joint.removesuffix("_joint").replace("_", " ")
-        axes.plot(log["time"], log[f"{joint}_effort_command"], color=color, linewidth=0.8, alpha=0.45, label=f"{name}, commanded")
+        axes.plot(
+            log["time"],
+            log[f"{joint}_effort_command"],
+            color=color,
+            linewidth=0.8,
+            alpha=0.45,
+            label=f"{name}, commanded",
+        )
         axes.plot(log["time"], log[f"{joint}_effort"], color=color, linewidth=1.2, label=f"{name}, actual")
     axes.set_title("Torque")
     axes.set_ylabel("torque [N·m]")

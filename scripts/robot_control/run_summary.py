@@ -135,7 +135,8 @@ def _motion_lines(summary: RunSummary) -> list[str]:
         lines.append(f"  {check.name:<32}{check.value * 100:10.3f} %{check.tolerance * 100:10.0f} %{verdict:>12}")
     lines.append(f"  {'RMS, linear [mm/s]':<32}{tracking.linear.rms_error * 1000:12.3f}")
     lines.append(f"  {'RMS, angular [mrad/s]':<32}{tracking.angular.rms_error * 1000:12.3f}")
-    lines.append(f"  {'estimated position [mm], yaw [mrad]':<32}{tracking.position_error * 1000:9.2f}{tracking.yaw_error * 1000:12.2f}")
+    lines.append(f"  {'estimated position [mm]':<32}{tracking.position_error * 1000:12.3f}")
+    lines.append(f"  {'estimated yaw [mrad]':<32}{tracking.yaw_error * 1000:12.3f}")
     if tracking.excused_cycles:
         lines.append(f"  {'cycles excused after a brake':<32}{tracking.excused_cycles:12d}")
     return lines

@@ -139,7 +139,8 @@ def excused_rows(log: Log) -> BoolArray:
         return np.zeros(late.shape, dtype=bool)
     previous = np.searchsorted(braked, log["cycle"], side="right") - 1
     since = log["cycle"] - braked[np.maximum(previous, 0)]
-    return (previous >= 0) & (since <= EXCUSED_CYCLES)
+    excused: BoolArray = (previous >= 0) & (since <= EXCUSED_CYCLES)
+    return excused
 
 
 def judge(log: Log, linear: float, angular: float) -> Tracking:
@@ -215,7 +216,10 @@ def commanded_path(log: Log) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 def _is_twist(log: Log, prefix: str, linear: float, angular: float) -> BoolArray:
     # 1e-9: the values are the very ones that were sent; what differs is another command.
-    return (np.abs(log[f"{prefix}_linear"] - linear) < 1e-9) & (np.abs(log[f"{prefix}_angular"] - angular) < 1e-9)
+    same: BoolArray = (np.abs(log[f"{prefix}_linear"] - linear) < 1e-9) & (
+        np.abs(log[f"{prefix}_angular"] - angular) < 1e-9
+    )
+    return same
 
 
 def _integrate(log: Log, row: int) -> Pose:

@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+"""Counts test cases in result files and prints the last line of scripts/test.
+
+usage: count_tests.py FOLDER…
+
+JUnit files of gtest, pytest and rosunit count case by case. CTest's own Test.xml counts a whole entry, and only when
+it failed without any failed case in a JUnit file of its name: a program that crashed, hung or never started.
+Exit code 0 if and only if something passed and nothing failed.
+"""
+
+import sys
+import xml.etree.ElementTree as ET
+from collections import Counter
+from pathlib import Path
+
+PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
+
+
+def outcome(case: ET.Element) -> str:
+    """Of one <testcase>."""
+    if case.find("failure") is not None or case.find("error") is not None:
+        return FAILED
+    if case.find("skipped") is not None or case.get("status") == "notrun" or case.get("result") == "skipped":
+        return SKIPPED
+    return PASSED
+
+
+def count_junit(root: ET.Element) -> Counter[str]:
+    """Cases of one JUnit file by outcome."""
+    return Counter(outcome(case) for case in root.iter("testcase"))
+
+
+def failed_entries(root: ET.Element) -> set[str]:
+    """Names of the CTest entries that failed, from Test.xml."""
+    return {test.findtext("Name", "") for test in root.iter("Test") if test.get("Status") == FAILED}
+
+
+def is_summary_of_nodes(path: Path) -> bool:
+    """rostest writes rosunit-NAME.xml with the cases, and rostest-NAME.xml with one line per node that ran them."""
+    return path.name.startswith("rostest-")
+
+
+def count(folders: list[Path]) -> tuple[Counter[str], list[str]]:
+    """All cases, and the CTest entries and files that failed as a whole."""
+    total: Counter[str] = Counter()
+    wholly_failed: list[str] = []
+    explained: set[str] = set()
+    entries: set[str] = set()
+    for path in sorted(file for folder in folders for file in folder.rglob("*.xml")):
+        try:
+            root = ET.parse(path).getroot()
+        except ET.ParseError:  # its writer was killed
+            wholly_failed.append(f"{path} (broken)")
+            continue
+        if path.name == "Test.xml":
+            entries |= failed_entries(root)
+            continue
+        if root.tag not in ("testsuites", "testsuite"):
+            continue
+        cases = count_junit(root)
+        if is_summary_of_nodes(path):
+            cases = Counter({FAILED: cases[FAILED]})
+        if cases[FAILED]:
+            explained.add(path.stem)
+        total += cases
+    wholly_failed += [
+        entry
+        for entry in sorted(entries)
+        if not any(stem == entry or stem.removeprefix("rosunit-") in entry for stem in explained)
+    ]
+    total[FAILED] += len(wholly_failed)
+    return total, wholly_failed
+
+
+def main(folders: list[str]) -> int:
+    """Prints what failed as a whole, then the line."""
+    total, wholly_failed = count([Path(folder) for folder in folders])
+    for name in wholly_failed:
+        print(f"failed as a whole: {name}")
+    print(f"{total[PASSED]} passed, {total[FAILED]} failed, {total[SKIPPED]} skipped")
+    return 0 if total[PASSED] > 0 and total[FAILED] == 0 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

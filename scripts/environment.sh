@@ -1,0 +1,55 @@
+# shellcheck shell=bash
+# Sourced by the scripts beside it: where the repository is, whose tools are meant, how ROS is reached.
+
+set -euo pipefail
+REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$REPOSITORY"
+
+# Debian's ROS belongs to Debian's Python; another python3 or cmake may stand first on the caller's PATH.
+export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
+PYTHON=/usr/bin/python3
+unset PYTHONHOME
+LINTERS=$REPOSITORY/build/linters  # venv with ruff and mypy
+
+say() { printf '== %s\n' "$*"; }
+fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
+
+# One compiler per processor, but no more than one per 2 GB: the optimiser needs about 1 GB on Eigen.
+compilers() {
+  local processors memory_gb
+  processors=$(nproc)
+  memory_gb=$(awk '/^MemAvailable/ {print int($2 / 2000000)}' /proc/meminfo)
+  echo $(( memory_gb < 1 ? 1 : memory_gb < processors ? memory_gb : processors ))
+}
+
+# colcon reads its own environment scripts under `set -u` badly.
+source_install_space() {
+  set +u
+  # shellcheck disable=SC1091
+  source "$REPOSITORY/install/setup.bash"
+  set -u
+}
+
+free_loopback_port() {
+  $PYTHON -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
+}
+
+# A ROS of our own on this machine alone, so that no other master is met and none is disturbed.
+use_private_ros_master() {
+  ROS_MASTER_URI=http://127.0.0.1:$(free_loopback_port)
+  export ROS_MASTER_URI ROS_IP=127.0.0.1
+  unset ROS_HOSTNAME ROS_NAMESPACE
+}
+
+build_workspace() {
+  local started=$SECONDS log=build/colcon.log
+  mkdir -p build
+  touch build/COLCON_IGNORE
+  say "building (progress: $REPOSITORY/$log)"
+  if ! MAKEFLAGS="-j$(compilers)" colcon build --event-handlers console_direct+ \
+      --cmake-args -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=$PYTHON >"$log" 2>&1 </dev/null; then
+    grep -n -A6 -E 'error:|Error |CMake Error|undefined reference' "$log" | head -60 >&2 || tail -40 "$log" >&2
+    fail "the build failed; all of it is in $REPOSITORY/$log"
+  fi
+  say "built in $((SECONDS - started)) s"
+}

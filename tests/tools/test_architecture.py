@@ -1,0 +1,159 @@
+"""Which folder may know which. What this test refuses is a change of architecture, not of style."""
+
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SRC = ROOT / "src"
+
+CORE = {"signals", "rt", "robot", "estimation", "control", "safety", "hal", "drivers", "parameters", "runtime"}
+MAY_INCLUDE = {
+    "signals": set(),
+    "rt": {"signals"},
+    "robot": {"signals"},
+    "estimation": {"signals", "robot"},
+    "control": {"signals", "robot"},
+    "safety": {"signals", "robot"},
+    "hal": {"signals", "rt", "robot"},
+    "drivers": {"signals", "hal", "robot", "rt"},
+    # The schema fills in the parameter structs that the laws define.
+    "parameters": {"signals", "rt", "robot", "estimation", "control", "safety", "drivers"},
+    "telemetry": {"signals"},
+    # What each node does in one cycle, and the process around it.
+    "runtime": {"signals", "rt", "robot", "parameters", "estimation", "control", "safety", "hal", "telemetry"},
+    "simulation": CORE | {"telemetry"},
+    "python": CORE | {"telemetry", "simulation"},
+    "bridge": CORE | {"telemetry"},
+    "nodes": CORE | {"telemetry", "bridge"},
+}
+ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
+MUJOCO = re.compile(r"^mujoco")
+CLOCK = re.compile(r"\bclock_gettime\b|\bclock_nanosleep\b|\b\w*_clock::now\b|\bgettimeofday\b|\bnanosleep\b")
+MONOTONIC = re.compile(r"\bmonotonic_ns\b")
+
+FILES = sorted(path for path in SRC.rglob("*") if path.suffix in (".h", ".cpp"))
+
+
+def includes(path):
+    return re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', path.read_text(), re.MULTILINE)
+
+
+def code(path):
+    """Text without comments and strings."""
+    return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"', "", path.read_text(), flags=re.DOTALL)
+
+
+def folder(path):
+    return path.relative_to(SRC).parts[0]
+
+
+def violations(rule):
+    return [f"{path.relative_to(ROOT)}: {found}" for path in FILES for found in rule(path)]
+
+
+def test_every_folder_has_its_rule():
+    assert {folder(path) for path in FILES} <= set(MAY_INCLUDE)
+
+
+def test_the_rules_have_no_circle():
+    order, left = [], dict(MAY_INCLUDE)
+    while left:
+        free = [name for name, others in left.items() if others <= set(order)]
+        assert free, f"these depend on each other: {sorted(left)}"
+        order += free
+        for name in free:
+            del left[name]
+
+
+def test_folders_include_only_what_they_may():
+    def rule(path):
+        own = folder(path)
+        for name in includes(path):
+            other = name.split("/")[0]
+            if "/" in name and other in MAY_INCLUDE and other != own and other not in MAY_INCLUDE[own]:
+                yield f"{own} includes {name}"
+
+    assert violations(rule) == []
+
+
+def test_project_headers_are_named_from_the_root():
+    def rule(path):
+        for name in includes(path):
+            if (path.parent / name).is_file() and not (SRC / name).is_file():
+                yield f"write {folder(path)}/{name}"
+
+    assert violations(rule) == []
+
+
+def test_only_bridge_and_nodes_see_ros():
+    def rule(path):
+        if folder(path) not in ("bridge", "nodes"):
+            yield from (name for name in includes(path) if ROS.match(name))
+
+    assert violations(rule) == []
+
+
+def test_only_drivers_see_mujoco():
+    def rule(path):
+        if folder(path) != "drivers":
+            yield from (name for name in includes(path) if MUJOCO.match(name))
+
+    assert violations(rule) == []
+
+
+def test_only_rt_reads_clocks():
+    def rule(path):
+        if folder(path) != "rt":
+            yield from CLOCK.findall(code(path))
+
+    assert violations(rule) == []
+
+
+def test_laws_and_drivers_are_given_their_time():
+    """runtime hands rt's clock to the cycles; ordinary threads of bridge, telemetry and nodes may look at it."""
+
+    def rule(path):
+        if folder(path) not in ("rt", "runtime", "bridge", "nodes", "telemetry"):
+            yield from MONOTONIC.findall(code(path))
+
+    assert violations(rule) == []
+
+
+def test_only_the_bridge_knows_ros_time():
+    def rule(path):
+        if folder(path) != "bridge":
+            yield from re.findall(r"\bros::(?:Time|WallTime|SteadyTime)::now\b", code(path))
+
+    assert violations(rule) == []
+
+
+def test_linked_libraries_are_included_libraries():
+    """CMake's wall is the same wall."""
+    wrong = []
+    for path in SRC.glob("*/CMakeLists.txt"):
+        own = path.parent.name
+        text = re.sub(r"#[^\n]*", "", path.read_text())
+        linked = set(re.findall(r"\brc_(\w+)", text)) - {own}
+        wrong += [f"{own} links rc_{other}" for other in sorted(linked - MAY_INCLUDE.get(own, set()))]
+    assert wrong == []
+
+
+def test_source_files_stay_small():
+    """One concept per file; 400 lines hold one, with the header that tells its law."""
+    assert [str(path.relative_to(ROOT)) for path in FILES if len(path.read_text().splitlines()) > 400] == []
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        path
+        for pattern in ("package.xml", "launch/*.launch", "urdf/**/*.urdf", "urdf/**/*.xml", "tests/**/*.test")
+        for path in sorted(ROOT.glob(pattern))
+    ],
+    ids=lambda path: str(path.relative_to(ROOT)),
+)
+def test_xml_is_well_formed(path):
+    ET.parse(path)

@@ -1,0 +1,53 @@
+import sys
+
+import pytest
+
+from robot_control import bench
+
+ROW = '{"name": "gate step", "value": 88.5, "unit": "ns", "reference": 59, "reference_name": "kernel", "ratio": 1.5}'
+
+
+def test_every_figure_stands_beside_its_ratio():
+    row = {
+        "name": "gate step",
+        "value": 88.5,
+        "unit": "ns",
+        "reference": 59.0,
+        "reference_name": "kernel",
+        "ratio": 1.5,
+    }
+    line = bench.to_table({"bench": "step", "rows": [row]}).splitlines()[1]
+    assert line.split() == ["gate", "step", "88.5", "ns", "59", "1.500", "of", "kernel"]
+
+
+def test_a_count_has_no_reference():
+    row = {"name": "gate allocations", "value": 0, "unit": "", "reference": 0, "reference_name": "none", "ratio": 0}
+    assert bench.to_table({"bench": "step", "rows": [row]}).splitlines()[1].split() == ["gate", "allocations", "0"]
+
+
+def program(folder, text):
+    path = folder / "bench_step"
+    path.write_text(f"#!{sys.executable}\n{text}\n")
+    path.chmod(0o755)
+
+
+def test_what_the_programs_print_is_written_to_the_file(tmp_path, monkeypatch):
+    program(tmp_path, f'print(\'{{"bench": "step", "rows": [{ROW}]}}\')')
+    monkeypatch.setattr(
+        sys, "argv", ["bench", "step", "--programs", str(tmp_path), "--json", str(tmp_path / "all.json")]
+    )
+    assert bench.main() == 0
+    assert '"ratio": 1.5' in (tmp_path / "all.json").read_text()
+
+
+@pytest.mark.parametrize("text", ["raise SystemExit(1)", "print('no JSON')"])
+def test_a_program_that_fails_is_a_failure(tmp_path, monkeypatch, text):
+    program(tmp_path, text)
+    monkeypatch.setattr(sys, "argv", ["bench", "step", "--programs", str(tmp_path)])
+    assert bench.main() == 1
+
+
+def test_an_unknown_name_is_refused(capsys):
+    with pytest.raises(SystemExit):
+        bench.parse(["warp"])
+    assert "no benchmark warp; there are step, lockstep" in capsys.readouterr().err
