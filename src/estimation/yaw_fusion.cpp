@@ -24,7 +24,7 @@ void YawFusion::step(const YawSources& sources) noexcept {
   const double dt = sources.dt;
   const double smoothing = dt / (kSmoothing + dt);
   const double slip_density = square(parameters_.wheel_slip_noise / parameters_.wheel_base);  // rad²/m
-  speed_ += smoothing * (sources.travel / dt - speed_);
+  speed_ += dt / (kSpeedSmoothing + dt) * (sources.travel / dt - speed_);
   wheel_variance_ = slip_density * sources.travel;
   if (!sources.gyro) {
     innovation_ = 0;

@@ -5,7 +5,7 @@
 ///   gyro     q_g = gyro_noise² + gyro_turn_noise² · |ω| + σ_b² · kBiasHorizon
 ///   gain     K = q_w / (q_w + q_g)        turn = turn_wheels + K · (turn_gyro − turn_wheels)
 ///
-/// s is smoothed over kSmoothing, so that K does not depend on in which cycle an encoder counts: weighting
+/// s is smoothed over kSpeedSmoothing, so that K does not depend on in which cycle an encoder counts: weighting
 /// the cycles between two counts by their own travel would lose most of a slow turn. At rest s → 0, K → 0: the
 /// gyro's noise does not turn a standing robot. A bias error σ_b is not white; over the horizon between two
 /// stops it weighs like the density above.
@@ -39,9 +39,10 @@ struct YawSources {
 
 class YawFusion {
  public:
-  static constexpr double kSmoothing = 0.05;    ///< s
-  static constexpr double kBiasHorizon = 10.0;  ///< s, a leg between two stops
-  static constexpr double kSlipNis = 9.0;       ///< three standard deviations
+  static constexpr double kSmoothing = 0.05;      ///< s, of the innovation
+  static constexpr double kSpeedSmoothing = 0.5;  ///< s, long against the time between two counts
+  static constexpr double kBiasHorizon = 10.0;    ///< s, a leg between two stops
+  static constexpr double kSlipNis = 9.0;         ///< three standard deviations
 
   explicit YawFusion(const YawFusionParameters& parameters) noexcept : parameters_(parameters) {}
 
