@@ -152,11 +152,8 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
     if (value != values.end()) {
       overlay.text = value->second;
     } else if (!text) {
-      overlay.text = "10";  // within the range of all the others
-    }
-    if (overlay.path == "state_estimator.wheel_slip_noise" || overlay.path == "state_estimator.gyro_noise" ||
-        overlay.path == "state_estimator.standstill_speed") {
-      overlay.text = "1";
+      const bool small = overlay.path.starts_with("state_estimator.");
+      overlay.text = small ? "1" : "10";  // within the range of all the others
     }
   }
   const Parameters parameters = read_parameters("", all);
@@ -352,6 +349,33 @@ TEST(Schema, EveryKeyHasAFieldOfItsOwn) {
       EXPECT_EQ(fresh, key.other_name_of.empty()) << path_of(block, key);
     }
   }
+}
+
+// These structs have no padding: if their members' sizes add up, none lacks a key.
+TEST(Schema, EveryMemberOfALawsParametersHasAKey) {
+  Parameters parameters;
+  const auto bytes_in = [&](const auto& group) {
+    const auto* begin = reinterpret_cast<const char*>(&group);
+    std::map<const char*, std::size_t> sizes;
+    for (const Block& block : schema()) {
+      for (const Key& key : block.keys) {
+        std::visit(
+            [&](auto* value) {
+              const auto* place = reinterpret_cast<const char*>(value);
+              if (place >= begin && place < begin + sizeof(group)) sizes[place] = sizeof(*value);
+            },
+            key.field(parameters));
+      }
+    }
+    std::size_t sum = 0;
+    for (const auto& [place, size] : sizes) sum += size;
+    return sum;
+  };
+  EXPECT_EQ(bytes_in(parameters.robot), sizeof(RobotParameters));
+  EXPECT_EQ(bytes_in(parameters.plant), sizeof(MujocoPlantParameters));
+  EXPECT_EQ(bytes_in(parameters.estimator), sizeof(EstimatorParameters));
+  EXPECT_EQ(bytes_in(parameters.controller), sizeof(DriveControllerParameters));
+  EXPECT_EQ(bytes_in(parameters.safety), sizeof(SafetyParameters));
 }
 
 TEST(Schema, EveryNumberHasARange) {
