@@ -53,7 +53,7 @@ void DriveController::reset(std::uint64_t request_count) noexcept {
   right_.reset();
   last_cycle_.reset();
   periods_ = 1;
-  driving_ = false;
+  driving_ = followed_ = false;
   state_cycle_ = permit_cycle_ = 0;
 }
 
@@ -73,8 +73,9 @@ bool DriveController::measure(const SensorFrame& sensors) noexcept {
   last_cycle_ = sensors.head.cycle;
   const JointSample& left = sensors.joints[left_joint_];
   const JointSample& right = sensors.joints[right_joint_];
-  left_.measure(left, periods_);
-  right_.measure(right, periods_);
+  followed_ = driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kHeldCycles);
+  left_.measure(left, periods_, followed_);
+  right_.measure(right, periods_, followed_);
   standstill_.step({left.position, right.position}, sensors.head.cycle);
   if (std::isfinite(left_.velocity()) && std::isfinite(right_.velocity())) return true;
   // A finite but absurd angle overflowed the tracking loops; they would never recover by themselves.
@@ -97,29 +98,30 @@ std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint6
   return usable_now ? 0u : std::uint64_t{kReasonNoState};
 }
 
+bool DriveController::slow() const noexcept {
+  return std::abs(left_.velocity()) < kStandstillSpeed && std::abs(right_.velocity()) < kStandstillSpeed;
+}
+
 void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   const WheelPair measured{left_.velocity(), right_.velocity()};
   limiter_.seed(kinematics_.twist(measured));
   left_.resume();
   right_.resume();
-  const bool standing = standstill_.standing() ||
-                        (std::abs(measured.left) < kStandstillSpeed && std::abs(measured.right) < kStandstillSpeed);
-  if (standing) {
+  if (standstill_.standing() || slow()) {
     left_.carry(sensors.joints[left_joint_].effort);
     right_.carry(sensors.joints[right_joint_].effort);
   }
 }
 
 void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept {
-  const bool followed =
-      driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kHeldCycles);
-  const bool at_rest = !followed || is_zero(limiter_.value());
-  if (!followed) follow_measured(sensors);
-  if (is_zero(wish) && at_rest && standstill_.standing()) out.reasons |= kReasonHolding;
+  if (!followed_) follow_measured(sensors);
+  const bool at_rest =
+      followed_ ? is_zero(limiter_.value()) && standstill_.standing() : standstill_.standing() || slow();
+  if (is_zero(wish) && at_rest) out.reasons |= kReasonHolding;
   driving_ = (out.reasons & kBrakeReasons) == 0;
   if (!driving_) return;
 
-  if (followed) {
+  if (followed_) {
     const double scale = kinematics_.wheel_speed_scale(wish);
     if (scale < 1) out.reasons |= kReasonSaturated;
     limiter_.step({scale * wish.linear, scale * wish.angular}, periods_ * period_);
@@ -128,7 +130,7 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
   const PlanarTwist& limited = limiter_.value();
   const WheelPair velocity = kinematics_.joint_speeds(limited);
   const WheelPair acceleration = kinematics_.joint_speeds(limiter_.acceleration());
-  const WheelPair feed_forward = followed ? feed_forward_.efforts(limited, limiter_.acceleration()) : WheelPair{};
+  const WheelPair feed_forward = followed_ ? feed_forward_.efforts(limited, limiter_.acceleration()) : WheelPair{};
   const double left = left_.step({velocity.left, acceleration.left, feed_forward.left}, periods_);
   const double right = right_.step({velocity.right, acceleration.right, feed_forward.right}, periods_);
   if (left_.saturated() || right_.saturated()) out.reasons |= kReasonSaturated;

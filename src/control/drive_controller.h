@@ -4,8 +4,9 @@
 /// Every joint is braked (JointMode::kBrake) when
 ///   - there is no live permit, it orders the brake, or its ramp is over;
 ///   - the sensors are not valid, not finite, for another number of joints, or their cycle does not advance;
-///   - the robot holds: zero wish, zero limited twist and both wheels standing (standstill.h). The driver's brake law
-///     keeps the position; the next wish ≠ 0 ends it.
+///   - the robot holds: zero wish, zero limited twist and both wheels standing (standstill.h); straight after a brake
+///     both wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
+///     wish ≠ 0 ends it.
 /// Under a ramp permit the wish is zero and the limits apply. Joints that are not wheels are always braked.
 ///
 /// While the wheels do not follow this controller (it brakes, or the gate reports that tick k−1 was braked) limiter
@@ -74,6 +75,7 @@ class DriveController {
   bool usable(const SensorFrame& sensors) const noexcept;
   std::uint64_t permit_reasons(const Permit* permit, std::uint64_t cycle) const noexcept;
   std::uint64_t state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept;
+  bool slow() const noexcept;
   void follow_measured(const SensorFrame& sensors) noexcept;
   void drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept;
 
@@ -91,6 +93,7 @@ class DriveController {
   std::optional<std::uint64_t> last_cycle_;  ///< of the last usable sample
   double periods_ = 1;                       ///< between the last two usable samples
   bool driving_ = false;                     ///< the last command was not the brake
+  bool followed_ = false;                    ///< the torque before this sample was this controller's
   std::uint64_t state_cycle_ = 0;
   std::uint64_t permit_cycle_ = 0;
 };

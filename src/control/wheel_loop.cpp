@@ -11,10 +11,11 @@ WheelLoop::WheelLoop(const WheelLoopGains& gains, double bandwidth, double effor
 void WheelLoop::reset() noexcept {
   tracked_ = false;
   integral_ = 0;
+  load_ = 0;
   saturated_ = false;
 }
 
-void WheelLoop::measure(const JointSample& sample, double periods) noexcept {
+void WheelLoop::measure(const JointSample& sample, double periods, bool driven) noexcept {
   if (!tracked_) {
     tracking_.seed(sample.position, sample.velocity);
     tracked_ = true;
@@ -23,17 +24,20 @@ void WheelLoop::measure(const JointSample& sample, double periods) noexcept {
   }
   // While commands were skipped the driver held the last one.
   if (periods > 1) plans_[1] = plans_[0];
-  const double surprise = sample.effort - plans_[1].feed_forward;
-  tracking_.step(sample.position, plans_[1].acceleration + surprise / gains_.model_inertia, periods);
+  const WheelPlan& plan = plans_[1];
+  const double surprise = sample.effort - plan.feed_forward - load_;
+  tracking_.step(sample.position, driven ? plan.acceleration + surprise / gains_.model_inertia : 0.0, periods);
 }
 
 void WheelLoop::resume() noexcept {
   plans_.fill({.velocity = velocity()});
+  load_ = integral_;
   saturated_ = false;
 }
 
 void WheelLoop::carry(double effort) noexcept {
   integral_ = std::clamp(effort + gains_.kd * tracking_.acceleration(), -effort_limit_, effort_limit_);
+  load_ = integral_;
 }
 
 double WheelLoop::step(const WheelPlan& plan, double periods) noexcept {

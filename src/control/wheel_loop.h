@@ -10,10 +10,11 @@
 /// integrator has nothing to learn from a ramp that feed-forward drives perfectly.
 ///
 /// The tracking loop is told what the wheel should do anyway and what the measured torque adds to it,
-///   known acceleration over [t_k-1, t_k) = acceleration_plan(k−2) + (effort_measured −
-///   feed_forward(k−2))/model_inertia
-/// Without that, the tracking loop's lag makes a lifted wheel unstable at any useful kp. Plan and torque need not be
-/// right: the loop's residual finds the rest.
+///   known acceleration over [t_k-1, t_k)
+///     = acceleration_plan(k−2) + (effort_measured − feed_forward(k−2) − load)/model_inertia
+/// with the constant load = integral at the last hand-over; under the brake, whose torque is no drive, it is 0. Without
+/// that, the tracking loop's lag makes a lifted wheel unstable at any useful kp. Plan and torque need not be right: the
+/// loop's residual finds the rest.
 ///
 /// Anti-windup by conditional integration: the integrator stops while the clamped sum is pushed further out, and
 /// |integral| ≤ effort_limit. Bumpless: `carry` gives the integrator the load that the brake was holding, so the first
@@ -21,7 +22,7 @@
 ///
 /// Default gains for 12 kg, 1 kHz, 20 Hz (wheel inertia J: lifted 0.005, turning 0.045, straight 0.065 kg·m²):
 ///   model_inertia = 2·J_lifted = 0.01. Told only the encoder angle (model_inertia = ∞) the lifted wheel is stable up
-///     to kp = 0.84. Told the torque, kp may reach kp·dt/model_inertia = 1, that is 10 N·m·s/rad, for *every* inertia
+///     to kp = 0.88. Told the torque, kp may reach kp·dt/model_inertia = 1, that is 10 N·m·s/rad, for *every* inertia
 ///     from 0.005 kg·m² up. Less than 2·J_lifted lowers that limit, more leaves the lifted wheel undamped.
 ///   kp = 2: kp·dt/model_inertia = 0.2, a fifth of the limit; loaded, J/kp = 33 ms.
 ///   ki = 20: kp/ki = 0.1 s, a third of the pace of kp; what friction leaves at the end of a ramp is 0.12 mm (0.27 with
@@ -68,8 +69,8 @@ class WheelLoop {
   /// A new run: the next sample seeds the tracking loop.
   void reset() noexcept;
 
-  /// The sample of this cycle, `periods` ≥ 1 after the last one. Finite.
-  void measure(const JointSample& sample, double periods) noexcept;
+  /// The sample of this cycle, `periods` ≥ 1 after the last one. Finite. `driven`: the torque since was this loop's.
+  void measure(const JointSample& sample, double periods, bool driven) noexcept;
 
   /// The wheel does not follow this loop: whatever was planned is forgotten, the plan is the measured speed.
   void resume() noexcept;
@@ -91,6 +92,7 @@ class WheelLoop {
   TrackingLoop tracking_;
   std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
   double integral_ = 0;
+  double load_ = 0;  ///< N·m, integral at the last hand-over
   bool tracked_ = false;
   bool saturated_ = false;
 };

@@ -16,8 +16,9 @@ namespace robot_control {
 /// `inertia` kg·m² that the wheel really drives, `period` s, `bandwidth` Hz of the tracking loop; all > 0.
 double wheel_loop_spectral_radius(const WheelLoopGains& gains, double inertia, double period, double bandwidth);
 
-/// kp·dt/model_inertia: the quick rule. With kd = 0 the loop is unstable above 1 whatever the wheel drives; aim at
-/// ≤ 0.5. The spectral radius is the criterion.
+/// kp·dt/model_inertia: the quick rule. With kd = 0 and a tracking loop that is slow against the period
+/// (2π·bandwidth·dt ≤ 0.25) the loop is unstable above 1 whatever the wheel drives; aim at ≤ 0.5. The spectral radius
+/// is the criterion.
 double stability_number(const WheelLoopGains& gains, double period) noexcept;
 
 }  // namespace robot_control

@@ -1,0 +1,105 @@
+#include "control/command_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "signals/command_frame.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class CommandWatchTest : public testing::Test {
+ protected:
+  void send(double linear) {
+    request.twist.linear[0] = linear;
+    ++request.count;
+  }
+
+  CommandWatch watch{1.25, 1e-3};
+  VelocityCommand request;
+};
+
+TEST_F(CommandWatchTest, SaysThatNothingWasReceived) {
+  EXPECT_EQ(watch.step(request, 0).linear[0], 0);
+  EXPECT_EQ(watch.reasons(), kReasonNoCommand);
+}
+
+TEST_F(CommandWatchTest, PassesAMessageOnForExactlyItsTimeout) {
+  send(0.5);
+  for (std::uint64_t k = 10; k <= 1260; ++k) ASSERT_EQ(watch.step(request, k).linear[0], 0.5) << "cycle " << k;
+  EXPECT_EQ(watch.step(request, 1261).linear[0], 0);
+  EXPECT_EQ(watch.reasons(), kReasonTimedOut);
+  EXPECT_EQ(watch.request_cycle(), 10u);
+}
+
+TEST_F(CommandWatchTest, CountsATimeoutOnceUntilTheNextMessage) {
+  send(0.5);
+  for (std::uint64_t k = 0; k < 5000; ++k) watch.step(request, k);
+  EXPECT_EQ(watch.timeouts(), 1u);
+  send(0.3);
+  EXPECT_EQ(watch.step(request, 5000).linear[0], 0.3);
+  EXPECT_EQ(watch.reasons(), 0u);
+  for (std::uint64_t k = 5001; k < 9000; ++k) watch.step(request, k);
+  EXPECT_EQ(watch.timeouts(), 2u);
+}
+
+TEST_F(CommandWatchTest, NeverTimesOutWithTimeoutZero) {
+  watch = CommandWatch(0, 1e-3);
+  send(0.5);
+  watch.step(request, 0);
+  EXPECT_EQ(watch.step(request, std::uint64_t{1} << 62).linear[0], 0.5);
+  EXPECT_EQ(watch.timeouts(), 0u);
+}
+
+TEST_F(CommandWatchTest, CountsWholeCyclesOfAPeriodThatIsNotExactInBinary) {
+  for (const double rate : {100.0, 300.0, 1000.0, 2000.0}) {
+    watch = CommandWatch(0.3, 1 / rate);
+    request = {};
+    send(1);
+    const auto cycles = static_cast<std::uint64_t>(std::lround(0.3 * rate));
+    watch.step(request, 0);
+    EXPECT_EQ(watch.step(request, cycles).linear[0], 1) << rate;
+    EXPECT_EQ(watch.step(request, cycles + 1).linear[0], 0) << rate;
+  }
+}
+
+TEST_F(CommandWatchTest, RefusesEveryComponentThatIsNotFiniteUntilAGoodMessageArrives) {
+  std::uint64_t refused = 0;
+  for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      request.twist = {};
+      send(0.5);
+      ASSERT_EQ(watch.step(request, 0).linear[0], 0.5);
+      (i < 3 ? request.twist.linear : request.twist.angular)[i % 3] = bad;
+      ++request.count;
+      EXPECT_EQ(watch.step(request, 1).linear[0], 0);
+      EXPECT_EQ(watch.reasons(), kReasonRefused);
+      EXPECT_EQ(watch.refused(), ++refused);
+      EXPECT_EQ(watch.step(request, 5000).linear[0], 0);
+      EXPECT_EQ(watch.reasons(), kReasonRefused);
+    }
+  }
+  EXPECT_EQ(watch.timeouts(), 0u);
+}
+
+TEST_F(CommandWatchTest, CountsMessagesThatWereOverwrittenInTheInbox) {
+  request.count = 7;
+  watch.step(request, 0);
+  EXPECT_EQ(watch.received(), 7u);
+}
+
+TEST_F(CommandWatchTest, ForgetsInANewRunWhatTheInboxHolds) {
+  send(0.5);
+  watch.step(request, 100);
+  watch.reset(request.count);
+  EXPECT_EQ(watch.step(request, 0).linear[0], 0);
+  EXPECT_EQ(watch.reasons(), kReasonNoCommand);
+  EXPECT_EQ(watch.received(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

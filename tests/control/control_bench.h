@@ -1,0 +1,81 @@
+#pragma once
+/// The controller against the rigid plant with the bus's order of events: the command of cycle k acts over
+/// [t_k+1, t_k+2), the gate's verdict of tick k−1 stands in the sensors of k. Everything is healthy until a test
+/// breaks it.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "control/drive_controller.h"
+#include "control/test_robot.h"
+#include "control/two_wheel_plant.h"
+
+namespace robot_control {
+
+class ControlBench {
+ public:
+  explicit ControlBench(const RobotModel& model = make_test_robot(), const DriveControllerParameters& parameters = {},
+                        double period_s = 1e-3, const std::optional<RobotModel>& truth = {})
+      : period(period_s), controller(parameters, model, period_s), plant(truth.value_or(model)), robot(model) {
+    controller.reset(0);
+    permit.action = PermitAction::kDrive;
+    state.flags = kStateValid;
+    sensors.valid = kValidJoints;
+    sensors.joint_count = model.joints.size();
+  }
+
+  double period;
+  DriveController controller;
+  TwoWheelPlant plant;
+  RobotModel robot;
+  SensorFrame sensors;
+  StateFrame state;
+  Permit permit;
+  bool with_state = true;
+  bool with_permit = true;
+  VelocityCommand request;
+  CommandFrame command;     ///< of the last cycle
+  std::uint64_t cycle = 0;  ///< the next one
+  std::function<void(SensorFrame&)> spoil = [](SensorFrame&) {};
+
+  void send(double linear, double angular) {
+    request.twist = {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+    ++request.count;
+  }
+
+  /// Sensors k → command k; then tick k applies command k−1.
+  void step() {
+    sample();
+    const CommandFrame last = command;
+    const ControlInput input{&sensors, with_state ? &state : nullptr, with_permit ? &permit : nullptr, request};
+    controller.step(input, command);
+    const bool passed =
+        cycle > 0 && with_permit && permit.action != PermitAction::kBrake && last.joints[0].mode == JointMode::kEffort;
+    sensors.gate.verdict = passed ? GateVerdict::kPassed : GateVerdict::kBrake;
+    if (passed) {
+      plant.drive({last.joints[robot.left.joint].effort, last.joints[robot.right.joint].effort}, period);
+    } else {
+      plant.brake(period);
+    }
+    ++cycle;
+  }
+
+  void run(double seconds) {
+    const auto cycles = static_cast<std::uint64_t>(seconds / period + 0.5);
+    for (std::uint64_t i = 0; i < cycles; ++i) step();
+  }
+
+ private:
+  void sample() {
+    const WheelPair angle = plant.measured_angle();
+    sensors.head.cycle = state.head.cycle = permit.head.cycle = cycle;
+    sensors.joints[robot.left.joint] = {
+        .position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left};
+    sensors.joints[robot.right.joint] = {
+        .position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right};
+    spoil(sensors);
+  }
+};
+
+}  // namespace robot_control

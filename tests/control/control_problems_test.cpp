@@ -1,0 +1,56 @@
+#include "control/control_problems.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "control/test_robot.h"
+
+namespace robot_control {
+namespace {
+
+using testing::AllOf;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TEST(ControlProblems, FindsNoneInTheDefaultsFrom500HzTo2kHz) {
+  for (const double rate : {500.0, 1000.0, 2000.0}) {
+    EXPECT_THAT(control_problems({}, make_test_robot(), 1 / rate), IsEmpty()) << rate;
+  }
+}
+
+TEST(ControlProblems, RefusesTheArticlesGainsAndNamesValueRuleAndRemedy) {
+  DriveControllerParameters parameters;
+  parameters.pid_kp = 20;
+  parameters.pid_ki = 0.1;
+  parameters.pid_kd = 0.5;
+  EXPECT_THAT(
+      control_problems(parameters, make_test_robot(), 1e-3),
+      AllOf(SizeIs(2), Each(AllOf(HasSubstr("pid_kp 20"), HasSubstr("must be < 1"), HasSubstr("Use at most")))));
+}
+
+TEST(ControlProblems, RefusesTheDefaultsAt100HzAndItsRemedyIsAccepted) {
+  DriveControllerParameters parameters;
+  const std::vector<std::string> problems = control_problems(parameters, make_test_robot(), 1e-2);
+  ASSERT_THAT(problems, SizeIs(2));
+  const auto advised = [&](const std::string& name) {
+    const std::string advice = problems[0].substr(problems[0].find("Use at most"));
+    return std::stod(advice.substr(advice.find(name) + name.size()));
+  };
+  parameters.pid_kp = advised("pid_kp ");
+  parameters.pid_ki = advised("pid_ki ");
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-2), IsEmpty());
+}
+
+TEST(ControlProblems, RefusesAWheelWithoutTorque) {
+  RobotModel robot = make_test_robot();
+  robot.joints[1].effort_limit = 0;
+  EXPECT_THAT(control_problems({}, robot, 1e-3),
+              testing::ElementsAre(AllOf(HasSubstr("right_wheel_joint"), HasSubstr("effort limit"))));
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,329 @@
+#include "control/drive_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "control/control_bench.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+/// Driving at 0.5 m/s and 0.2 rad/s, healthy.
+class DriveControllerTest : public testing::Test {
+ protected:
+  void SetUp() override { start(); }
+
+  void start() {
+    bench.run(0.3);
+    bench.send(0.5, 0.2);
+    bench.run(1.0);
+  }
+
+  bool braked() const {
+    for (const JointCommand& joint : bench.command.joints) {
+      if (joint.mode != JointMode::kBrake || joint.effort != 0) return false;
+    }
+    return bench.command.twist_limited.linear[0] == 0 && bench.command.twist_limited.angular[2] == 0;
+  }
+
+  double limited() const { return bench.command.twist_limited.linear[0]; }
+
+  ControlBench bench;
+};
+
+TEST_F(DriveControllerTest, DrivesTheArticlesExample) {
+  EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6);
+  EXPECT_NEAR(bench.plant.twist.angular, 0.2, 1e-6);
+  EXPECT_EQ(bench.command.joints[0].mode, JointMode::kEffort);
+  EXPECT_NEAR(bench.command.joints[0].velocity, 4.5, 1e-12);  // rad/s: 0.45 m/s
+  EXPECT_NEAR(bench.command.joints[1].velocity, 5.5, 1e-12);
+  EXPECT_NEAR(bench.command.velocity_measured[0], 4.5, 1e-5);
+  EXPECT_NEAR(bench.command.velocity_measured[1], 5.5, 1e-5);
+  EXPECT_EQ(bench.command.reasons, 0u);
+  EXPECT_EQ(bench.command.joint_count, 2u);
+  EXPECT_EQ(bench.command.requests_received, 1u);
+  EXPECT_EQ(bench.command.request_cycle, 300u);
+  EXPECT_EQ(bench.command.state_cycle, bench.cycle - 1);
+  EXPECT_EQ(bench.command.permit_cycle, bench.cycle - 1);
+}
+
+TEST_F(DriveControllerTest, BrakesWithoutAPermit) {
+  bench.with_permit = false;
+  bench.step();
+  EXPECT_TRUE(braked());
+  EXPECT_EQ(bench.command.reasons, kReasonNoPermit);
+}
+
+TEST_F(DriveControllerTest, BrakesWhenThePermitSaysSo) {
+  bench.permit.action = PermitAction::kBrake;
+  bench.step();
+  EXPECT_TRUE(braked());
+  EXPECT_EQ(bench.command.reasons, kReasonPermitBrake);
+}
+
+TEST_F(DriveControllerTest, BrakesOnAPermitItDoesNotUnderstand) {
+  bench.permit.action = static_cast<PermitAction>(7);
+  bench.step();
+  EXPECT_TRUE(braked());
+}
+
+TEST_F(DriveControllerTest, RampsWithinTheLimitsUnderARampPermit) {
+  bench.permit.action = PermitAction::kRamp;
+  bench.permit.ramp_until = bench.cycle + 1000;
+  double last = limited();
+  for (int k = 0; k < 499; ++k) {
+    bench.step();
+    ASSERT_NEAR(last - limited(), 1e-3, 1e-12);
+    ASSERT_TRUE(bench.command.reasons & kReasonPermitRamp);
+    last = limited();
+  }
+  EXPECT_NEAR(bench.plant.twist.linear, 0, 5e-3);
+}
+
+TEST_F(DriveControllerTest, BrakesAfterTheLastCycleOfARamp) {
+  bench.permit.action = PermitAction::kRamp;
+  bench.permit.ramp_until = bench.cycle;
+  bench.step();
+  EXPECT_FALSE(braked());
+  bench.step();
+  EXPECT_TRUE(braked());
+  EXPECT_TRUE(bench.command.reasons & kReasonPermitBrake);
+}
+
+TEST_F(DriveControllerTest, RampsDownFromTheExactCycleOfTheTimeout) {
+  const std::uint64_t last_good = bench.command.request_cycle + 1250;
+  while (bench.cycle <= last_good) {
+    bench.step();
+    ASSERT_EQ(limited(), 0.5) << "cycle " << bench.cycle;
+  }
+  bench.step();
+  EXPECT_NEAR(limited(), 0.499, 1e-12);
+  EXPECT_TRUE(bench.command.reasons & kReasonTimedOut);
+  EXPECT_EQ(bench.command.timeouts, 1u);
+  EXPECT_EQ(bench.command.twist_requested.linear[0], 0);
+  bench.run(2);
+  EXPECT_EQ(bench.command.timeouts, 1u);
+  EXPECT_TRUE(bench.command.reasons & kReasonHolding);
+}
+
+TEST_F(DriveControllerTest, RefusesNaNCountsItAndRampsDownUntilAGoodCommandArrives) {
+  bench.send(std::nan(""), 0);
+  bench.step();
+  EXPECT_NEAR(limited(), 0.499, 1e-12);
+  EXPECT_TRUE(bench.command.reasons & kReasonRefused);
+  EXPECT_EQ(bench.command.requests_refused, 1u);
+  bench.run(0.1);
+  EXPECT_NEAR(limited(), 0.399, 1e-12);
+  bench.send(0.5, 0.2);
+  bench.run(0.2);
+  EXPECT_EQ(limited(), 0.5);
+  EXPECT_EQ(bench.command.requests_received, 3u);
+}
+
+TEST_F(DriveControllerTest, BrakesOnJointSamplesThatAreNotFinite) {
+  for (double JointSample::*member : {&JointSample::position, &JointSample::velocity, &JointSample::effort}) {
+    bench.send(0.5, 0.2);
+    bench.spoil = [=](SensorFrame& sensors) { sensors.joints[1].*member = std::nan(""); };
+    bench.step();
+    EXPECT_TRUE(braked());
+    EXPECT_TRUE(bench.command.reasons & kReasonBadSensors);
+    bench.spoil = [](SensorFrame&) {};
+    bench.run(0.5);
+    ASSERT_NEAR(bench.plant.twist.linear, 0.5, 1e-3) << "does not recover";
+  }
+}
+
+TEST_F(DriveControllerTest, RecoversFromAnAbsurdAngle) {
+  bench.send(0.5, 0.2);
+  bench.spoil = [](SensorFrame& sensors) { sensors.joints[0].position = 1e308; };
+  bench.step();
+  EXPECT_TRUE(braked());
+  bench.spoil = [](SensorFrame&) {};
+  bench.run(0.8);
+  EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-3);
+}
+
+TEST_F(DriveControllerTest, BrakesOnJointSamplesThatAreNotValid) {
+  bench.spoil = [](SensorFrame& sensors) { sensors.valid = 0; };
+  bench.step();
+  EXPECT_TRUE(braked());
+}
+
+TEST_F(DriveControllerTest, BrakesOnAnotherNumberOfJoints) {
+  bench.spoil = [](SensorFrame& sensors) { sensors.joint_count = 3; };
+  bench.step();
+  EXPECT_TRUE(braked());
+}
+
+TEST_F(DriveControllerTest, BrakesOnACycleThatDoesNotAdvance) {
+  const std::uint64_t stuck = bench.cycle - 1;
+  bench.spoil = [=](SensorFrame& sensors) { sensors.head.cycle = stuck; };
+  bench.step();
+  EXPECT_TRUE(braked());
+}
+
+TEST_F(DriveControllerTest, DrivesOnWithoutAStateAndSaysSo) {
+  bench.with_state = false;
+  const std::uint64_t known = bench.command.state_cycle;
+  bench.run(0.1);
+  EXPECT_EQ(bench.command.reasons, kReasonNoState);
+  EXPECT_EQ(bench.command.state_cycle, known);
+  EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6);
+}
+
+TEST_F(DriveControllerTest, SaysThatTheStateIsInvalid) {
+  bench.state.flags = 0;
+  bench.step();
+  EXPECT_EQ(bench.command.reasons, kReasonNoState);
+}
+
+TEST_F(DriveControllerTest, RestartsItsRampFromTheMeasuredSpeedWhileTheGateBrakes) {
+  bench.send(1, 0);
+  bench.spoil = [](SensorFrame& sensors) { sensors.gate.verdict = GateVerdict::kBrake; };
+  for (int k = 0; k < 200; ++k) {
+    bench.step();
+    ASSERT_NEAR(limited(), bench.plant.twist.linear, 0.01);
+  }
+}
+
+TEST_F(DriveControllerTest, TakesSkippedCyclesIntoTheRamp) {
+  bench.send(0, 0);
+  bench.cycle += 2;
+  bench.step();
+  EXPECT_NEAR(limited(), 0.5 - 0.003, 1e-12);
+}
+
+TEST_F(DriveControllerTest, ReseedsAfterMoreSkippedCyclesThanTheGateHolds) {
+  bench.send(0, 0);
+  bench.cycle += kHeldCycles;
+  bench.step();
+
+  const double measured =
+      0.05 * (bench.command.velocity_measured[0] + bench.command.velocity_measured[1]);  // r/2 of both
+  EXPECT_NEAR(limited(), measured, 1e-12);
+  EXPECT_EQ(bench.command.reasons, 0u);
+}
+
+TEST_F(DriveControllerTest, KeepsTheCurvatureWhenAWheelIsTooFast) {
+  RobotModel slow = make_test_robot();
+  for (JointModel& joint : slow.joints) joint.velocity_limit = 4;  // 0.4 m/s
+  bench = ControlBench(slow);
+  start();
+  const double s = 0.4 / 0.55;
+  EXPECT_NEAR(limited(), s * 0.5, 1e-12);
+  EXPECT_NEAR(bench.command.twist_limited.angular[2], s * 0.2, 1e-12);
+  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
+}
+
+TEST_F(DriveControllerTest, SaysThatATorqueIsAtItsLimitAndDoesNotOvershootForIt) {
+  RobotModel weak = make_test_robot();
+  for (JointModel& joint : weak.joints) joint.effort_limit = 0.4;  // 0.65 N·m would be needed
+  bench = ControlBench(weak);
+  bench.run(0.3);
+  bench.send(0.5, 0);
+  bench.run(0.2);
+  EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
+  EXPECT_EQ(bench.command.joints[0].effort, 0.4);
+  double fastest = 0;
+  for (int k = 0; k < 1000; ++k) {
+    bench.step();
+    fastest = std::fmax(fastest, bench.plant.twist.linear);
+  }
+  EXPECT_LT(fastest, 0.5 * 1.05);
+  EXPECT_NEAR(bench.plant.twist.linear, 0.5, 0.005);
+}
+
+TEST_F(DriveControllerTest, DrivesBackwardsAsItDrivesForwards) {
+  ControlBench back;
+  back.run(0.3);
+  back.send(-0.5, -0.2);
+  back.run(1.0);
+  EXPECT_NEAR(back.plant.twist.linear, -bench.plant.twist.linear, 1e-12);
+  EXPECT_NEAR(back.plant.distance, -bench.plant.distance, 1e-12);
+}
+
+TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
+  RobotModel mirrored = make_test_robot();
+  mirrored.right.sign = -1;
+  bench = ControlBench(mirrored);
+  start();
+  EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6);
+  EXPECT_NEAR(bench.command.joints[1].velocity, -5.5, 1e-12);
+}
+
+TEST_F(DriveControllerTest, BrakesTheJointsThatAreNotWheels) {
+  RobotModel arm = make_test_robot();
+  arm.joints.push_back({.name = "arm", .child_link = "arm", .effort_limit = 1, .velocity_limit = 1});
+  bench = ControlBench(arm);
+  start();
+  EXPECT_EQ(bench.command.joint_count, 3u);
+  EXPECT_EQ(bench.command.joints[0].mode, JointMode::kEffort);
+  EXPECT_EQ(bench.command.joints[2].mode, JointMode::kBrake);
+}
+
+TEST_F(DriveControllerTest, StartsANewRunFromNothing) {
+  bench.controller.reset(bench.request.count);
+  bench.cycle = 0;
+  bench.plant = TwoWheelPlant(make_test_robot());
+  bench.plant.angle = {123, -456};
+  bench.run(0.3);
+  EXPECT_TRUE(bench.command.reasons & kReasonNoCommand);
+  EXPECT_EQ(bench.command.requests_received, 0u);
+  EXPECT_EQ(bench.plant.distance, 0);
+  bench.send(0.5, 0.2);
+  bench.run(1.0);
+  EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6);
+}
+
+TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFaults) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> wish(-3, 3);
+    std::uniform_int_distribution<int> event(0, 400);
+    bench = ControlBench();
+    bench.plant.counts = 4096;
+    int brake = 0;
+    for (int k = 0; k < 8000; ++k) {
+      const int what = event(random);
+      if (what < 3) bench.send(wish(random), wish(random));
+      if (what == 3) bench.send(INFINITY, 0);
+      if (what == 4) brake = 50;
+      bench.permit.action = brake-- > 0 ? PermitAction::kBrake : PermitAction::kDrive;
+      bench.with_permit = what != 5;
+      const CommandFrame before = bench.command;
+      bench.step();
+      for (const JointCommand& joint : bench.command.joints) {
+        ASSERT_TRUE(std::isfinite(joint.effort)) << "seed " << seed;
+        ASSERT_LE(std::abs(joint.effort), 5) << "seed " << seed;
+      }
+      // Plan to plan; a seed is the measured speed and no plan.
+      const std::uint64_t own = kReasonAccelerationLimited;
+      if ((before.reasons & own) && (bench.command.reasons & own)) {
+        ASSERT_LE(std::abs(limited() - before.twist_limited.linear[0]), 1e-3 + 1e-12) << "seed " << seed;
+        ASSERT_LE(std::abs(bench.command.twist_limited.angular[2] - before.twist_limited.angular[2]), 4e-3 + 1e-12)
+            << "seed " << seed;
+      }
+    }
+  }
+}
+
+TEST_F(DriveControllerTest, DoesNotAllocate) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  ControlInput input{&bench.sensors, &bench.state, &bench.permit, bench.request};
+  CommandFrame out;
+  const AllocationGuard guard;
+  for (int k = 0; k < 2000; ++k) {
+    ++bench.sensors.head.cycle;
+    input.request.count += k % 100 == 0 ? 1 : 0;
+    bench.permit.action = k % 500 < 20 ? PermitAction::kBrake : PermitAction::kDrive;
+    bench.controller.step(input, out);
+  }
+  bench.controller.reset(0);
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control

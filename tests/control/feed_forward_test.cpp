@@ -1,0 +1,49 @@
+#include "control/feed_forward.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "control/test_robot.h"
+#include "control/two_wheel_plant.h"
+
+namespace robot_control {
+namespace {
+
+TEST(FeedForward, GivesTheTwelveKilogramRobotItsMeasuredInertias) {
+  const RobotModel robot = make_test_robot();
+  EXPECT_NEAR(straight_inertia(robot, robot.left), 0.065, 1e-15);
+  EXPECT_NEAR(turning_inertia(robot, robot.left), 0.045, 1e-15);
+}
+
+TEST(FeedForward, IsThatInertiaTimesTheWheelsAcceleration) {
+  const FeedForward law(make_test_robot());
+  // 1 m/s² is 10 rad/s² of a 0.1 m wheel; 4 rad/s² of yaw is 1 m/s² at the rim.
+  EXPECT_NEAR(law.efforts({}, {1, 0}).left, 0.65, 1e-14);
+  EXPECT_NEAR(law.efforts({}, {1, 0}).right, 0.65, 1e-14);
+  EXPECT_NEAR(law.efforts({}, {0, 4}).left, -0.45, 1e-14);
+  EXPECT_NEAR(law.efforts({}, {0, 4}).right, 0.45, 1e-14);
+}
+
+TEST(FeedForward, AcceleratesARigidRobotExactlyAsPlanned) {
+  RobotModel robot = make_test_robot();
+  robot.centre_of_gravity_base[0] = 0.05;
+  robot.right.sign = -1;
+  const FeedForward law(robot);
+  const double dt = 1e-3;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-2, 2);
+    TwoWheelPlant plant(robot);
+    plant.twist = {any(random), any(random)};
+    const PlanarTwist before = plant.twist;
+    const PlanarTwist acceleration{any(random), any(random)};
+    plant.drive(law.efforts(before, acceleration), dt);
+    // A difference of speeds of order 1 over 1 ms: rounding of 10⁻¹⁶/10⁻³.
+    EXPECT_NEAR((plant.twist.linear - before.linear) / dt, acceleration.linear, 1e-11) << "seed " << seed;
+    EXPECT_NEAR((plant.twist.angular - before.angular) / dt, acceleration.angular, 1e-11) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace robot_control

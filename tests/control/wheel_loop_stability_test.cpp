@@ -1,0 +1,101 @@
+#include "control/wheel_loop_stability.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "control/wheel_loop.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+constexpr double kBandwidth = 20;
+constexpr double kLifted = 0.005;
+constexpr double kTurning = 0.045;
+constexpr double kStraight = 0.065;
+constexpr double kDoubled = 0.125;  // 24 kg
+
+double radius(const WheelLoopGains& gains, double inertia, double period = kPeriod) {
+  return wheel_loop_spectral_radius(gains, inertia, period, kBandwidth);
+}
+
+/// The classes themselves on one wheel, disturbed at the start: growth per cycle of the envelope between the middle and
+/// the end of `cycles`.
+double simulated_growth(const WheelLoopGains& gains, double inertia, int cycles) {
+  WheelLoop loop(gains, kBandwidth, std::numeric_limits<double>::max(), kPeriod);
+  double angle = 0;
+  double speed = 1e-3;
+  double applied = 0;
+  double pending = 0;
+  double middle = 0;
+  double end = 0;
+  loop.measure({}, 1, true);
+  for (int k = 1; k <= cycles; ++k) {
+    angle += speed * kPeriod + 0.5 * applied / inertia * kPeriod * kPeriod;
+    speed += applied / inertia * kPeriod;
+    loop.measure({.position = angle, .effort = applied}, 1, true);
+    applied = std::exchange(pending, loop.step({}, 1));
+    const int window = cycles / 4;
+    if (k <= cycles / 2 && k > cycles / 2 - window) middle = std::fmax(middle, std::abs(speed));
+    if (k > cycles - window) end = std::fmax(end, std::abs(speed));
+  }
+  return std::pow(end / middle, 2.0 / cycles);
+}
+
+TEST(WheelLoopSpectralRadius, IsBelowOneForTheDefaultGainsWhateverTheWheelDrives) {
+  for (const double inertia : {kLifted, 0.01, 0.02, kTurning, kStraight, kDoubled, 0.5}) {
+    EXPECT_LT(radius({}, inertia), 1) << inertia;
+  }
+}
+
+TEST(WheelLoopSpectralRadius, IsTheOneInTheHeader) {
+  EXPECT_NEAR(radius({}, kLifted), 0.990, 5e-4);
+  EXPECT_NEAR(radius({}, kTurning), 0.987, 5e-4);
+  EXPECT_NEAR(radius({}, kStraight), 0.990, 5e-4);
+  EXPECT_NEAR(radius({}, kDoubled), 0.995, 5e-4);
+}
+
+TEST(WheelLoopSpectralRadius, StaysBelowOneWithAllGainsTimes4_8) {
+  for (const double inertia : {kLifted, kTurning, kStraight, kDoubled}) {
+    EXPECT_LT(radius({4.8 * 2, 4.8 * 20, 0, 0.01}, inertia), 1) << inertia;
+    EXPECT_GT(radius({5.2 * 2, 5.2 * 20, 0, 0.01}, inertia), 1) << inertia;
+  }
+}
+
+TEST(WheelLoopSpectralRadius, IsFarAboveOneForTheArticlesGains) {
+  for (const double inertia : {kLifted, kTurning, kStraight, kDoubled}) {
+    EXPECT_GT(radius({20, 0.1, 0.5, 0.01}, inertia), 7) << inertia;
+    EXPECT_GT(radius({20, 0.1, 0.5, std::numeric_limits<double>::infinity()}, inertia), 1) << inertia;
+  }
+}
+
+TEST(WheelLoopSpectralRadius, IsAboveOneForALiftedWheelWhoseTrackingLoopIsNotToldTheTorque) {
+  const double untold = std::numeric_limits<double>::infinity();
+  EXPECT_GT(radius({2, 20, 0, untold}, kLifted), 1);
+  EXPECT_GT(radius({0.89, 0, 0, untold}, kLifted), 1);
+  EXPECT_LT(radius({0.87, 0, 0, untold}, kLifted), 1);
+}
+
+TEST(WheelLoopSpectralRadius, IsAboveOneOnceTheStabilityNumberIs) {
+  for (const double period : {5e-4, 1e-3, 2e-3}) {
+    const WheelLoopGains gains{1.02 * 0.01 / period, 0, 0, 0.01};
+    EXPECT_NEAR(stability_number(gains, period), 1.02, 1e-12);
+    for (const double inertia : {kLifted, kTurning, kStraight, kDoubled}) {
+      EXPECT_GT(radius(gains, inertia, period), 1) << period << " " << inertia;
+    }
+  }
+}
+
+TEST(WheelLoopSpectralRadius, IsTheGrowthOfTheRealClasses) {
+  // Dominated by a real eigenvalue (the slow integrator), or by a pair that grows: the envelope shows it to 0.1 %.
+  EXPECT_NEAR(simulated_growth({}, kStraight, 1600), radius({}, kStraight), 1e-3);
+  EXPECT_NEAR(simulated_growth({}, kLifted, 1600), radius({}, kLifted), 1e-3);
+  EXPECT_NEAR(simulated_growth({12, 20, 0, 0.01}, kStraight, 400), radius({12, 20, 0, 0.01}, kStraight), 5e-3);
+  EXPECT_NEAR(simulated_growth({20, 0.1, 0.5, 0.01}, kLifted, 60), radius({20, 0.1, 0.5, 0.01}, kLifted), 0.05);
+}
+
+}  // namespace
+}  // namespace robot_control

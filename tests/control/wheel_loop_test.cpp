@@ -1,0 +1,124 @@
+#include "control/wheel_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+constexpr double kLimit = 5;
+
+WheelLoop seeded(double velocity = 0, const WheelLoopGains& gains = {}) {
+  WheelLoop loop(gains, 20, kLimit, kPeriod);
+  loop.measure({.velocity = velocity}, 1, true);
+  return loop;
+}
+
+TEST(WheelLoop, TakesTheSpeedOfItsFirstSampleWithoutATransient) {
+  WheelLoop loop = seeded(3);
+  EXPECT_EQ(loop.velocity(), 3);
+  loop.measure({.position = 3 * kPeriod, .velocity = 3}, 1, true);
+  EXPECT_NEAR(loop.velocity(), 3, 1e-14);
+}
+
+TEST(WheelLoop, PassesFeedForwardThroughWhenThereIsNoError) {
+  WheelLoop loop = seeded();
+  EXPECT_EQ(loop.step({.feed_forward = 0.65}, 1), 0.65);
+}
+
+TEST(WheelLoop, GivesTheCarriedEffortFirst) {
+  WheelLoop loop = seeded(0, {.kd = 0.02});
+  // A moving, accelerating wheel: kd must not show either.
+  for (int k = 1; k <= 50; ++k) {
+    const double t = k * kPeriod;
+    loop.measure({.position = 5 * t * t, .effort = 1.3}, 1, false);
+    loop.resume();
+  }
+  loop.carry(1.3);
+  EXPECT_NEAR(loop.step({.velocity = loop.velocity()}, 1), 1.3, 1e-14);
+}
+
+TEST(WheelLoop, TakesNoBrakeTorqueForAnAcceleration) {
+  WheelLoop loop = seeded();
+  for (int k = 0; k < 100; ++k) {
+    loop.measure({.effort = k < 50 ? 1.3 : -2}, 1, false);
+    loop.resume();
+    ASSERT_EQ(loop.velocity(), 0);
+  }
+}
+
+TEST(WheelLoop, TakesTheLoadAtTheHandOverForNoAcceleration) {
+  WheelLoop loop = seeded();
+  loop.carry(1.3);
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_EQ(loop.step({}, 1), 1.3);
+    loop.measure({.effort = 1.3}, 1, true);
+    ASSERT_EQ(loop.velocity(), 0);
+  }
+}
+
+TEST(WheelLoop, ComparesWithThePlanOfTwoCyclesAgo) {
+  WheelLoop loop = seeded(0, {.kp = 2, .ki = 0});
+  EXPECT_EQ(loop.step({.velocity = 1}, 1), 0);
+  loop.measure({}, 1, true);
+  EXPECT_EQ(loop.step({.velocity = 1}, 1), 0);
+  loop.measure({}, 1, true);
+  EXPECT_NEAR(loop.step({.velocity = 1}, 1), 2, 1e-15);
+}
+
+TEST(WheelLoop, NeverExceedsTheEffortLimitAndSaysThatItIsThere) {
+  WheelLoop loop = seeded();
+  for (int k = 0; k < 10; ++k) {
+    loop.measure({}, 1, true);
+    EXPECT_LE(std::abs(loop.step({.velocity = 1000}, 1)), kLimit);
+  }
+  EXPECT_TRUE(loop.saturated());
+}
+
+TEST(WheelLoop, DoesNotWindUpWhileItIsBlocked) {
+  WheelLoop loop = seeded();
+  const auto push = [&](int cycles) {
+    for (int k = 0; k < cycles; ++k) {
+      loop.measure({.effort = kLimit}, 1, true);
+      loop.step({.velocity = 10}, 1);  // kp·10 = 20 N·m, four times the limit
+    }
+  };
+  push(100);  // until the tracking loop has understood that torque does not move this wheel
+  const double before = loop.integral();
+  push(10000);
+  EXPECT_EQ(loop.integral(), before);
+  EXPECT_LT(std::abs(before), 0.1);
+}
+
+TEST(WheelLoop, HoldsAnIntegralWithinTheEffortLimit) {
+  WheelLoop loop = seeded(0, {.kp = 0, .ki = 100});
+  for (int k = 0; k < 10000; ++k) {
+    loop.measure({}, 1, true);
+    loop.step({.velocity = 10}, 1);
+    ASSERT_LE(loop.integral(), kLimit);
+  }
+  // And leaves the limit at once when the error turns.
+  loop.resume();
+  loop.step({.velocity = -10}, 1);
+  loop.step({.velocity = -10}, 1);
+  loop.step({.velocity = -10}, 1);
+  EXPECT_LT(loop.integral(), kLimit);
+}
+
+TEST(WheelLoop, DoesNotAllocate) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  WheelLoop loop = seeded();
+  const AllocationGuard guard;
+  for (int k = 0; k < 100; ++k) {
+    loop.measure({.position = 0.01 * k}, k % 3 + 1, k % 10 > 0);
+    loop.step({.velocity = 1, .acceleration = 1, .feed_forward = 0.1}, k % 3 + 1);
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control
