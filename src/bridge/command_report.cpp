@@ -1,0 +1,58 @@
+#include "bridge/command_report.h"
+
+#include <array>
+#include <cstdio>
+
+namespace robot_control {
+namespace {
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+}  // namespace
+
+std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
+  std::vector<ReportLine> lines;
+  if (command.head.run != run_) {
+    run_ = command.head.run;
+    received_ = refused_ = timeouts_ = 0;
+    told_ = refusing_ = false;
+  }
+  const bool timed_out = command.timeouts > timeouts_;
+  const bool refused = command.requests_refused > refused_;
+  const bool received = command.requests_received > received_;
+  const bool valid = (command.reasons & (kReasonNoCommand | kReasonTimedOut | kReasonRefused)) == 0;
+  if (timed_out && told_ && (linear_ != 0 || angular_ != 0)) {
+    lines.push_back({true, format("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
+    told_ = false;
+  }
+  if (refused && !refusing_) {
+    lines.push_back({true, "cmd_vel holds NaN or infinity: refused, ramping down to standstill"});
+    told_ = false;
+  }
+  refusing_ = refusing_ || refused;
+  if (received && valid) {
+    const double linear = command.twist_requested.linear[0];
+    const double angular = command.twist_requested.angular[2];
+    if (!told_ || linear != linear_ || angular != angular_) {
+      const double half = angular * wheel_base_ / 2;
+      const char* limited = (command.reasons & kReasonSpeedLimited) != 0 ? ", above the speed limits" : "";
+      lines.push_back({false, format("left %.2f m/s, right %.2f m/s (cmd_vel %g m/s, %g rad/s%s)", linear - half,
+                                     linear + half, linear, angular, limited)});
+    }
+    told_ = true;
+    refusing_ = false;
+    linear_ = linear;
+    angular_ = angular;
+  }
+  received_ = command.requests_received;
+  refused_ = command.requests_refused;
+  timeouts_ = command.timeouts;
+  return lines;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,39 @@
+#pragma once
+/// What the controller tells about the commands it received: every changed value with the wheel speeds it means,
+/// one warning per timeout that stopped a motion, one per series of refused (NaN, infinite) messages. Pure.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "robot/robot_model.h"
+#include "signals/command_frame.h"
+
+namespace robot_control {
+
+struct ReportLine {
+  bool warning = false;
+  std::string text;
+};
+
+class CommandReport {
+ public:
+  CommandReport(const RobotModel& robot, double timeout) noexcept : wheel_base_(robot.wheel_base), timeout_(timeout) {}
+
+  /// Any number of cycles may lie between two frames.
+  std::vector<ReportLine> look(const CommandFrame& command);
+
+ private:
+  double wheel_base_;  ///< m
+  double timeout_;     ///< s
+  std::uint64_t run_ = 0;
+  std::uint64_t received_ = 0;
+  std::uint64_t refused_ = 0;
+  std::uint64_t timeouts_ = 0;
+  bool told_ = false;  ///< `linear_` and `angular_` were told
+  bool refusing_ = false;
+  double linear_ = 0;   ///< m/s, last accepted
+  double angular_ = 0;  ///< rad/s, last accepted
+};
+
+}  // namespace robot_control

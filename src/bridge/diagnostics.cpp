@@ -1,0 +1,78 @@
+#include "bridge/diagnostics.h"
+
+#include <array>
+#include <cstdio>
+
+#include "signals/names.h"
+
+namespace robot_control {
+
+DiagnosticReport::DiagnosticReport(const std::string& node, const std::string& hardware) {
+  message_.level = msg::DiagnosticStatus::OK;
+  message_.name = node;
+  message_.hardware_id = hardware;
+}
+
+void DiagnosticReport::value(const std::string& key, const std::string& text) {
+  msg::KeyValue pair;
+  pair.key = key;
+  pair.value = text;
+  message_.values.push_back(pair);
+}
+
+void DiagnosticReport::value(const std::string& key, double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", number);
+  value(key, std::string(text.data()));
+}
+
+void DiagnosticReport::raise(unsigned char level, const std::string& sentence) {
+  if (level < message_.level) return;
+  if (level > message_.level) message_.message.clear();
+  message_.level = level;
+  if (!message_.message.empty()) message_.message += "; ";
+  message_.message += sentence;
+}
+
+void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing) {
+  std::string names;
+  for (const std::string& name : missing) names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty()) report.warn("waiting for " + names);
+  report.value("waiting_for", names);
+}
+
+void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor) {
+  if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
+  report.value("driver_state", std::string(name_of(sensors.driver_state)));
+  report.value("faults", names_of(kDriverFaultNames, sensors.faults));
+  report.value("cycle", sensors.head.cycle);
+  report.value("real_time_factor", real_time_factor);
+  report.value("overruns", sensors.overruns);
+  report.value("slipped_s", static_cast<double>(sensors.slipped_ns) * 1.0e-9);
+  report.value("gate_verdict", std::string(name_of(sensors.gate.verdict)));
+  report.value("gate_reasons", names_of(kGateReasonNames, sensors.gate.reasons));
+  report.value("commands_held", sensors.gate.held);
+  report.value("commands_missed", sensors.gate.missed);
+  report.value("permits_late", sensors.gate.late_permits);
+  report.value("frames_refused", sensors.gate.refused);
+}
+
+void report_state(DiagnosticReport& report, const StateFrame& state) {
+  if ((state.flags & kStateSlip) != 0) report.warn("wheels and inertial sensors disagree");
+  if ((state.flags & kStateValid) == 0) report.warn("the state is not valid");
+  report.value("cycle", state.head.cycle);
+  report.value("flags", names_of(kStateFlagNames, state.flags));
+  report.value("distance_m", state.distance);
+  report.value("skipped", state.skipped);
+}
+
+void report_permit(DiagnosticReport& report, const Permit& permit) {
+  if (permit.causes != 0) report.error(sentences_of(kStopCauseNames, permit.causes));
+  report.value("cycle", permit.head.cycle);
+  report.value("state", std::string(name_of(permit.state)));
+  report.value("permit", std::string(name_of(permit.action)));
+  report.value("causes", names_of(kStopCauseNames, permit.causes));
+  report.value("active", names_of(kStopCauseNames, permit.active));
+}
+
+}  // namespace robot_control

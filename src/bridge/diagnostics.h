@@ -1,0 +1,41 @@
+#pragma once
+/// One node's entry on /diagnostics (REP 107): worst level, one sentence, named values.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bridge/messages.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+class DiagnosticReport {
+ public:
+  DiagnosticReport(const std::string& node, const std::string& hardware);
+
+  void ok(const std::string& sentence) { raise(msg::DiagnosticStatus::OK, sentence); }
+  void warn(const std::string& sentence) { raise(msg::DiagnosticStatus::WARN, sentence); }
+  void error(const std::string& sentence) { raise(msg::DiagnosticStatus::ERROR, sentence); }
+  void value(const std::string& key, const std::string& text);
+  void value(const std::string& key, double number);
+  void value(const std::string& key, std::uint64_t number) { value(key, std::to_string(number)); }
+
+  const msg::DiagnosticStatus& message() const noexcept { return message_; }
+
+ private:
+  void raise(unsigned char level, const std::string& sentence);
+
+  msg::DiagnosticStatus message_;
+};
+
+/// A node that waits warns, with the names.
+void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing);
+
+void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor);
+void report_state(DiagnosticReport& report, const StateFrame& state);
+void report_permit(DiagnosticReport& report, const Permit& permit);
+
+}  // namespace robot_control

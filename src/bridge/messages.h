@@ -1,0 +1,94 @@
+#pragma once
+/// The messages that cross this folder, in a form that C++20 accepts.
+///
+/// The generated headers of ROS 1 ask the allocator for its member `rebind`, which std::allocator lost in C++20.
+/// MessageAllocator has it; names, checksums and bytes on the wire are templates over the allocator and stay.
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <geometry_msgs/TransformStamped.h>
+#include <geometry_msgs/TwistStamped.h>
+#include <nav_msgs/Odometry.h>
+#include <robot_control/SafetyStatus.h>
+#include <ros/service_traits.h>
+#include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/Imu.h>
+#include <sensor_msgs/JointState.h>
+#include <std_msgs/Bool.h>
+#include <std_msgs/Empty.h>
+#include <std_msgs/Float64MultiArray.h>
+#include <std_srvs/TriggerRequest.h>
+#include <std_srvs/TriggerResponse.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <memory>
+
+namespace robot_control {
+
+template <class T>
+struct MessageAllocator : std::allocator<T> {
+  using std::allocator<T>::allocator;
+  template <class U>
+  struct rebind {
+    using other = MessageAllocator<U>;
+  };
+};
+
+/// Strings stay std::string.
+template <>
+template <>
+struct MessageAllocator<void>::rebind<char> {
+  using other = std::allocator<char>;
+};
+
+namespace msg {
+
+using Allocator = MessageAllocator<void>;
+using Bool = std_msgs::Bool_<Allocator>;
+using Clock = rosgraph_msgs::Clock_<Allocator>;
+using DiagnosticArray = diagnostic_msgs::DiagnosticArray_<Allocator>;
+using DiagnosticStatus = diagnostic_msgs::DiagnosticStatus_<Allocator>;
+using Empty = std_msgs::Empty_<Allocator>;
+using Float64MultiArray = std_msgs::Float64MultiArray_<Allocator>;
+using Imu = sensor_msgs::Imu_<Allocator>;
+using JointState = sensor_msgs::JointState_<Allocator>;
+using KeyValue = diagnostic_msgs::KeyValue_<Allocator>;
+using MultiArrayDimension = std_msgs::MultiArrayDimension_<Allocator>;
+using Odometry = nav_msgs::Odometry_<Allocator>;
+using Quaternion = geometry_msgs::Quaternion_<Allocator>;
+using SafetyStatus = robot_control::SafetyStatus_<Allocator>;
+using TFMessage = tf2_msgs::TFMessage_<Allocator>;
+using TransformStamped = geometry_msgs::TransformStamped_<Allocator>;
+using TriggerRequest = std_srvs::TriggerRequest_<Allocator>;
+using TriggerResponse = std_srvs::TriggerResponse_<Allocator>;
+using Twist = geometry_msgs::Twist_<Allocator>;
+using TwistStamped = geometry_msgs::TwistStamped_<Allocator>;
+using Vector3 = geometry_msgs::Vector3_<Allocator>;
+
+}  // namespace msg
+}  // namespace robot_control
+
+namespace ros::service_traits {
+// std_srvs/Trigger.h itself cannot be included; this is what it says (`rossrv md5 std_srvs/Trigger`).
+struct TriggerMD5Sum {
+  static const char* value() { return "937c9679a518e3a18d831e57125ea522"; }
+  template <class Message>
+  static const char* value(const Message&) {
+    return value();
+  }
+};
+struct TriggerDataType {
+  static const char* value() { return "std_srvs/Trigger"; }
+  template <class Message>
+  static const char* value(const Message&) {
+    return value();
+  }
+};
+template <>
+struct MD5Sum<robot_control::msg::TriggerRequest> : TriggerMD5Sum {};
+template <>
+struct MD5Sum<robot_control::msg::TriggerResponse> : TriggerMD5Sum {};
+template <>
+struct DataType<robot_control::msg::TriggerRequest> : TriggerDataType {};
+template <>
+struct DataType<robot_control::msg::TriggerResponse> : TriggerDataType {};
+}  // namespace ros::service_traits

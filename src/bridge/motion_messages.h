@@ -1,0 +1,46 @@
+#pragma once
+/// Frames → standard messages. Pure: the stamp is an argument, nothing is published here.
+
+#include <ros/time.h>
+
+#include <string>
+
+#include "bridge/messages.h"
+#include "robot/robot_model.h"
+#include "signals/command_frame.h"
+#include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
+#include "signals/truth_frame.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+Twist twist_of(const msg::Twist& message);
+
+/// All joints in the order of the frames: wheels first, left before right.
+msg::JointState joint_states(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
+
+/// Pose in `odom_frame`, twist in `base_frame`; both covariances complete (REP 105, nav_msgs/Odometry).
+msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                       ros::Time stamp);
+
+/// odom_frame → base_frame.
+msg::TransformStamped transform(const msg::Odometry& odometry);
+
+/// What really happens, in the same form; covariances are zero, because truth has none.
+msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
+                           ros::Time stamp);
+
+/// REP 145: in the IMU link's axes; a covariance that begins with −1 says "not measured", all zero "unknown".
+msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
+
+/// Velocity targets of the wheels [rad/s], left, right; dim[0].label is "wheel".
+msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot);
+
+/// The same with names.
+msg::JointState joint_targets(const CommandFrame& command, const RobotModel& robot, ros::Time stamp);
+
+/// After limits.
+msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp);
+
+}  // namespace robot_control

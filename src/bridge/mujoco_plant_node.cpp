@@ -1,0 +1,82 @@
+#include "bridge/mujoco_plant_node.h"
+
+#include <ros/ros.h>
+
+#include "bridge/diagnostics.h"
+#include "bridge/motion_messages.h"
+#include "bridge/pacer.h"
+#include "bridge/process_node.h"
+#include "drivers/mujoco_plant.h"
+#include "runtime/driver_process.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kClockRate = 100;  // Hz of simulated time
+
+class MujocoPlantNode final : public ProcessNode<DriverProcess> {
+ public:
+  explicit MujocoPlantNode(const Setup& setup)
+      : ProcessNode(setup), imu_pace_(report().imu_rate), truth_pace_(report().truth_rate), clock_pace_(kClockRate) {
+    const LoopParameters& loop = parameters().loop;
+    auto plant = std::make_unique<MujocoPlant>(robot(), parameters().plant, loop.period());
+    plant_ = plant.get();
+    ros::param::set("robot_description", robot().urdf);
+    process().open_driver(std::move(plant));
+  }
+
+  void connect(ros::NodeHandle& handle) override {
+    imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
+    truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
+    if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
+  }
+
+  std::int64_t tick_ns() const override {
+    return publish_tick_ns(parameters(), {report().imu_rate, report().truth_rate, kClockRate});
+  }
+
+  void publish() override {
+    if (process().sensors().newest(sensors_) != Lookup::kFrame) return;
+    const FrameHead& head = sensors_.head;
+    time().update(head.stamp_ns);
+    if (clock_ && clock_pace_.due(head.run, head.stamp_ns)) publish_clock();
+    if (imu_pace_.due(head.run, head.stamp_ns)) imu_.publish(imu(sensors_, robot(), time().at(head.stamp_ns)));
+    if (!truth_pace_.due(head.run, head.stamp_ns) || process().truth().newest(truth_frame_) != Lookup::kFrame) return;
+    truth_.publish(
+        ground_truth(truth_frame_, report().odom_frame, report().base_frame, time().at(truth_frame_.head.stamp_ns)));
+  }
+
+  void diagnose(DiagnosticReport& report) override {
+    report_driver(report, sensors_, process().real_time_factor());
+    double slip = 0;
+    for (const double wheel : truth_frame_.slip) slip = std::max(slip, wheel);
+    report.value("wheel_slip_m_s", slip);
+    if (sensors_.driver_state == DriverState::kFault)
+      report.value("fault_message", std::string(plant_->fault_message()));
+  }
+
+ private:
+  void publish_clock() {
+    msg::Clock message;
+    message.clock = time().at(sensors_.head.stamp_ns);
+    clock_.publish(message);
+  }
+
+  const MujocoPlant* plant_ = nullptr;
+  ros::Publisher imu_;
+  ros::Publisher truth_;
+  ros::Publisher clock_;
+  Pacer imu_pace_;
+  Pacer truth_pace_;
+  Pacer clock_pace_;
+  SensorFrame sensors_;
+  TruthFrame truth_frame_;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_mujoco_plant(const Setup& setup) {
+  return std::make_unique<MujocoPlantNode>(setup);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,141 @@
+#include "bridge/node.h"
+
+#include <ros/ros.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "bridge/diagnostics.h"
+#include "bridge/messages.h"
+#include "rt/clock.h"
+#include "rt/realtime_thread.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::int64_t kPollPeriod = 100'000'000;          // ns
+constexpr std::int64_t kDiagnosticPeriod = 1'000'000'000;  // ns
+constexpr std::int64_t kSilentWait = 2'000'000'000;        // ns; who waits longer says for whom
+constexpr unsigned kCallbackThreads = 2;                   // one may wait in a service while the other hears e_stop
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // as a signal handler needs
+
+void interrupt(int /*signal*/) {
+  interrupted.store(true);
+}
+
+/// ROS's own handler would shut the connections down before the node has put its things away.
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = interrupt;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+/// Tells once for whom this node waits, when that has lasted, and once that it is over.
+class WaitingNote {
+ public:
+  void look(const std::vector<std::string>& missing, std::int64_t now_ns) {
+    if (missing.empty()) {
+      if (told_) ROS_INFO("everybody is there");
+      told_ = false;
+      since_ns_ = now_ns;
+      return;
+    }
+    if (told_ || now_ns - since_ns_ < kSilentWait) return;
+    std::string names;
+    for (const std::string& name : missing) names += (names.empty() ? "" : ", ") + name;
+    ROS_WARN("waiting for %s", names.c_str());
+    told_ = true;
+  }
+
+ private:
+  bool told_ = false;
+  std::int64_t since_ns_ = monotonic_ns();
+};
+
+class NodeLoop {
+ public:
+  NodeLoop(Node& node, const Setup& setup, ros::NodeHandle& handle)
+      : node_(node), setup_(setup), diagnostics_(handle.advertise<msg::DiagnosticArray>("/diagnostics", 2)) {}
+
+  void run() {
+    std::int64_t next_ns = monotonic_ns();
+    while (ros::ok() && !interrupted.load() && !node_.finished()) {
+      const std::int64_t now_ns = monotonic_ns();
+      if (now_ns >= next_poll_ns_) poll(now_ns);
+      if (now_ns >= next_diagnostic_ns_) diagnose(now_ns);
+      node_.publish();
+      next_ns = std::max(next_ns + node_.tick_ns(), now_ns);
+      sleep_until(next_ns);
+    }
+  }
+
+ private:
+  void poll(std::int64_t now_ns) {
+    next_poll_ns_ = now_ns + kPollPeriod;
+    node_.poll();
+    waiting_.look(node_.missing(), now_ns);
+    const std::vector<std::string> messages = node_.realtime_messages();
+    for (; realtime_told_ < messages.size(); ++realtime_told_) ROS_WARN("%s", messages[realtime_told_].c_str());
+  }
+
+  void diagnose(std::int64_t now_ns) {
+    next_diagnostic_ns_ = now_ns + kDiagnosticPeriod;
+    DiagnosticReport report(ros::this_node::getName().substr(1), setup_.robot.name);
+    report_missing(report, node_.missing());
+    node_.diagnose(report);
+    msg::DiagnosticArray array;
+    array.header.stamp = ros::Time::now();
+    array.status.push_back(report.message());
+    if (array.status[0].message.empty()) array.status[0].message = "running";
+    diagnostics_.publish(array);
+  }
+
+  Node& node_;
+  const Setup& setup_;
+  ros::Publisher diagnostics_;
+  WaitingNote waiting_;
+  std::size_t realtime_told_ = 0;
+  std::int64_t next_poll_ns_ = 0;
+  std::int64_t next_diagnostic_ns_ = 0;
+};
+
+}  // namespace
+
+int run_node(int argc, char** argv, const std::string& name, RobotSource source, MakeNode make) {
+  try {
+    ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+    const Setup setup = read_setup(name, source);
+    const LoopParameters& loop = setup.parameters.loop;
+    prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
+    const std::unique_ptr<Node> node = make(setup);
+
+    ros::NodeHandle handle;
+    catch_signals();
+    for (const std::string& text : setup.overrides) ROS_INFO("%s", text.c_str());
+    node->connect(handle);
+    ros::AsyncSpinner callbacks(kCallbackThreads);
+    callbacks.start();
+    NodeLoop(*node, setup, handle).run();
+    callbacks.stop();
+    node->stop();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), error.what());
+    return 1;
+  }
+}
+
+std::int64_t publish_tick_ns(const Parameters& parameters, std::initializer_list<double> rates) {
+  constexpr double kShortest = 250'000;  // ns
+  constexpr double kLongest = 2'000'000;
+  if (parameters.loop.clock == ClockMode::kLockstep) return static_cast<std::int64_t>(kShortest);
+  return static_cast<std::int64_t>(std::clamp(1.0e9 / std::max(rates) / 4, kShortest, kLongest));
+}
+
+}  // namespace robot_control

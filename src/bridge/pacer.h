@@ -1,0 +1,35 @@
+#pragma once
+/// When is a topic due? By the stamps of the frames, not by a clock, so that a rate means simulated time in
+/// lockstep and real time otherwise.
+
+#include <cstdint>
+
+namespace robot_control {
+
+class Pacer {
+ public:
+  /// `rate`: Hz, > 0.
+  explicit Pacer(double rate) noexcept : period_ns_(static_cast<std::int64_t>(1.0e9 / rate + 0.5)) {}
+
+  /// True at most once per period, exactly `rate` on average while the frames come at least that often. What
+  /// was missed is not made up for. A new run, or a stamp far back, begins anew.
+  bool due(std::uint64_t run, std::int64_t stamp_ns) noexcept {
+    if (run != run_ || stamp_ns < next_ns_ - 2 * period_ns_) {
+      run_ = run;
+      next_ns_ = stamp_ns;
+    }
+    if (stamp_ns < next_ns_) return false;
+    next_ns_ += period_ns_;
+    if (next_ns_ <= stamp_ns) next_ns_ = stamp_ns + period_ns_;
+    return true;
+  }
+
+  std::int64_t period_ns() const noexcept { return period_ns_; }
+
+ private:
+  std::int64_t period_ns_;
+  std::uint64_t run_ = 0;
+  std::int64_t next_ns_ = 0;
+};
+
+}  // namespace robot_control

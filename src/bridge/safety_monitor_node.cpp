@@ -1,0 +1,123 @@
+#include "bridge/safety_monitor_node.h"
+
+#include <ros/ros.h>
+
+#include <mutex>
+
+#include "bridge/diagnostics.h"
+#include "bridge/graph.h"
+#include "bridge/messages.h"
+#include "bridge/process_node.h"
+#include "bridge/status_messages.h"
+#include "rt/clock.h"
+#include "rt/futex.h"
+#include "runtime/consumer_process.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::int64_t kStatusPeriod = 1'000'000'000;  // ns, at the latest
+constexpr std::int64_t kStatusGap = 20'000'000;        // ns, at the earliest: a flickering cause floods nobody
+constexpr std::int64_t kResetWait = 1'000'000'000;     // ns
+constexpr std::int64_t kResetLook = 2'000'000;         // ns
+
+class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
+ public:
+  using ProcessNode::ProcessNode;
+
+  void connect(ros::NodeHandle& handle) override {
+    command_topics_ = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
+    status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
+    const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+    e_stop_ = handle.subscribe<msg::Bool>(
+        "e_stop", 10, [this](const msg::Bool::ConstPtr& message) { hear_e_stop(message->data != 0); }, nullptr, hints);
+    heartbeat_ = handle.subscribe<msg::Empty>(
+        "heartbeat", 1, [this](const msg::Empty::ConstPtr&) { add(&OperatorInput::heartbeats); }, nullptr, hints);
+    trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
+    reset_ = handle.advertiseService("e_stop_reset", &SafetyMonitorNode::reset, this);
+  }
+
+  std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {1.0e9 / kStatusGap}); }
+
+  void publish() override {
+    const std::int64_t now_ns = monotonic_ns();
+    Permit permit;
+    const bool found = seen(permit);
+    const bool changed = found != told_permit_ || (found && news(told_, permit));
+    const std::int64_t silence_ns = now_ns - told_ns_;
+    if (told_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
+    time().update(permit.head.stamp_ns);
+    status_.publish(found ? safety_status(permit, time(), parameters().loop.period_ns()) : waiting_status(missing()));
+    told_permit_ = found;
+    told_ = permit;
+    told_ns_ = now_ns;
+  }
+
+  void diagnose(DiagnosticReport& report) override {
+    if (Permit permit; seen(permit)) report_permit(report, permit);
+  }
+
+ private:
+  /// A permit that this process issued, or one that an earlier monitor left and this one continues.
+  bool seen(Permit& permit) { return process().permit().newest(permit) == Lookup::kFrame; }
+
+  void add(std::uint64_t OperatorInput::*counter) {
+    const std::lock_guard lock(input_mutex_);
+    ++(input_.*counter);
+    process().cycle().inbox().store(input_);
+  }
+
+  void hear_e_stop(bool stop) {
+    const std::lock_guard lock(input_mutex_);
+    input_.e_stop_level = stop ? 1 : 0;
+    if (stop) ++input_.e_stop_triggers;
+    process().cycle().inbox().store(input_);
+  }
+
+  bool trigger(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    add(&OperatorInput::e_stop_services);
+    const std::vector<std::string> absent = missing();
+    response.success = 1;
+    response.message = "stopped; e_stop_reset releases";
+    if (!absent.empty()) response.message = "noted; the robot brakes anyway, because " + absent.front() + " is missing";
+    return true;
+  }
+
+  bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    const std::lock_guard one_at_a_time(reset_mutex_);
+    Permit permit;
+    const std::uint64_t before = seen(permit) ? permit.resets_handled : 0;
+    add(&OperatorInput::resets);
+    for (const std::int64_t end = monotonic_ns() + kResetWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
+      if (!seen(permit) || permit.resets_handled == before) continue;
+      response.success = permit.reset_refusal == 0;
+      response.message = response.success ? "released" : refusal_text(permit, publishers_of(command_topics_));
+      return true;
+    }
+    response.success = 0;
+    response.message = "not handled within 1 s: the monitor sees no sensor frames";
+    for (const std::string& name : missing()) response.message += "; waiting for " + name;
+    return true;
+  }
+
+  std::vector<std::string> command_topics_;
+  ros::Publisher status_;
+  ros::Subscriber e_stop_;
+  ros::Subscriber heartbeat_;
+  ros::ServiceServer trigger_;
+  ros::ServiceServer reset_;
+  std::mutex input_mutex_;
+  std::mutex reset_mutex_;
+  OperatorInput input_;
+  Permit told_;
+  bool told_permit_ = false;
+  std::int64_t told_ns_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_safety_monitor(const Setup& setup) {
+  return std::make_unique<SafetyMonitorNode>(setup);
+}
+
+}  // namespace robot_control

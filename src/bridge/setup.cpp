@@ -1,0 +1,96 @@
+#include "bridge/setup.h"
+
+#include <ros/master.h>
+#include <ros/names.h>
+#include <ros/package.h>
+#include <ros/param.h>
+#include <ros/this_node.h>
+
+#include "bridge/overlays.h"
+#include "hal/bus.h"
+
+namespace robot_control {
+namespace {
+
+/// Where the base file lies: `~config`, else the installed one.
+std::string config_path() {
+  std::string path;
+  if (ros::param::get("~config", path)) return path;
+  return ros::package::getPath("robot_control") + "/config/robot_params.yaml";
+}
+
+void append(std::vector<Overlay>& overlays, const std::string& name, const std::string& block,
+            const std::vector<std::string>& ignored = {}) {
+  XmlRpc::XmlRpcValue tree;
+  const std::string resolved = ros::names::resolve(name);
+  if (!ros::param::get(resolved, tree)) return;
+  const std::vector<Overlay> found = overlays_of(tree, block, resolved, ignored);
+  overlays.insert(overlays.end(), found.begin(), found.end());
+}
+
+std::vector<Overlay> server_overlays(const std::string& node) {
+  std::vector<Overlay> overlays;
+  append(overlays, "robot", "robot");
+  append(overlays, ros::this_node::getName(), node, {"config", "urdf"});
+  if (std::string urdf; ros::param::get("~urdf", urdf)) {
+    overlays.push_back({"robot.urdf", urdf, ros::names::resolve("~urdf")});
+  }
+  return overlays;
+}
+
+RobotDescription description(const Parameters& parameters, RobotSource source) {
+  const std::string name = ros::names::resolve("robot_description");
+  std::string text;
+  if (source == RobotSource::kServerElseFile && ros::param::get(name, text) && !text.empty()) return {text, name};
+  return load_description(parameters.urdf);
+}
+
+void add(std::string& problems, const std::string& problem) {
+  if (problem.empty()) return;
+  if (!problems.empty()) problems += '\n';
+  problems += problem;
+}
+
+}  // namespace
+
+std::string clock_problem(ClockMode clock, bool use_sim_time) {
+  if (clock == ClockMode::kWall && use_sim_time) {
+    return "robot.clock is wall, but /use_sim_time is true, perhaps left over in this roscore: "
+           "run `rosparam set /use_sim_time false`, or set robot.clock to lockstep";
+  }
+  if (clock == ClockMode::kLockstep && !use_sim_time) {
+    return "robot.clock is lockstep, but /use_sim_time is not true: run `rosparam set /use_sim_time true` "
+           "before the nodes are started (sim.launch clock:=lockstep does), or set robot.clock to wall";
+  }
+  return "";
+}
+
+Setup read_setup(const std::string& node, RobotSource source) {
+  Setup setup;
+  setup.node = node;
+  const std::string path = config_path();
+  const std::vector<Overlay> overlays = server_overlays(node);
+  for (const Overlay& overlay : overlays) {
+    setup.overrides.push_back(overlay.origin + " = " + overlay.text + " overrides " + overlay.path + " of " + path);
+  }
+  std::string problems;
+  try {
+    setup.parameters = read_parameters(path, overlays);
+  } catch (const ParameterError& error) {
+    throw SetupError(error.what());  // without parameters nothing else can be judged
+  }
+  bool use_sim_time = false;
+  ros::param::get("/use_sim_time", use_sim_time);
+  add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
+  try {
+    setup.robot = read_robot(description(setup.parameters, source), setup.parameters.robot);
+  } catch (const RobotError& error) {
+    add(problems, error.what());
+  }
+  if (!problems.empty()) throw SetupError(problems);
+  setup.bus = setup.parameters.loop.bus;
+  if (setup.bus.empty()) setup.bus = bus_name(ros::master::getURI(), ros::this_node::getNamespace());
+  return setup;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,43 @@
+#pragma once
+/// Everything a node knows before it takes its locks: parameters, robot, name of the bus.
+///
+/// Read after ros::init and before the first NodeHandle, because a NodeHandle registers this node's name and ROS
+/// would then shut a running node of that name down.
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "parameters/parameters.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+/// All that stands against starting, one problem a line.
+class SetupError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Where a node takes its robot from.
+enum class RobotSource {
+  kServerElseFile,  ///< `robot_description` of the parameter server, else the file of robot.urdf
+  kFile,            ///< that file; the driver, which publishes `robot_description` itself
+};
+
+struct Setup {
+  std::string node;  ///< program and block of the YAML file: "state_estimator"
+  Parameters parameters;
+  RobotModel robot;
+  std::string bus;
+  std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
+};
+
+/// `clock: wall` with /use_sim_time = true would stamp and time everything wrongly, `clock: lockstep` without it
+/// too; empty when they agree.
+std::string clock_problem(ClockMode clock, bool use_sim_time);
+
+/// Throws SetupError with all problems at once.
+Setup read_setup(const std::string& node, RobotSource source);
+
+}  // namespace robot_control

@@ -1,0 +1,26 @@
+#pragma once
+/// Permits → words. Pure.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bridge/messages.h"
+#include "bridge/time_map.h"
+#include "signals/permit.h"
+
+namespace robot_control {
+
+/// `period_ns` of the loop, for `since`.
+msg::SafetyStatus safety_status(const Permit& permit, const TimeMap& time, std::int64_t period_ns);
+
+/// What is told before there is any permit: INIT, waiting for these nodes.
+msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);
+
+/// Does `now` tell anything that `last` did not? (Cycle and stamp alone are no news.)
+bool news(const Permit& last, const Permit& now);
+
+/// The answer to e_stop_reset: why it was refused and what to do; `senders` are the nodes on cmd_vel.
+std::string refusal_text(const Permit& permit, const std::vector<std::string>& senders);
+
+}  // namespace robot_control

@@ -1,0 +1,7 @@
+#include "bridge/diff_drive_controller_node.h"
+#include "bridge/node.h"
+
+int main(int argc, char** argv) {
+  using namespace robot_control;
+  return run_node(argc, argv, "diff_drive_controller", RobotSource::kServerElseFile, make_diff_drive_controller);
+}

@@ -1,0 +1,7 @@
+#include "bridge/mujoco_plant_node.h"
+#include "bridge/node.h"
+
+int main(int argc, char** argv) {
+  using namespace robot_control;
+  return run_node(argc, argv, "mujoco_plant", RobotSource::kFile, make_mujoco_plant);
+}

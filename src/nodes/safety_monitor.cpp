@@ -1,0 +1,7 @@
+#include "bridge/node.h"
+#include "bridge/safety_monitor_node.h"
+
+int main(int argc, char** argv) {
+  using namespace robot_control;
+  return run_node(argc, argv, "safety_monitor", RobotSource::kServerElseFile, make_safety_monitor);
+}

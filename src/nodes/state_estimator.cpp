@@ -1,0 +1,7 @@
+#include "bridge/node.h"
+#include "bridge/state_estimator_node.h"
+
+int main(int argc, char** argv) {
+  using namespace robot_control;
+  return run_node(argc, argv, "state_estimator", RobotSource::kServerElseFile, make_state_estimator);
+}

@@ -1,0 +1,7 @@
+#include "bridge/node.h"
+#include "bridge/telemetry_node.h"
+
+int main(int argc, char** argv) {
+  using namespace robot_control;
+  return run_node(argc, argv, "telemetry", RobotSource::kServerElseFile, make_telemetry);
+}
