@@ -5,6 +5,7 @@
 /// `Parameters` at once. Missing, unknown, mistyped, NaN, infinite and out-of-range values are collected, and
 /// one ParameterError lists them all: path, value, rule, unit, origin.
 
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -37,8 +38,8 @@ struct LoopParameters {
   bool wait_for_nodes = true;       ///< cycle 0 begins when all four nodes hold their channels
   bool wait_for_telemetry = false;  ///< … and telemetry is reading
 
-  double period() const { return 1.0 / rate; }                                              ///< s
-  std::int64_t period_ns() const { return static_cast<std::int64_t>(1.0e9 / rate + 0.5); }  ///< ns
+  double period() const { return 1.0 / rate; }                           ///< s
+  std::int64_t period_ns() const { return std::llround(1.0e9 / rate); }  ///< ns
 };
 
 /// Rates and names of what the nodes publish; nothing of it touches the loop.

@@ -47,9 +47,9 @@ void Join::add(const MonitorTrace& row) {
   add_to<3>(row);
 }
 
-template <std::size_t kNode, class Row>
+template <std::size_t Node, class Row>
 void Join::add_to(const Row& row) {
-  auto& queue = std::get<kNode>(queues_);
+  auto& queue = std::get<Node>(queues_);
   const FrameHead& head = head_of(row);
   const bool run_over = std::find(finished_runs_.begin(), finished_runs_.end(), head.run) != finished_runs_.end();
   const bool emitted = run_ == head.run && last_cycle_ && head.cycle <= *last_cycle_;
@@ -57,7 +57,7 @@ void Join::add_to(const Row& row) {
   const bool again =
       !queue.empty() && head_of(queue.back()).run == head.run && head.cycle <= head_of(queue.back()).cycle;
   if (run_over || emitted || again) {
-    ++counts_.late[kNode];
+    ++counts_.late[Node];
     return;
   }
   queue.push_back(row);

@@ -46,7 +46,7 @@ class Join {
   using Queues = std::tuple<std::deque<DriverTrace>, std::deque<EstimatorTrace>, std::deque<ControllerTrace>,
                             std::deque<MonitorTrace>>;
 
-  template <std::size_t kNode, class Row>
+  template <std::size_t Node, class Row>
   void add_to(const Row& row);
   std::array<const FrameHead*, 4> fronts() const;
   bool may_proceed(const std::array<const FrameHead*, 4>& fronts) const;
