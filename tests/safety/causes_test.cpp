@@ -1,0 +1,345 @@
+// Every cause → the right permit in the exact cycle.
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "safety/monitor_fixture.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class CausesTest : public MonitorTest {
+ protected:
+  CausesTest() { drive(); }
+  void expect_stop(SupervisorState state, StopCause cause) const {
+    EXPECT_EQ(permit_.state, state);
+    EXPECT_EQ(permit_.action, PermitAction::kBrake);
+    EXPECT_EQ(permit_.causes, std::uint64_t{cause});
+    EXPECT_EQ(permit_.active, std::uint64_t{cause});
+    EXPECT_EQ(permit_.first_cause, std::uint64_t{cause});
+    EXPECT_EQ(permit_.since_cycle, cycle());
+  }
+  void expect_driving() const {
+    ASSERT_EQ(permit_.action, PermitAction::kDrive);
+    ASSERT_EQ(permit_.causes, 0u);
+  }
+};
+
+TEST_F(CausesTest, HealthyDrivingIsPermittedForFourCyclesAtATime) {
+  for (int i = 0; i < 100; ++i) {
+    ++input_.operator_input.heartbeats;
+    steps(10);
+  }
+  expect_driving();
+  EXPECT_EQ(permit_.expiry, cycle() + 4);
+  EXPECT_EQ(permit_.boot, 77u);
+  EXPECT_EQ(permit_.ramp_until, 0u);
+}
+
+TEST_F(CausesTest, EmergencyStopTopicStopsInItsCycle) {
+  input_.operator_input.e_stop_level = 1;
+  ++input_.operator_input.e_stop_triggers;
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseEmergencyStopTopic);
+}
+
+TEST_F(CausesTest, EmergencyStopThatCameAndWentBetweenTwoCyclesStops) {
+  ++input_.operator_input.e_stop_triggers;
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseEmergencyStopTopic);
+  step();
+  EXPECT_EQ(permit_.active, 0u);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEmergencyStopTopic});
+}
+
+TEST_F(CausesTest, EmergencyStopServiceStopsInItsCycle) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseEmergencyStopService);
+}
+
+TEST_F(CausesTest, EmergencyStopButtonStopsInItsCycle) {
+  sensors_.digital_inputs = kInputEmergencyStop;
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseEmergencyStopInput);
+}
+
+TEST_F(CausesTest, DriverFaultBitStopsForRepair) {
+  sensors_.faults = kFaultDrive;
+  step();
+  expect_stop(SupervisorState::kFault, kCauseDriverFault);
+}
+
+TEST_F(CausesTest, DriverFaultStateStopsForRepair) {
+  sensors_.driver_state = DriverState::kFault;
+  step();
+  expect_stop(SupervisorState::kFault, kCauseDriverFault);
+}
+
+TEST_F(CausesTest, ControllerIsLostInTheTwentiethCycleWithoutACommand) {
+  input_.command = nullptr;
+  steps(kLoss - 1);
+  expect_driving();
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseControllerLost);
+}
+
+TEST_F(CausesTest, ACommandInTimeBeginsTheCountAnew) {
+  for (int i = 0; i < 5; ++i) {
+    ++input_.operator_input.heartbeats;
+    input_.command = nullptr;
+    steps(kLoss - 1);
+    input_.command = &command_;
+    step();
+  }
+  expect_driving();
+}
+
+TEST_F(CausesTest, EstimatorIsLostInTheTwentiethCycleWithoutAState) {
+  input_.state_seen = false;
+  steps(kLoss - 1);
+  expect_driving();
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseEstimatorLost);
+}
+
+TEST_F(CausesTest, CorruptFramesStopInTheThirdCycleInARow) {
+  input_.corrupt = true;
+  steps(2);
+  expect_driving();
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseCorruptFrame);
+}
+
+TEST_F(CausesTest, SensorsThatAreNotFiniteStopInTheThirdCycleInARow) {
+  sensors_.imu.angular_velocity[0] = kNaN;
+  steps(2);
+  expect_driving();
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseNotFinite);
+}
+
+TEST_F(CausesTest, ASensorThatIsNotValidMayHoldAnything) {
+  sensors_.valid = kValidJoints;
+  sensors_.imu.angular_velocity[0] = sensors_.imu.linear_acceleration[2] = kNaN;
+  sensors_.joints[2].position = kNaN;  // the robot has two
+  steps(10);
+  expect_driving();
+}
+
+TEST_F(CausesTest, ACommandThatIsNotFiniteStopsInTheThirdCycleInARow) {
+  command_.joints[1].effort = std::numeric_limits<double>::infinity();
+  steps(2);
+  expect_driving();
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseNotFinite);
+}
+
+TEST_F(CausesTest, ASilentDriverIsLost) {
+  monitor_.driver_lost();
+  monitor_.step(input_, permit_);  // published again for display: the same cycle
+  expect_stop(SupervisorState::kStopped, kCauseDriverLost);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.active, 0u);
+}
+
+TEST_F(CausesTest, APausedDriverIsNotLost) {
+  sensors_.driver_state = DriverState::kPaused;
+  step();
+  monitor_.driver_lost();
+  step();
+  expect_driving();
+}
+
+TEST_F(CausesTest, ADriverThatWasNeverThereIsNotLost) {
+  SafetyMonitor monitor(parameters(), kPeriod);
+  monitor.driver_lost();
+  monitor.step(input_, permit_);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
+TEST_F(CausesTest, TheSameCycleAgainCountsNothingTwice) {
+  input_.command = nullptr;
+  steps(kLoss - 1);
+  for (int i = 0; i < 10; ++i) monitor_.step(input_, permit_);
+  expect_driving();
+}
+
+// Category 1.
+
+/// A beat every 10 cycles so far, the last one in this cycle.
+class HeartbeatTest : public CausesTest {
+ protected:
+  HeartbeatTest() {
+    for (int i = 0; i < 10; ++i) {
+      ++input_.operator_input.heartbeats;
+      steps(i < 9 ? 10 : 1);
+    }
+  }
+};
+
+TEST_F(HeartbeatTest, KeepsDrivingThroughTheTimeout) {
+  steps(kHeartbeat);
+  expect_driving();
+}
+
+TEST_F(HeartbeatTest, LostHeartbeatRampsUntilAFixedCycle) {
+  steps(kHeartbeat + 1);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopping);
+  EXPECT_EQ(permit_.action, PermitAction::kRamp);
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseHeartbeatLost});
+  const std::uint64_t until = cycle() + kRamp;
+  for (std::uint64_t i = 0; i < kRamp; ++i) {
+    ASSERT_EQ(permit_.action, PermitAction::kRamp);
+    ASSERT_EQ(permit_.ramp_until, until);
+    step();
+  }
+  EXPECT_EQ(cycle(), until);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.action, PermitAction::kBrake);
+}
+
+TEST_F(HeartbeatTest, ABeatDuringTheRampDoesNotSaveIt) {
+  steps(kHeartbeat + 1);
+  ++input_.operator_input.heartbeats;
+  step();
+  EXPECT_EQ(permit_.active, 0u);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopping);
+}
+
+TEST_F(HeartbeatTest, RampEndsAtStandstill) {
+  steps(kHeartbeat + 1);
+  turn_wheels(0);
+  steps(JointStandstill::kStandingCycles - 1);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopping);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+}
+
+TEST_F(HeartbeatTest, ASevererCauseEndsTheRampAtOnce) {
+  steps(kHeartbeat + 1);
+  ++input_.operator_input.e_stop_services;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.action, PermitAction::kBrake);
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseHeartbeatLost});
+  EXPECT_EQ(permit_.causes, kCauseHeartbeatLost | kCauseEmergencyStopService);
+}
+
+TEST_F(HeartbeatTest, AFaultEndsTheRampForRepair) {
+  steps(kHeartbeat + 1);
+  sensors_.faults = kFaultLink;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kFault);
+}
+
+// The fixture has asked for motion since a few cycles; nobody ever sent a heartbeat.
+TEST_F(CausesTest, MotionWithoutAnyHeartbeatStopsAfterTheTimeout) {
+  const std::uint64_t since = permit_.since_cycle;  // the first cycle of DRIVE; the next is the first after it
+  while (cycle() < since + 1 + kHeartbeat) {
+    step();
+    expect_driving();
+  }
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopping);
+}
+
+TEST_F(MonitorTest, AStandingRobotNeedsNoHeartbeat) {
+  steps(10 * kHeartbeat);
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
+TEST_F(MonitorTest, HeartbeatTimeoutZeroAsksForNone) {
+  SafetyParameters none = parameters();
+  none.heartbeat_timeout = 0;
+  monitor_ = SafetyMonitor(none, kPeriod);
+  ask_for(0.5);
+  steps(10 * kHeartbeat);
+  EXPECT_EQ(permit_.state, SupervisorState::kDrive);
+}
+
+// First and all causes.
+
+TEST_F(CausesTest, RemembersTheFirstCauseAndCollectsAll) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  input_.command = nullptr;
+  input_.state_seen = false;
+  steps(kLoss);
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseEmergencyStopService});
+  EXPECT_EQ(permit_.causes, kCauseEmergencyStopService | kCauseControllerLost | kCauseEstimatorLost);
+  EXPECT_EQ(permit_.active, kCauseControllerLost | kCauseEstimatorLost);
+}
+
+TEST_F(CausesTest, AFaultAfterAStopIsAFault) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  sensors_.faults = kFaultDrive;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kFault);
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseEmergencyStopService});
+}
+
+TEST_F(CausesTest, OfTwoCausesInOneCycleOneIsNamedFirst) {
+  ++input_.operator_input.e_stop_services;
+  sensors_.digital_inputs = kInputEmergencyStop;
+  step();
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseEmergencyStopService});
+}
+
+// READY and DRIVE.
+
+TEST_F(MonitorTest, ReadyPermitsAndBecomesDriveWithARequestOrAMotion) {
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+  EXPECT_EQ(permit_.action, PermitAction::kDrive);
+  ask_for(1e-9);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kDrive);
+  ask_for(0);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+  turn_wheels(-0.05);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kDrive);
+  turn_wheels(0.049);
+  steps(JointStandstill::kStandingCycles - 1);
+  EXPECT_EQ(permit_.state, SupervisorState::kDrive);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
+TEST_F(CausesTest, StepsWithoutAllocating) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  AllocationGuard guard;
+  steps(200);
+  ++input_.operator_input.e_stop_services;
+  step();
+  request_reset();
+  step();
+  monitor_.reset(input_.operator_input);
+  monitor_.resume(permit_);
+  monitor_.driver_lost();
+  step();
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST(SafetyMonitorConstruction, RefusesParametersOutOfRange) {
+  const auto refused = [](auto change, double period) {
+    SafetyParameters parameters;
+    change(parameters);
+    EXPECT_THROW(SafetyMonitor(parameters, period), std::invalid_argument);
+  };
+  refused([](SafetyParameters&) {}, 0);
+  refused([](SafetyParameters& p) { p.loss_cycles = 0; }, 1e-3);
+  refused([](SafetyParameters& p) { p.heartbeat_timeout = -1; }, 1e-3);
+  refused([](SafetyParameters& p) { p.ramp_time = kNaN; }, 1e-3);
+  refused([](SafetyParameters& p) { p.standstill_speed = 0; }, 1e-3);
+}
+
+}  // namespace
+}  // namespace robot_control

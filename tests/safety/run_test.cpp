@@ -1,0 +1,266 @@
+// Start, a new run, a restart of the monitor: what is forgotten and what is not.
+
+#include <cstring>
+
+#include "safety/monitor_fixture.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+class RunTest : public MonitorTest {
+ protected:
+  void e_stop() {
+    ++input_.operator_input.e_stop_services;
+    step();
+  }
+};
+
+// INIT.
+
+TEST_F(RunTest, InitBrakesUnlatchedAndNamesWhoIsMissing) {
+  new_run();
+  input_.command = nullptr;
+  input_.state_seen = false;
+  steps(10 * kLoss);
+  EXPECT_EQ(permit_.state, SupervisorState::kInit);
+  EXPECT_EQ(permit_.action, PermitAction::kBrake);
+  EXPECT_EQ(permit_.causes, 0u);
+  EXPECT_EQ(permit_.missing, kMissingState | kMissingCommand);
+  input_.state_seen = true;
+  step();
+  EXPECT_EQ(permit_.missing, std::uint64_t{kMissingCommand});
+}
+
+TEST_F(RunTest, EachNeedsToBeSeenOnceNotAtTheSameTime) {
+  new_run();
+  input_.command = nullptr;
+  step();
+  input_.command = &command_;
+  input_.state_seen = false;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+  EXPECT_EQ(permit_.missing, 0u);
+  EXPECT_EQ(permit_.since_cycle, cycle());
+}
+
+TEST_F(RunTest, AStopInInitLatches) {
+  new_run();
+  input_.command = nullptr;
+  e_stop();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.since_cycle, 0u);
+}
+
+TEST_F(RunTest, ResetOfAStopInAnIncompleteRunLeadsToInit) {
+  new_run();
+  input_.command = nullptr;
+  e_stop();
+  stand();
+  EXPECT_EQ(reset(), 0u);
+  EXPECT_EQ(permit_.state, SupervisorState::kInit);
+  input_.command = &command_;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
+// A new run.
+
+TEST_F(RunTest, ANewRunIsInitUntilAllWereSeenAgain) {
+  drive();
+  new_run();
+  input_.command = nullptr;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kInit);
+  EXPECT_EQ(permit_.since_cycle, 0u);
+  EXPECT_EQ(permit_.missing, std::uint64_t{kMissingCommand});
+}
+
+TEST_F(RunTest, ANewRunNeverClearsALatch) {
+  e_stop();
+  new_run();
+  steps(100);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEmergencyStopService});
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseEmergencyStopService});
+  EXPECT_EQ(permit_.since_cycle, 0u);
+}
+
+TEST_F(RunTest, ANewRunNeverClearsAFaultButAResetThenDoes) {
+  sensors_.faults = kFaultSimulationDiverged;
+  step();
+  new_run();
+  sensors_.faults = 0;
+  steps(JointStandstill::kStandingCycles);
+  EXPECT_EQ(permit_.state, SupervisorState::kFault);
+  EXPECT_EQ(reset(), 0u);
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
+TEST_F(RunTest, ANewRunDuringTheRampIsAStop) {
+  drive();
+  steps(kHeartbeat + 2);
+  ASSERT_EQ(permit_.state, SupervisorState::kStopping);
+  new_run();
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseHeartbeatLost});
+}
+
+TEST_F(RunTest, ANewRunBeginsTheCountsAnew) {
+  input_.command = nullptr;
+  steps(kLoss - 1);
+  new_run();
+  input_.command = &command_;
+  step();
+  input_.command = nullptr;
+  steps(kLoss - 1);
+  EXPECT_EQ(permit_.causes, 0u);
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseControllerLost});
+}
+
+TEST_F(RunTest, AResetRequestedBeforeANewRunIsDroppedAndAnswered) {
+  e_stop();
+  stand();
+  request_reset();
+  new_run();
+  steps(20);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.resets_handled, input_.operator_input.resets);
+  EXPECT_EQ(permit_.reset_refusal, std::uint64_t{kRefusalInit});
+}
+
+TEST_F(RunTest, AStopPressedBetweenTwoRunsIsNotLost) {
+  ++input_.operator_input.e_stop_services;
+  new_run();
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+}
+
+TEST_F(RunTest, ALevelThatIsTrueCountsInANewRun) {
+  new_run();
+  input_.operator_input.e_stop_level = 1;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+}
+
+TEST_F(RunTest, AnInboxThatBeganAnewIsNoStop) {
+  e_stop();
+  stand();
+  ASSERT_EQ(reset(), 0u);
+  input_.operator_input = {};
+  new_run();
+  steps(5);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
+TEST_F(RunTest, HeartbeatsOfTheLastRunAreNotAwaited) {
+  ++input_.operator_input.heartbeats;
+  step();
+  new_run();
+  steps(10 * kHeartbeat);
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
+// A restart of the monitor.
+
+class RestartTest : public RunTest {
+ protected:
+  void restart() {
+    const Permit last = permit_;
+    input_.operator_input = {};
+    monitor_ = SafetyMonitor(parameters(), kPeriod);
+    monitor_.resume(last);
+    monitor_.reset(input_.operator_input);
+  }
+};
+
+TEST_F(RestartTest, BesideARunningDriverBeginsStopped) {
+  drive();
+  restart();
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.action, PermitAction::kBrake);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseMonitorRestarted});
+  EXPECT_EQ(permit_.since_cycle, cycle());
+  step();
+  EXPECT_EQ(permit_.active, 0u);
+}
+
+TEST_F(RestartTest, KeepsWhatWasLatched) {
+  drive();
+  e_stop();
+  restart();
+  step();
+  EXPECT_EQ(permit_.causes, kCauseEmergencyStopService | kCauseMonitorRestarted);
+  EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseEmergencyStopService});
+}
+
+TEST_F(RestartTest, KeepsAFault) {
+  sensors_.faults = kFaultLink;
+  step();
+  sensors_.faults = 0;
+  restart();
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kFault);
+}
+
+TEST_F(RestartTest, IsResetLikeAnyStop) {
+  restart();
+  stand();
+  EXPECT_EQ(reset(), 0u);
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
+TEST_F(RestartTest, TheDriversResetInBetweenChangesNothing) {
+  drive();
+  restart();
+  ++sensors_.head.run;
+  sensors_.head.cycle = 0;
+  begun_ = false;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+}
+
+TEST_F(RestartTest, BesideANewDriverBeginsInInit) {
+  e_stop();
+  restart();
+  sensors_.boot = 78;
+  input_.command = nullptr;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kInit);
+  EXPECT_EQ(permit_.causes, 0u);
+  EXPECT_EQ(permit_.boot, 78u);
+}
+
+TEST_F(RestartTest, ANewDriverBesideARunningMonitorClearsNothing) {
+  e_stop();
+  sensors_.boot = 78;
+  new_run();
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+}
+
+TEST_F(RestartTest, SameFactsGiveTheSameBits) {
+  Permit first;
+  Permit second;
+  for (Permit* permit : {&first, &second}) {
+    SafetyMonitor monitor(parameters(), kPeriod);
+    SensorFrame sensors = sensors_;
+    MonitorInput input = input_;
+    input.sensors = &sensors;
+    for (std::uint64_t k = 0; k < 500; ++k) {
+      sensors.head.cycle = k;
+      if (k == 300) ++input.operator_input.e_stop_services;
+      if (k == 350) ++input.operator_input.resets;
+      monitor.step(input, *permit);
+    }
+  }
+  EXPECT_EQ(std::memcmp(&first, &second, sizeof first), 0);
+  EXPECT_EQ(first.state, SupervisorState::kReady);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,96 @@
+#include "safety/supervisor_table.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "safety/stop_category.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+using enum SupervisorState;
+using enum Trigger;
+
+constexpr std::array kStates{kInit, kReady, kDrive, kStopping, kStopped, kFault};
+
+SupervisorState after(SupervisorState state, std::initializer_list<Trigger> triggers) {
+  TriggerSet set;
+  for (const Trigger trigger : triggers) set.add(trigger);
+  return next_state(state, set);
+}
+
+// The specification, written down a second time as a full matrix: '-' stays.
+TEST(SupervisorTable, EveryStateAnswersEveryTriggerAsSpecified) {
+  const std::map<SupervisorState, std::array<SupervisorState, kTriggers>> expected{
+      // repair, brake, ramp, ramp ended, reset incomplete, reset complete, complete, motion, rest
+      {kInit, {kFault, kStopped, kStopped, kInit, kInit, kInit, kReady, kInit, kInit}},
+      {kReady, {kFault, kStopped, kStopping, kReady, kReady, kReady, kReady, kDrive, kReady}},
+      {kDrive, {kFault, kStopped, kStopping, kDrive, kDrive, kDrive, kDrive, kDrive, kReady}},
+      {kStopping, {kFault, kStopped, kStopping, kStopped, kStopping, kStopping, kStopping, kStopping, kStopping}},
+      {kStopped, {kFault, kStopped, kStopped, kStopped, kInit, kReady, kStopped, kStopped, kStopped}},
+      {kFault, {kFault, kFault, kFault, kFault, kInit, kReady, kFault, kFault, kFault}},
+  };
+  for (const SupervisorState state : kStates) {
+    for (std::size_t i = 0; i < kTriggers; ++i) {
+      EXPECT_EQ(after(state, {static_cast<Trigger>(i)}), expected.at(state)[i])
+          << name_of(state) << " on trigger " << i;
+    }
+  }
+}
+
+TEST(SupervisorTable, NothingHappensWithoutATrigger) {
+  for (const SupervisorState state : kStates) EXPECT_EQ(after(state, {}), state);
+}
+
+TEST(SupervisorTable, TheSeverestTriggerWins) {
+  for (const SupervisorState state : {kInit, kReady, kDrive, kStopping}) {
+    EXPECT_EQ(after(state, {kRampCause, kBrakeCause, kRepairCause, kRampEnded, kComplete, kMotion, kRest}), kFault);
+    EXPECT_EQ(after(state, {kRampCause, kBrakeCause, kRampEnded, kComplete, kMotion, kRest}), kStopped);
+  }
+  EXPECT_EQ(after(kDrive, {kRampCause, kRest}), kStopping);
+}
+
+TEST(SupervisorTable, NoStateLeavesALatchButByReset) {
+  for (const Transition& row : kTransitions) {
+    if (row.from != kStopped && row.from != kFault) continue;
+    if (row.to == kStopped || row.to == kFault) continue;
+    EXPECT_TRUE(row.trigger == kResetComplete || row.trigger == kResetIncomplete) << name_of(row.from);
+  }
+}
+
+TEST(SupervisorTable, OnlyReadyAndDrivePermitDriving) {
+  for (const SupervisorState state : kStates) {
+    EXPECT_EQ(action_in(state) == PermitAction::kDrive, state == kReady || state == kDrive) << name_of(state);
+  }
+  EXPECT_EQ(action_in(kStopping), PermitAction::kRamp);
+  EXPECT_EQ(action_in(static_cast<SupervisorState>(99)), PermitAction::kBrake);
+}
+
+TEST(StopCategories, EveryCauseHasExactlyOne) {
+  std::uint64_t all = 0;
+  for (const StopRule& rule : kStopRules) {
+    EXPECT_EQ(all & rule.cause, 0u) << row_of(kStopCauseNames, rule.cause)->name;
+    all |= rule.cause;
+  }
+  std::uint64_t named = 0;
+  for (const BitName& row : kStopCauseNames) named |= row.bit;
+  EXPECT_EQ(all, named);
+}
+
+TEST(StopCategories, OnlyTheHeartbeatRampsAndOnlyTheDriversFaultWaitsForRepair) {
+  EXPECT_EQ(causes_of(StopCategory::kRamp), std::uint64_t{kCauseHeartbeatLost});
+  EXPECT_EQ(causes_of(StopCategory::kBrakeForRepair), std::uint64_t{kCauseDriverFault});
+}
+
+TEST(Names, SpeakOfEveryBitThatIsSet) {
+  EXPECT_EQ(names_of(kStopCauseNames, kCauseControllerLost | kCauseHeartbeatLost), "controller_lost heartbeat_lost");
+  EXPECT_EQ(names_of(kStopCauseNames, 0), "");
+  EXPECT_EQ(sentences_of(kResetRefusalNames, kRefusalMoving),
+            "the robot has not come to rest (wait until every wheel stands)");
+  EXPECT_EQ(name_of(static_cast<SupervisorState>(99)), "UNKNOWN");
+}
+
+}  // namespace
+}  // namespace robot_control
