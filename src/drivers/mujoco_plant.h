@@ -43,6 +43,7 @@ class MujocoPlant final : public Driver {
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   void stop() noexcept override;
+  bool simulated() const noexcept override { return true; }
   bool truth(TruthFrame& truth) noexcept override;
 
   /// What MuJoCo said when the fault came; "" without one.

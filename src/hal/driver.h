@@ -33,6 +33,10 @@ class Driver {
   /// Brakes, now and for good.
   virtual void stop() noexcept = 0;
 
+  /// A simulated machine waits when its node is late: time slips, cycles stay consecutive. Hardware does not:
+  /// the cycle number jumps by the periods missed.
+  virtual bool simulated() const noexcept { return false; }
+
   /// What really is at t_k, where the driver knows (a simulator). False: no truth to be had.
   virtual bool truth(TruthFrame& /*truth*/) noexcept { return false; }
 };

@@ -39,6 +39,9 @@ class DriverCycle {
   /// One tick. The first one of a run is cycle 0.
   void step() noexcept;
 
+  /// Hardware whose node was late: the next tick is that many cycles further on.
+  void skip(std::uint64_t cycles) noexcept { cycle_ += cycles; }
+
   std::uint64_t run() const noexcept { return run_; }
   std::uint64_t next_cycle() const noexcept { return cycle_; }
   std::int64_t next_stamp_ns() const noexcept { return start_ns_ + static_cast<std::int64_t>(cycle_) * period_ns_; }

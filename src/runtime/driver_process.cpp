@@ -119,12 +119,13 @@ bool DriverProcess::tick() noexcept {
 void DriverProcess::loop_wall() noexcept {
   const std::int64_t start_ns = monotonic_ns() + loop_parameters().period_ns();
   cycle_->set_start(start_ns);
-  Periodic schedule(start_ns, loop_parameters().period_ns(), WhenLate::kSlip);
+  const WhenLate when_late = driver_->simulated() ? WhenLate::kSlip : WhenLate::kSkip;
+  Periodic schedule(start_ns, loop_parameters().period_ns(), when_late);
   bool more = true;
   while (more && !stopping().load(std::memory_order_relaxed)) {
     sleep_until(schedule.deadline_ns());
     const std::int64_t slipped_before = schedule.slipped_ns();
-    schedule.begin(monotonic_ns());
+    cycle_->skip(static_cast<std::uint64_t>(schedule.begin(monotonic_ns())));
     cycle_->count_slip(schedule.slipped_ns() - slipped_before);
     more = tick();
     if (!schedule.end(monotonic_ns())) cycle_->count_overrun();

@@ -176,6 +176,15 @@ TEST_F(RunningLoop, LatchesTheLossOfTheDriverOnceItIsSilent) {
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
 }
 
+TEST_F(RunningLoop, HoldsTheCommandOverCyclesThatHardwareMissed) {
+  loop.driver.skip(2);
+  loop.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kHeld);
+  EXPECT_EQ(loop.newest_state().skipped, 2u);
+  loop.steps(2);
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kPassed);
+}
+
 TEST_F(RunningLoop, NeverAllocates) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   const AllocationGuard guard;
