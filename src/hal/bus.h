@@ -5,7 +5,8 @@
 /// A writer holds an open-file-description lock on its object for as long as it lives, and a second instance of
 /// a node refuses to start. The object outlives its writer. The next writer finds
 ///   the same layout, unlocked     takes it over with its frames and its futex sequence
-///   another layout, unlocked      retires it (ChannelHead::retired) and makes a new one
+///   another layout, unlocked      retires it (ChannelHead::retired) and makes a new one; the futex sequence of
+///                                 a new object begins at a random number
 ///   truncated or foreign magic    never writes to it, unlinks it and makes a new one
 ///   any of them, locked           BusError: another instance, or a node of another build, is running
 ///   another owner, open to others BusError
@@ -15,6 +16,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -64,7 +66,12 @@ class OwnedChannel {
   /// Object is LatestFrames<Frame>, Ring<Row> or RingPositions. Throws BusError. What a writer says of itself
   /// in the head (run attached to, robot) begins anew.
   OwnedChannel(const std::string& bus, const std::string& channel)
-      : object_(bus, channel, BusLayoutOf<Object>::value) {}
+      : object_(OwnedBusObject::claim(bus, channel, BusLayoutOf<Object>::value)) {
+    // A reader of the retired object may come with a sequence seen there; equal numbers would let it sleep.
+    if constexpr (requires { memory()->sequence; }) {
+      if (object_.is_new()) memory()->sequence.store(std::random_device{}(), std::memory_order_release);
+    }
+  }
 
   Object* memory() const noexcept { return static_cast<Object*>(object_.data()); }
 

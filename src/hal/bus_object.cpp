@@ -147,8 +147,7 @@ std::optional<SharedMemory> open_or_create(const std::string& name) {
   return object ? std::move(object) : SharedMemory::create(name);
 }
 
-std::pair<SharedMemory, MemoryMapping> claim(const std::string& channel, const std::string& name,
-                                             const BusLayout& layout) {
+OwnedBusObject claim_object(const std::string& channel, const std::string& name, const BusLayout& layout) {
   for (int tries = 0; tries < kClaimTries; ++tries) {
     std::optional<SharedMemory> object = open_or_create(name);
     if (!object) continue;
@@ -160,7 +159,7 @@ std::pair<SharedMemory, MemoryMapping> claim(const std::string& channel, const s
     MemoryMapping mapping;
     if (finding == Finding::kUsable) {
       take_over(*object, layout, mapping);
-      return {std::move(*object), std::move(mapping)};
+      return {std::move(*object), std::move(mapping), false};
     }
     if (object->bytes() == 0) {
       try {
@@ -169,7 +168,7 @@ std::pair<SharedMemory, MemoryMapping> claim(const std::string& channel, const s
         shm_unlink(name.c_str());
         throw;
       }
-      return {std::move(*object), std::move(mapping)};
+      return {std::move(*object), std::move(mapping), true};
     }
     if (finding == Finding::kOtherLayout) retire(*object);
     shm_unlink(name.c_str());
@@ -191,14 +190,10 @@ std::string bus_object_name(const std::string& bus, const std::string& channel) 
   return name;
 }
 
-OwnedBusObject::OwnedBusObject(const std::string& bus, const std::string& channel, const BusLayout& layout)
-    : OwnedBusObject([&] {
-        const std::string name = bus_object_name(bus, channel);
-        return reporting(channel, name, [&] { return claim(channel, name, layout); });
-      }()) {}
-
-OwnedBusObject::OwnedBusObject(std::pair<SharedMemory, MemoryMapping> claimed) noexcept
-    : object_(std::move(claimed.first)), mapping_(std::move(claimed.second)) {}
+OwnedBusObject OwnedBusObject::claim(const std::string& bus, const std::string& channel, const BusLayout& layout) {
+  const std::string name = bus_object_name(bus, channel);
+  return reporting(channel, name, [&] { return claim_object(channel, name, layout); });
+}
 
 ForeignBusObject::ForeignBusObject(const std::string& bus, std::string channel, const BusLayout& layout)
     : channel_(std::move(channel)), name_(bus_object_name(bus, channel_)), layout_(layout) {}

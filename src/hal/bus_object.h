@@ -34,15 +34,21 @@ std::string bus_object_name(const std::string& bus, const std::string& channel);
 
 class OwnedBusObject {
  public:
-  OwnedBusObject(const std::string& bus, const std::string& channel, const BusLayout& layout);
+  /// Throws BusError.
+  static OwnedBusObject claim(const std::string& bus, const std::string& channel, const BusLayout& layout);
+
+  OwnedBusObject(SharedMemory object, MemoryMapping mapping, bool is_new) noexcept
+      : object_(std::move(object)), mapping_(std::move(mapping)), is_new_(is_new) {}
 
   void* data() const noexcept { return mapping_.data(); }
 
- private:
-  explicit OwnedBusObject(std::pair<SharedMemory, MemoryMapping> claimed) noexcept;
+  /// Made by this process; otherwise taken over.
+  bool is_new() const noexcept { return is_new_; }
 
+ private:
   SharedMemory object_;
   MemoryMapping mapping_;
+  bool is_new_ = false;
 };
 
 class ForeignBusObject {
