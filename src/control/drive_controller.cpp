@@ -52,6 +52,7 @@ void DriveController::reset(std::uint64_t request_count) noexcept {
   left_.reset();
   right_.reset();
   last_cycle_.reset();
+  last_angle_.reset();
   periods_ = 1;
   driving_ = followed_ = false;
   state_cycle_ = permit_cycle_ = 0;
@@ -67,20 +68,32 @@ bool DriveController::usable(const SensorFrame& sensors) const noexcept {
   return finite(left_joint_) && finite(right_joint_);
 }
 
+bool DriveController::track(const WheelPair& angle, const SensorFrame& sensors) noexcept {
+  const double reach = kFastestWheel * periods_ * period_;
+  if (last_angle_ &&
+      (std::abs(angle.left - last_angle_->left) > reach || std::abs(angle.right - last_angle_->right) > reach)) {
+    return false;
+  }
+  left_.measure(sensors.joints[left_joint_], periods_, followed_);
+  right_.measure(sensors.joints[right_joint_], periods_, followed_);
+  // Absurd but finite numbers overflow the tracking loops; they would never recover by themselves.
+  return std::isfinite(left_.velocity()) && std::isfinite(right_.velocity());
+}
+
 bool DriveController::measure(const SensorFrame& sensors) noexcept {
   if (!usable(sensors)) return false;
   periods_ = last_cycle_ ? static_cast<double>(sensors.head.cycle - *last_cycle_) : 1.0;
   last_cycle_ = sensors.head.cycle;
-  const JointSample& left = sensors.joints[left_joint_];
-  const JointSample& right = sensors.joints[right_joint_];
   followed_ = driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kHeldCycles);
-  left_.measure(left, periods_, followed_);
-  right_.measure(right, periods_, followed_);
-  standstill_.step({left.position, right.position}, sensors.head.cycle);
-  if (std::isfinite(left_.velocity()) && std::isfinite(right_.velocity())) return true;
-  // A finite but absurd angle overflowed the tracking loops; they would never recover by themselves.
-  left_.reset();
-  right_.reset();
+  const WheelPair angle{sensors.joints[left_joint_].position, sensors.joints[right_joint_].position};
+  standstill_.step(angle, sensors.head.cycle);
+  if (track(angle, sensors)) {
+    last_angle_ = angle;
+    return true;
+  }
+  last_angle_.reset();
+  left_.lose_track();
+  right_.lose_track();
   return false;
 }
 

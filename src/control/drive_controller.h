@@ -3,7 +3,8 @@
 ///
 /// Every joint is braked (JointMode::kBrake) when
 ///   - there is no live permit, it orders the brake, or its ramp is over;
-///   - the sensors are not valid, not finite, for another number of joints, or their cycle does not advance;
+///   - the sensors are not valid, not finite, for another number of joints, their cycle does not advance, or a wheel
+///     angle jumped faster than kFastestWheel (the loops then start anew from the next sample);
 ///   - the robot holds: zero wish, zero limited twist and both wheels standing (standstill.h); straight after a brake
 ///     both wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
 ///     wish ≠ 0 ends it.
@@ -60,6 +61,9 @@ struct ControlInput {
 /// The gate executes a command in at most this many ticks (DESIGN: commands of cycles k−4 … k−1).
 inline constexpr std::uint64_t kHeldCycles = 4;
 
+/// rad/s that no wheel reaches (10⁴ rpm): a faster change of angle is an encoder's error.
+inline constexpr double kFastestWheel = 1000;
+
 class DriveController {
  public:
   DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
@@ -73,6 +77,7 @@ class DriveController {
  private:
   bool measure(const SensorFrame& sensors) noexcept;
   bool usable(const SensorFrame& sensors) const noexcept;
+  bool track(const WheelPair& angle, const SensorFrame& sensors) noexcept;
   std::uint64_t permit_reasons(const Permit* permit, std::uint64_t cycle) const noexcept;
   std::uint64_t state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept;
   bool slow() const noexcept;
@@ -91,6 +96,7 @@ class DriveController {
   WheelLoop left_;
   WheelLoop right_;
   std::optional<std::uint64_t> last_cycle_;  ///< of the last usable sample
+  std::optional<WheelPair> last_angle_;      ///< rad, of the sample before; none: the loops start anew
   double periods_ = 1;                       ///< between the last two usable samples
   bool driving_ = false;                     ///< the last command was not the brake
   bool followed_ = false;                    ///< the torque before this sample was this controller's

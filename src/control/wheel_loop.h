@@ -69,6 +69,9 @@ class WheelLoop {
   /// A new run: the next sample seeds the tracking loop.
   void reset() noexcept;
 
+  /// The next sample seeds the tracking loop; the integrator keeps the load.
+  void lose_track() noexcept { tracked_ = false; }
+
   /// The sample of this cycle, `periods` ≥ 1 after the last one. Finite. `driven`: the torque since was this loop's.
   void measure(const JointSample& sample, double periods, bool driven) noexcept;
 

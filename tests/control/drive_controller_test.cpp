@@ -136,9 +136,27 @@ TEST_F(DriveControllerTest, BrakesOnJointSamplesThatAreNotFinite) {
   }
 }
 
-TEST_F(DriveControllerTest, RecoversFromAnAbsurdAngle) {
+TEST_F(DriveControllerTest, BrakesForOneCycleOnAnAngleThatJumpsAndDrivesOn) {
+  for (const double jump : {1.1, -50.0, 1e308}) {
+    bench.send(0.5, 0.2);
+    bench.spoil = [=](SensorFrame& sensors) { sensors.joints[0].position += jump; };
+    bench.step();
+    EXPECT_TRUE(braked());
+    EXPECT_TRUE(bench.command.reasons & kReasonBadSensors);
+    bench.spoil = [](SensorFrame&) {};
+    for (int k = 0; k < 500; ++k) {
+      bench.step();
+      ASSERT_FALSE(braked());
+      // One cycle of the brake, 2 N·m·s/rad at 5 rad/s: the speed falls by no more than that.
+      ASSERT_NEAR(bench.plant.twist.linear, 0.5, 0.1) << "jump " << jump << " cycle " << k;
+    }
+    ASSERT_NEAR(bench.plant.twist.linear, 0.5, 1e-3);
+  }
+}
+
+TEST_F(DriveControllerTest, RecoversFromAnAbsurdEffort) {
   bench.send(0.5, 0.2);
-  bench.spoil = [](SensorFrame& sensors) { sensors.joints[0].position = 1e308; };
+  bench.spoil = [](SensorFrame& sensors) { sensors.joints[0].effort = 1e308; };
   bench.step();
   EXPECT_TRUE(braked());
   bench.spoil = [](SensorFrame&) {};
