@@ -116,8 +116,8 @@ def _draw_torques(axes: Axes, log: Log) -> None:
             log["time"],
             log[f"{joint}_effort_command"],
             color=color,
-            linewidth=0.8,
-            alpha=0.45,
+            linewidth=5,
+            alpha=0.3,
             label=f"{name}, commanded",
         )
         axes.plot(log["time"], log[f"{joint}_effort"], color=color, linewidth=1.2, label=f"{name}, actual")
