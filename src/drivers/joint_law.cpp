@@ -78,11 +78,11 @@ bool JointLaw::speed_stays(double speed) noexcept {
 
 void check_brake(const MujocoPlantParameters& parameters, const std::string& joint, double inertia, double step) {
   const auto check = [&](const std::string& name, double value, double limit, const std::string& unit) {
-    if (value >= 0 && value <= limit) return;
+    if (value > 0 && value <= limit) return;
     throw DriverError("mujoco_plant/" + name + " = " + std::to_string(value) + " " + unit + ": joint " + joint +
                       " has an inertia of only " + std::to_string(inertia) + " kg·m², a time step of " +
-                      std::to_string(step * 1000) + " ms bears 0 … " + std::to_string(limit) + " " + unit +
-                      ". Lower the value.");
+                      std::to_string(step * 1000) + " ms bears values above 0 up to " + std::to_string(limit) + " " +
+                      unit + ". Set such a value.");
   };
   check("brake_damping", parameters.brake_damping, 0.5 * inertia / step, "N·m·s/rad");
   check("brake_stiffness", parameters.brake_stiffness, 0.5 * inertia / (step * step), "N·m/rad");

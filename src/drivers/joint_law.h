@@ -26,8 +26,8 @@
 ///   q̇' = q̇ − a q̇ − (b/h) q,  q' = q + h q̇'     a = d h / J,  b = k h² / J
 ///
 /// with characteristic polynomial z² − (2 − a − b) z + (1 − a), stable for 2a + b < 4. `check_brake` asks for
-/// a ≤ 0.5 and b ≤ 0.5, which leaves a factor of 2.7 to the limit. The defaults on a wheel of J = 0.005 kg·m² at
-/// h = 1 ms: a = 0.4, b = 0.06, damping ratio d / (2 √(k J)) = 0.8.
+/// 0 < a ≤ 0.5 and 0 < b ≤ 0.5, which leaves a factor of 2.7 to the limit. The defaults on a wheel of J = 0.005 kg·m²
+/// at h = 1 ms: a = 0.4, b = 0.06, damping ratio d / (2 √(k J)) = 0.8.
 
 #include "drivers/mujoco_plant_parameters.h"
 #include "signals/joint.h"

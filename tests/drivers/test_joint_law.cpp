@@ -176,6 +176,12 @@ TEST(CheckBrake, RefusesWhatALightWheelCannotBear) {
   EXPECT_THROW(check_brake(stiff, "left_wheel_joint", kFreeInertia, kStep), DriverError);
 }
 
+TEST(CheckBrake, RefusesABrakeThatDoesNotHold) {
+  MujocoPlantParameters limp;
+  limp.brake_stiffness = 0;
+  EXPECT_THROW(check_brake(limp, "left_wheel_joint", kFreeInertia, kStep), DriverError);
+}
+
 TEST_F(JointLawTest, StepDoesNotAllocate) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   AllocationGuard guard;
