@@ -1,0 +1,64 @@
+#pragma once
+/// The log's reader: takes the rows of the four trace rings, joins them by cycle and writes run.csv.
+///
+/// It owns the read positions. Only once all four rings are mapped and the positions stored does it say so
+/// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/bus.h"
+#include "parameters/parameters.h"
+#include "robot/robot_model.h"
+#include "rt/ring.h"
+#include "telemetry/csv_writer.h"
+#include "telemetry/join.h"
+
+namespace robot_control {
+
+struct TelemetryCounts {
+  JoinCounts join;
+  std::uint64_t dropped = 0;      ///< by the writers, for want of room, since this process began
+  std::uint64_t overwritten = 0;  ///< before they were read
+};
+
+class TelemetryProcess {
+ public:
+  /// Throws BusError (another telemetry reads), LogError.
+  TelemetryProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ~TelemetryProcess();
+  TelemetryProcess(const TelemetryProcess&) = delete;
+  TelemetryProcess& operator=(const TelemetryProcess&) = delete;
+
+  /// At 10 Hz: maps rings as they appear or are replaced, hands what was written to the system.
+  void poll();
+
+  /// Takes all rows that are there; the number of them. Call often: a ring holds 2048 cycles.
+  std::size_t drain();
+
+  /// Takes the rest and closes the file. Nothing may be called afterwards.
+  void finish();
+
+  /// Nodes whose ring is not there or not owned by a living process.
+  std::vector<std::string> missing() const;
+
+  TelemetryCounts counts() const;
+  const std::string& path() const noexcept { return path_; }
+
+ private:
+  template <class Row>
+  class Source;
+  struct Sources;
+
+  std::string path_;
+  OwnedChannel<RingPositions> positions_;
+  CsvWriter csv_;
+  Join join_;
+  std::unique_ptr<Sources> sources_;
+};
+
+}  // namespace robot_control
