@@ -12,7 +12,7 @@ import numpy as np
 
 from robot_control.loop_timing import Distribution, LoopTiming, loop_timing
 from robot_control.run_log import Log, last
-from robot_control.tracking import NotSteadyError, Tracking, judge
+from robot_control.tracking import RISE_LIMIT, SETTLE, NotSteadyError, Tracking, judge
 
 SUPERVISOR_STATES = ("INIT", "READY", "DRIVE", "STOPPING", "STOPPED", "FAULT")
 """In the order of enum SupervisorState."""
@@ -70,7 +70,7 @@ def summarize(log: Log, linear: float, angular: float, driven: float, stolen_sha
         log: of one run.
         linear: m/s, commanded.
         angular: rad/s, commanded.
-        driven: s of wall-clock time for which the command was sent. A log whose steady part ends early, because
+        driven: s of wall-clock time from the command's arrival to its end. A log whose steady part ends early, because
             something died, tracked nothing.
         stolen_share: of the processors' time during the run.
     """
@@ -81,9 +81,9 @@ def summarize(log: Log, linear: float, angular: float, driven: float, stolen_sha
         untracked = str(error)
     timing = loop_timing(log)
     if tracking is not None:
-        # 3 s: rise, settling and the sender's start; what a slow plant lost against the wall clock is no fault.
+        # What a slow plant lost against the wall clock is no fault.
         missing = driven - timing.slipped - (tracking.end - tracking.begin)
-        if missing > 3.0:
+        if missing > RISE_LIMIT + SETTLE:
             tracking, untracked = None, f"{missing:.1f} s of the {driven:g} s driven are not in the steady part"
     return RunSummary(tracking, untracked, timing, stolen_share, safety(log))
 

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-
 from robot_control.run_log import LogError, joint_names, last, read_log
 
 

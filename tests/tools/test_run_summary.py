@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from robot_control.run_picture import draw_run
 from robot_control.run_summary import STOP_CAUSES, SUPERVISOR_STATES, summarize, to_json, to_table
 from synthetic_run import ANGULAR, LINEAR, SECONDS, healthy_run
