@@ -1,23 +1,24 @@
 """The closed loop in one process, in virtual time: the same C++ classes as the four nodes run.
 
-    loop = ClosedLoop()
-    log = loop.run(seconds=10.0, command=(0.5, 0.2))
-    log["truth_linear"]  # numpy, one value per cycle
+loop = ClosedLoop()
+log = loop.run(seconds=10.0, command=(0.5, 0.2))
+log["truth_linear"]  # numpy, one value per cycle
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from os import PathLike, fspath
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from robot_control import _robot_control
+from robot_control._robot_control import ClosedLoop as _ClosedLoop
 from robot_control.share import share_file
 
-Log = dict[str, np.ndarray]
-Command = Union[Callable[[float], tuple[float, float]], tuple[float, float], None]
+Log = dict[str, NDArray[np.float64]]
+Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None
 
 
 def _leaves(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
@@ -75,7 +76,7 @@ class ClosedLoop:
 
     def reset(self, seed: int = 0) -> None:
         """Starts anew at cycle 0: robot set down, estimator, controller and latches fresh."""
-        self._loop = _robot_control.ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
+        self._loop = _ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
 
     def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
         """As if just received on cmd_vel: linear [m/s], angular [rad/s]. Times out like cmd_vel."""

@@ -39,7 +39,9 @@ def parse_plan(arguments: list[str]) -> SendPlan:
     parser = argparse.ArgumentParser(prog="send_cmd.py", description="Repeats one velocity command on cmd_vel.")
     parser.add_argument("--linear", type=float, default=SendPlan.linear, help="m/s (default %(default)s)")
     parser.add_argument("--angular", type=float, default=SendPlan.angular, help="rad/s (default %(default)s)")
-    parser.add_argument("--period", type=positive, default=SendPlan.period, help="s between sends (default %(default)s)")
+    parser.add_argument(
+        "--period", type=positive, default=SendPlan.period, help="s between sends (default %(default)s)"
+    )
     end = parser.add_mutually_exclusive_group()
     end.add_argument("--count", type=int, help="end after so many sends")
     end.add_argument("--seconds", type=positive, help="end after so many seconds")

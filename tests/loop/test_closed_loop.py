@@ -22,7 +22,9 @@ def path_length(log):
 
 def moved(log, start=0):
     """Largest distance [m] from the pose of row `start`."""
-    return float(np.max(np.hypot(log["truth_x"][start:] - log["truth_x"][start], log["truth_y"][start:] - log["truth_y"][start])))
+    return float(
+        np.max(np.hypot(log["truth_x"][start:] - log["truth_x"][start], log["truth_y"][start:] - log["truth_y"][start]))
+    )
 
 
 def drive(loop, seconds, command=COMMAND):
@@ -37,7 +39,7 @@ def loop():
 def test_tracks_the_command_on_a_physical_plant(loop):
     log = drive(loop, 12.0)
     steady = log["time"] >= 2.0
-    for wanted, name in zip(COMMAND, ("truth_linear", "truth_angular")):
+    for wanted, name in zip(COMMAND, ("truth_linear", "truth_angular"), strict=False):
         true = log[name][steady]
         assert abs(true.mean() / wanted - 1) < 0.01
         assert np.max(np.abs(true / wanted - 1)) < 0.05
@@ -190,14 +192,14 @@ def test_refuses_wrong_parameters_all_at_once():
 
 
 def test_refuses_the_articles_gains_as_torque_gains():
-    with pytest.raises(ParameterError, match="pid_kp"):
+    with pytest.raises(ParameterError, match=r"pid_kp"):
         ClosedLoop({"diff_drive_controller": {"pid_kp": 20.0, "pid_ki": 0.1, "pid_kd": 0.5}})
 
 
 def test_refuses_a_scene_that_does_not_compile(tmp_path):
     scene = tmp_path / "scene.xml"
     scene.write_text("<mujoco><worldbody><geom type='no_such_type'/></worldbody></mujoco>")
-    with pytest.raises(DriverError, match="no_such_type|keyword"):
+    with pytest.raises(DriverError, match=r"no_such_type|keyword"):
         ClosedLoop(scene=scene)
 
 
@@ -205,10 +207,10 @@ def test_refuses_a_robot_without_wheels(tmp_path):
     urdf = tmp_path / "robot.urdf"
     inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
     urdf.write_text(f"<robot name='r'><link name='base_link'>{inertial}</link></robot>")
-    with pytest.raises(RobotError, match="left_wheel_joint"):
+    with pytest.raises(RobotError, match=r"left_wheel_joint"):
         ClosedLoop(urdf=urdf)
 
 
 def test_refuses_a_missing_file():
-    with pytest.raises((RobotError, ParameterError), match="nowhere.urdf"):
+    with pytest.raises((RobotError, ParameterError), match=r"nowhere.urdf"):
         ClosedLoop(urdf="/nowhere.urdf")
