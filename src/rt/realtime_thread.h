@@ -8,6 +8,7 @@
 /// What was asked and not granted is said in one message each, with the remedy. Under kRequired that is an
 /// error at start-up. The core needs no privilege and is applied whatever the policy says.
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -67,7 +68,11 @@ class RealtimeThread {
 
   const RealtimeReport& report() const noexcept { return report_; }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  static constexpr std::size_t kStackBytes = 4096 * 1024;  ///< a sanitizer keeps 0.9 MB of its own there
+#else
   static constexpr std::size_t kStackBytes = 512 * 1024;
+#endif
 
  private:
   struct Thread;

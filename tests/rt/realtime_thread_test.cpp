@@ -58,8 +58,7 @@ bool drop_privileges() {
   }
   if (geteuid() == 0 && setresuid(65534, 65534, 65534) != 0) return false;
   const sched_param parameter{.sched_priority = 1};
-  const bool granted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
-  return !granted && mlockall(MCL_CURRENT) != 0;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) != 0;
 }
 
 bool contains(const std::string& text, const std::string& part) {
