@@ -11,6 +11,7 @@ catkin_python_setup()
 add_message_files(FILES SafetyStatus.msg)
 generate_messages(DEPENDENCIES std_msgs)
 catkin_package(CATKIN_DEPENDS message_runtime std_msgs)
+unset(CMAKE_RUNTIME_OUTPUT_DIRECTORY)  # catkin's: test programs are no nodes
 
 # robot_control_ros(TARGET): ROS headers, generated messages included, for one target.
 function(robot_control_ros target)

@@ -108,6 +108,7 @@ class NodeLoop {
 }  // namespace
 
 int run_node(int argc, char** argv, const std::string& name, RobotSource source, MakeNode make) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
     const Setup setup = read_setup(name, source);

@@ -1,0 +1,104 @@
+#include "bridge/command_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class CommandReportTest : public testing::Test {
+ protected:
+  CommandReportTest() { frame_.head.run = 1; }
+
+  /// A message arrives and is accepted.
+  std::vector<ReportLine> receive(double linear, double angular) {
+    ++frame_.requests_received;
+    frame_.reasons = 0;
+    frame_.twist_requested.linear[0] = linear;
+    frame_.twist_requested.angular[2] = angular;
+    return report().look(frame_);
+  }
+
+  std::vector<ReportLine> refuse() {
+    ++frame_.requests_received;
+    ++frame_.requests_refused;
+    frame_.reasons = kReasonRefused;
+    frame_.twist_requested = {};
+    return report().look(frame_);
+  }
+
+  std::vector<ReportLine> time_out() {
+    ++frame_.timeouts;
+    frame_.reasons = kReasonTimedOut;
+    frame_.twist_requested = {};
+    return report().look(frame_);
+  }
+
+  CommandReport& report() { return report_; }
+
+  CommandFrame frame_;
+
+ private:
+  static RobotModel robot() {
+    RobotModel robot;
+    robot.wheel_base = 0.5;
+    return robot;
+  }
+
+  CommandReport report_{robot(), 1.25};
+};
+
+TEST_F(CommandReportTest, TellsTheWheelSpeedsOfTheArticlesCommand) {
+  // 0.5 ∓ 0.2 · 0.5 / 2
+  const std::vector<ReportLine> lines = receive(0.5, 0.2);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_FALSE(lines[0].warning);
+  EXPECT_THAT(lines[0].text, HasSubstr("left 0.45 m/s, right 0.55 m/s"));
+}
+
+TEST_F(CommandReportTest, IsSilentWhileTheValueStays) {
+  receive(0.5, 0.2);
+  EXPECT_THAT(receive(0.5, 0.2), IsEmpty());
+  EXPECT_THAT(report().look(frame_), IsEmpty());
+}
+
+TEST_F(CommandReportTest, TellsAChangedValue) {
+  receive(0.5, 0.2);
+  EXPECT_EQ(receive(0.5, 0.0).size(), 1u);
+}
+
+TEST_F(CommandReportTest, WarnsOncePerTimeout) {
+  receive(0.5, 0.2);
+  const std::vector<ReportLine> lines = time_out();
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_TRUE(lines[0].warning);
+  EXPECT_THAT(lines[0].text, HasSubstr("1.25 s"));
+  EXPECT_THAT(report().look(frame_), IsEmpty());
+  EXPECT_EQ(receive(0.5, 0.2).size(), 1u) << "the motion begins again: told again";
+}
+
+TEST_F(CommandReportTest, DoesNotWarnWhenAStandingRobotIsLeftAlone) {
+  receive(0, 0);
+  EXPECT_THAT(time_out(), IsEmpty());
+}
+
+TEST_F(CommandReportTest, WarnsOncePerSeriesOfRefusals) {
+  receive(0.5, 0.2);
+  EXPECT_EQ(refuse().size(), 1u);
+  EXPECT_THAT(refuse(), IsEmpty());
+  receive(0.5, 0.2);
+  EXPECT_EQ(refuse().size(), 1u);
+}
+
+TEST_F(CommandReportTest, BeginsAnewWithARun) {
+  receive(0.5, 0.2);
+  frame_ = {};
+  frame_.head.run = 2;
+  EXPECT_EQ(receive(0.5, 0.2).size(), 1u);
+}
+
+}  // namespace
+}  // namespace robot_control

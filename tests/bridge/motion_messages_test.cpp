@@ -1,0 +1,123 @@
+#include "bridge/motion_messages.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+
+class MotionMessagesTest : public testing::Test {
+ protected:
+  MotionMessagesTest() {
+    robot_.base_link = "base_link";
+    robot_.imu_link = "imu_link";
+    robot_.joints.resize(3);
+    robot_.joints[0].name = "left";
+    robot_.joints[1].name = "right";
+    robot_.joints[2].name = "mast";
+    robot_.left.joint = 0;
+    robot_.right.joint = 1;
+    sensors_.joint_count = 3;
+    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+  }
+
+  const ros::Time stamp_{12, 34};
+  RobotModel robot_;
+  SensorFrame sensors_;
+  StateFrame state_;
+  CommandFrame command_;
+};
+
+TEST_F(MotionMessagesTest, JointStatesCarryEveryJointInFrameOrder) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto value = static_cast<double>(i);
+    sensors_.joints[i] = {.position = 1 + value, .velocity = 10 + value, .effort = 100 + value};
+  }
+  const msg::JointState message = joint_states(sensors_, robot_, stamp_);
+  EXPECT_THAT(message.name, ElementsAre("left", "right", "mast"));
+  EXPECT_THAT(message.position, ElementsAre(1, 2, 3));
+  EXPECT_THAT(message.velocity, ElementsAre(10, 11, 12));
+  EXPECT_THAT(message.effort, ElementsAre(100, 101, 102));
+  EXPECT_EQ(message.header.stamp, stamp_);
+}
+
+TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {
+  state_.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
+  state_.twist_base = {.linear = {4, 5, 6}, .angular = {7, 8, 9}};
+  for (std::size_t i = 0; i < 36; ++i) {
+    state_.pose_covariance[i] = static_cast<double>(i);
+    state_.twist_covariance[i] = -static_cast<double>(i);
+  }
+  const msg::Odometry message = odometry(state_, "odom", "base_link", stamp_);
+  EXPECT_EQ(message.header.frame_id, "odom");
+  EXPECT_EQ(message.child_frame_id, "base_link");
+  EXPECT_EQ(message.pose.pose.position.y, 2);
+  EXPECT_EQ(message.pose.pose.orientation.z, 0.6);
+  EXPECT_EQ(message.pose.pose.orientation.w, 0.8);
+  EXPECT_EQ(message.twist.twist.linear.x, 4);
+  EXPECT_EQ(message.twist.twist.angular.z, 9);
+  for (std::size_t i = 0; i < 36; ++i) {
+    EXPECT_EQ(message.pose.covariance[i], static_cast<double>(i));
+    EXPECT_EQ(message.twist.covariance[i], -static_cast<double>(i));
+  }
+}
+
+TEST_F(MotionMessagesTest, TransformIsTheOdometrysPose) {
+  state_.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
+  const msg::TransformStamped message = transform(odometry(state_, "odom", "base_link", stamp_));
+  EXPECT_EQ(message.header.frame_id, "odom");
+  EXPECT_EQ(message.child_frame_id, "base_link");
+  EXPECT_EQ(message.header.stamp, stamp_);
+  EXPECT_EQ(message.transform.translation.z, 3);
+  EXPECT_EQ(message.transform.rotation.z, 0.6);
+}
+
+TEST_F(MotionMessagesTest, ImuSaysWhatItDoesNotMeasure) {
+  const msg::Imu message = imu(sensors_, robot_, stamp_);
+  EXPECT_EQ(message.header.frame_id, "imu_link");
+  EXPECT_EQ(message.orientation_covariance[0], -1);
+  EXPECT_THAT(message.angular_velocity_covariance, Each(0));
+  EXPECT_THAT(message.linear_acceleration_covariance, Each(0));
+  sensors_.valid = kValidOrientation;
+  EXPECT_EQ(imu(sensors_, robot_, stamp_).orientation_covariance[0], 0);
+  EXPECT_EQ(imu(sensors_, robot_, stamp_).angular_velocity_covariance[0], -1);
+}
+
+TEST_F(MotionMessagesTest, JointCommandsAreTheWheelsVelocityTargets) {
+  command_.joints[0].velocity = 4.5;
+  command_.joints[1].velocity = 5.5;
+  command_.joints[2].velocity = 99;
+  const msg::Float64MultiArray message = joint_commands(command_, robot_);
+  EXPECT_THAT(message.data, ElementsAre(4.5, 5.5));
+  ASSERT_EQ(message.layout.dim.size(), 1u);
+  EXPECT_EQ(message.layout.dim[0].label, "wheel");
+  EXPECT_EQ(message.layout.dim[0].size, 2u);
+  const msg::JointState targets = joint_targets(command_, robot_, stamp_);
+  EXPECT_THAT(targets.name, ElementsAre("left", "right"));
+  EXPECT_THAT(targets.velocity, ElementsAre(4.5, 5.5));
+}
+
+TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {
+  command_.twist_requested.linear[0] = 9;
+  command_.twist_limited.linear[0] = 0.5;
+  command_.twist_limited.angular[2] = 0.2;
+  const msg::TwistStamped message = velocity_out(command_, "base_link", stamp_);
+  EXPECT_EQ(message.header.frame_id, "base_link");
+  EXPECT_EQ(message.twist.linear.x, 0.5);
+  EXPECT_EQ(message.twist.angular.z, 0.2);
+}
+
+TEST_F(MotionMessagesTest, TwistKeepsAllSixAxes) {
+  msg::Twist message;
+  message.linear.x = 1, message.linear.y = 2, message.linear.z = 3;
+  message.angular.x = 4, message.angular.y = 5, message.angular.z = 6;
+  const Twist twist = twist_of(message);
+  EXPECT_THAT(twist.linear, ElementsAre(1, 2, 3));
+  EXPECT_THAT(twist.angular, ElementsAre(4, 5, 6));
+}
+
+}  // namespace
+}  // namespace robot_control

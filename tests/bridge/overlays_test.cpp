@@ -1,0 +1,63 @@
+#include "bridge/overlays.h"
+
+#include <gtest/gtest.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <limits>
+
+namespace robot_control {
+namespace {
+
+TEST(Overlays, NameEveryLeafWithItsPathAndOrigin) {
+  XmlRpc::XmlRpcValue tree;
+  tree["rate"] = 500.5;
+  tree["limits"]["core"] = 1;
+  const std::vector<Overlay> overlays = overlays_of(tree, "robot", "/robot2/robot");
+  ASSERT_EQ(overlays.size(), 2u);
+  EXPECT_EQ(overlays[0].path, "robot.limits.core");
+  EXPECT_EQ(overlays[0].text, "1");
+  EXPECT_EQ(overlays[0].origin, "/robot2/robot/limits/core");
+  EXPECT_EQ(overlays[1].path, "robot.rate");
+  EXPECT_EQ(overlays[1].text, "500.5");
+}
+
+TEST(Overlays, LeaveOutWhatIsNotTheSchemas) {
+  XmlRpc::XmlRpcValue tree;
+  tree["config"] = std::string("/somewhere.yaml");
+  tree["pid_kp"] = 2.0;
+  const std::vector<Overlay> overlays =
+      overlays_of(tree, "diff_drive_controller", "/diff_drive_controller", {"config"});
+  ASSERT_EQ(overlays.size(), 1u);
+  EXPECT_EQ(overlays[0].path, "diff_drive_controller.pid_kp");
+}
+
+TEST(Overlays, KeepEveryBitOfANumber) {
+  XmlRpc::XmlRpcValue tree;
+  tree["value"] = 0.1 + 0.2;
+  EXPECT_EQ(std::stod(overlays_of(tree, "b", "/b")[0].text), 0.1 + 0.2);
+}
+
+TEST(Overlays, SpellNotANumberAsYamlDoes) {
+  XmlRpc::XmlRpcValue tree;
+  tree["a"] = std::numeric_limits<double>::quiet_NaN();
+  tree["b"] = -std::numeric_limits<double>::infinity();
+  tree["c"] = false;
+  const std::vector<Overlay> overlays = overlays_of(tree, "b", "/b");
+  EXPECT_EQ(overlays[0].text, ".nan");
+  EXPECT_EQ(overlays[1].text, "-.inf");
+  EXPECT_EQ(overlays[2].text, "false");
+}
+
+TEST(Overlays, AreNoneWhereNothingIsSet) {
+  EXPECT_TRUE(overlays_of(XmlRpc::XmlRpcValue(), "robot", "/robot").empty());
+}
+
+TEST(Overlays, PassAScalarInPlaceOfABlockOnToTheSchema) {
+  XmlRpc::XmlRpcValue scalar(7);
+  const std::vector<Overlay> overlays = overlays_of(scalar, "robot", "/robot");
+  ASSERT_EQ(overlays.size(), 1u);
+  EXPECT_EQ(overlays[0].path, "robot");
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,68 @@
+#include "bridge/time_map.h"
+
+#include <gtest/gtest.h>
+#include <ros/time.h>
+
+#include <random>
+
+#include "rt/clock.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+TEST(TimeMap, AddsTheMeasuredOffset) {
+  TimeMap map(ClockMode::kWall);
+  map.update(5 * kSecond, 1000 * kSecond);
+  EXPECT_EQ(map.ros_ns(5 * kSecond), 1005 * kSecond);
+}
+
+TEST(TimeMap, FollowsAClockThatWasSetForward) {
+  TimeMap map(ClockMode::kWall);
+  map.update(5 * kSecond, 1000 * kSecond);
+  map.update(6 * kSecond, 2000 * kSecond);
+  EXPECT_EQ(map.ros_ns(6 * kSecond), 2006 * kSecond);
+}
+
+TEST(TimeMap, SlowsDownWhenTheClockWasSetBackUntilItIsCaughtUp) {
+  TimeMap map(ClockMode::kWall);
+  map.update(10 * kSecond, 1000 * kSecond);
+  map.update(11 * kSecond, 999 * kSecond);
+  EXPECT_EQ(map.ros_ns(11 * kSecond), 1010 * kSecond + kSecond / 2);
+  map.update(14 * kSecond, 999 * kSecond);
+  EXPECT_EQ(map.ros_ns(14 * kSecond), 1013 * kSecond);
+}
+
+TEST(TimeMap, NeverTurnsBack) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<std::int64_t> step(1, kSecond / 100);
+  std::uniform_int_distribution<std::int64_t> offset(900 * kSecond, 1100 * kSecond);
+  TimeMap map(ClockMode::kWall);
+  std::int64_t last = 0;
+  std::int64_t stamp = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    stamp += step(random);
+    map.update(stamp, offset(random));
+    ASSERT_GT(map.ros_ns(stamp), last) << i;
+    last = map.ros_ns(stamp);
+  }
+}
+
+TEST(TimeMap, IsTheTimeOfDayOnTheWallClock) {
+  TimeMap map(ClockMode::kWall);
+  const std::int64_t now_ns = monotonic_ns();
+  map.update(now_ns);
+  EXPECT_NEAR(map.at(now_ns).toSec(), ros::WallTime::now().toSec(), 10.0);  // s; a machine may stall in between
+}
+
+TEST(TimeMap, IsTheStampItselfInLockstep) {
+  TimeMap map(ClockMode::kLockstep);
+  map.update(7 * kSecond);
+  EXPECT_EQ(map.ros_ns(7 * kSecond), 7 * kSecond);
+}
+
+}  // namespace
+}  // namespace robot_control

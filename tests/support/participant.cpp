@@ -1,0 +1,130 @@
+/// One node of the loop without ROS, for benches and tests:
+///
+///   rc_participant NODE --bus NAME --params YAML [--set path=value]… [--seconds S]
+///
+/// NODE: mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry. Ends on SIGTERM or
+/// SIGINT, after S seconds, or, the plant, after mujoco_plant.cycles. Exit code 1: refused, told on stderr.
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "drivers/mujoco_plant.h"
+#include "rt/clock.h"
+#include "rt/futex.h"
+#include "rt/realtime_thread.h"
+#include "runtime/consumer_process.h"
+#include "runtime/driver_process.h"
+#include "runtime/telemetry_process.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::int64_t kLookNs = 10'000'000;
+
+std::atomic<bool> interrupted{false};
+
+struct Arguments {
+  std::string node;
+  std::string bus;
+  std::string params;
+  std::vector<Overlay> overlays;
+  double seconds = 1.0e9;
+};
+
+Arguments parse(const std::vector<std::string>& words) {
+  Arguments arguments;
+  const auto bad = [](const std::string& what) { throw std::invalid_argument(what + "; see the head of the source"); };
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (!word.starts_with("--")) {
+      arguments.node = word;
+      continue;
+    }
+    if (i + 1 == words.size()) bad(word + " wants a value");
+    const std::string& value = words[++i];
+    if (word == "--bus") {
+      arguments.bus = value;
+    } else if (word == "--params") {
+      arguments.params = value;
+    } else if (word == "--seconds") {
+      arguments.seconds = std::stod(value);
+    } else if (const std::size_t equals = value.find('='); word == "--set" && equals != std::string::npos) {
+      arguments.overlays.push_back({value.substr(0, equals), value.substr(equals + 1), "--set"});
+    } else {
+      bad("cannot read " + word + " " + value);
+    }
+  }
+  if (arguments.node.empty() || arguments.bus.empty() || arguments.params.empty()) bad("NODE, --bus, --params wanted");
+  return arguments;
+}
+
+/// Calls `look` until it says that this is the end.
+void run(double seconds, const std::function<bool()>& look) {
+  const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
+  while (!interrupted.load() && monotonic_ns() < end_ns && look()) sleep_ns(kLookNs);
+}
+
+void run_process(Process& process, double seconds) {
+  run(seconds, [&] {
+    process.poll();
+    return !process.finished();
+  });
+  process.stop();
+  for (const std::string& text : process.realtime_messages()) std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void run_telemetry(TelemetryProcess& telemetry, double seconds) {
+  run(seconds, [&] {
+    telemetry.poll();
+    telemetry.drain();
+    return true;
+  });
+  telemetry.finish();
+}
+
+void participate(const Arguments& arguments) {
+  const Parameters parameters = read_parameters(arguments.params, arguments.overlays);
+  const RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
+  const LoopParameters& loop = parameters.loop;
+  prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
+  if (arguments.node == "mujoco_plant") {
+    DriverProcess driver(parameters, robot, arguments.bus);
+    driver.open_driver(std::make_unique<MujocoPlant>(robot, parameters.plant, loop.period()));
+    run_process(driver, arguments.seconds);
+  } else if (arguments.node == "state_estimator") {
+    EstimatorProcess estimator(parameters, robot, arguments.bus);
+    run_process(estimator, arguments.seconds);
+  } else if (arguments.node == "diff_drive_controller") {
+    ControllerProcess controller(parameters, robot, arguments.bus);
+    run_process(controller, arguments.seconds);
+  } else if (arguments.node == "safety_monitor") {
+    MonitorProcess monitor(parameters, robot, arguments.bus);
+    run_process(monitor, arguments.seconds);
+  } else if (arguments.node == "telemetry") {
+    TelemetryProcess telemetry(parameters, robot, arguments.bus);
+    run_telemetry(telemetry, arguments.seconds);
+  } else {
+    throw std::invalid_argument("no node is called " + arguments.node);
+  }
+}
+
+}  // namespace
+}  // namespace robot_control
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, [](int) { robot_control::interrupted.store(true); });
+  std::signal(SIGTERM, [](int) { robot_control::interrupted.store(true); });
+  try {
+    robot_control::participate(robot_control::parse({argv, argv + argc}));
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "rc_participant: refused:\n%s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""Any node may be killed with -9 and started again while the others run."""
+
+import unittest
+
+import rostest
+from system_support import CONTROLLER, ESTIMATOR, MONITOR, PLANT, Robot, init_test_node, wait_for
+
+from robot_control.msg import SafetyStatus
+
+
+class RestartTest(unittest.TestCase):
+    robot: Robot
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node("restart_test")
+        cls.robot = Robot()
+        cls.robot.start()
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.robot.end()
+
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+
+    def expect_latched(self, cause: str) -> None:
+        """STOPPED for this cause, however often a motion is asked for; after a reset the robot drives."""
+        robot = self.robot
+        wait_for(cause, lambda: robot.state == SafetyStatus.STOPPED and cause in robot.causes,
+                 every=lambda: robot.send(0.5, 0.2))
+        wait_for("standstill", lambda: abs(robot.speed) < 0.01, every=lambda: robot.send(0.5, 0.2))
+        robot.release()
+        robot.drive_until("0.5 m/s after the reset", robot.driving)
+
+    def test_controller(self) -> None:
+        self.robot.nodes[CONTROLLER].kill()
+        wait_for("controller_lost", lambda: "controller_lost" in self.robot.causes)
+        wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
+        self.robot.start(CONTROLLER)
+        self.expect_latched("controller_lost")
+
+    def test_estimator_continues_where_it_was(self) -> None:
+        self.robot.drive_until("0.3 m", lambda: self.robot.distance > 0.3)
+        self.robot.nodes[ESTIMATOR].kill()
+        wait_for("estimator_lost", lambda: "estimator_lost" in self.robot.causes)
+        before, count = self.robot.distance, self.robot.odom_count
+        self.robot.start(ESTIMATOR)
+        wait_for("odometry", lambda: self.robot.odom_count > count)
+        # It stopped from 0.5 m/s meanwhile: less than 0.2 m with the brake. A jump to zero would be 0.3 m.
+        self.assertLess(abs(self.robot.distance - before), 0.2)
+        self.expect_latched("estimator_lost")
+
+    def test_monitor(self) -> None:
+        self.robot.nodes[MONITOR].kill()
+        wait_for("standstill without a monitor", lambda: abs(self.robot.speed) < 0.01,
+                 every=lambda: self.robot.send(0.5, 0.2))
+        self.robot.start(MONITOR)
+        self.expect_latched("monitor_restarted")
+
+    def test_plant(self) -> None:
+        run = self.robot.status.run
+        self.robot.nodes[PLANT].kill()
+        wait_for("driver_lost", lambda: "driver_lost" in self.robot.causes)
+        self.robot.start(PLANT)
+        wait_for("a new run", lambda: self.robot.status.run not in (0, run))
+        self.expect_latched("driver_lost")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "restart", RestartTest)

@@ -1,0 +1,265 @@
+"""Nodes as processes and the robot as ROS sees it: what the system tests are written with.
+
+The tests judge wiring, not timing: every wait has a limit far beyond what a busy machine needs.
+"""
+
+import contextlib
+import math
+import os
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import roslib.packages
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, Float64MultiArray
+from std_srvs.srv import Trigger, TriggerResponse
+
+from robot_control.msg import SafetyStatus
+
+PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
+LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
+LIMIT = 30.0
+"""s; what takes longer has not happened. On an idle machine nothing here takes longer than 3 s."""
+SEND_PERIOD = 0.1
+"""s; a twelfth of cmd_vel_timeout."""
+STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost"}
+"""What a machine that stood still for 20 ms may latch by itself."""
+
+
+def wait_for(what: str, condition: Callable[[], bool], limit: float = LIMIT, every: Callable[[], None] | None = None) -> None:
+    """Polls until the condition holds; `every` is called at each look. Fails naming `what`."""
+    end = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {limit:g} s: {what}")
+        if every is not None:
+            every()
+        time.sleep(0.02)
+
+
+class Program:
+    """A program of the package with its output in a file."""
+
+    def __init__(self, name: str, *arguments: str, namespace: str = "") -> None:
+        self.name = name
+        self._output = tempfile.NamedTemporaryFile(prefix=f"{name}-", suffix=".log")
+        found = roslib.packages.find_node("robot_control", name)
+        if not found:
+            raise AssertionError(f"robot_control has no program {name}")
+        ns = [f"__ns:={namespace}"] if namespace else []
+        self._process = subprocess.Popen(
+            [found[0], *arguments, *ns], stdin=subprocess.DEVNULL, stdout=self._output, stderr=subprocess.STDOUT
+        )
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def running(self) -> bool:
+        return self._process.poll() is None
+
+    @property
+    def output(self) -> str:
+        return Path(self._output.name).read_text(errors="replace")
+
+    def send_signal(self, number: int) -> None:
+        self._process.send_signal(number)
+
+    def wait(self, limit: float = LIMIT) -> int:
+        """The exit code; negative after a signal."""
+        return self._process.wait(limit)
+
+    def end(self) -> int:
+        """SIGINT, SIGKILL if that does not help; the exit code."""
+        if self.running:
+            self.send_signal(signal.SIGINT)
+            try:
+                return self.wait(10.0)
+            except subprocess.TimeoutExpired:
+                self.send_signal(signal.SIGKILL)
+        return self.wait()
+
+    def kill(self) -> None:
+        """kill -9, and gone on return."""
+        self.send_signal(signal.SIGKILL)
+        self.wait()
+
+    def shared_memory(self) -> set[Path]:
+        """The objects that it has mapped."""
+        with contextlib.suppress(OSError):
+            lines = Path(f"/proc/{self.pid}/maps").read_text().splitlines()
+            paths = (Path(line.split(maxsplit=5)[5]) for line in lines if "/dev/shm/robot_control." in line)
+            return {path for path in paths if path.exists()}
+        return set()
+
+
+class Robot:
+    """Four nodes in a namespace, and what they publish."""
+
+    def __init__(self, namespace: str = "") -> None:
+        self.namespace = namespace
+        self.nodes: dict[str, Program] = {}
+        self.odom: Odometry | None = None
+        self.joints: JointState | None = None
+        self.wheels: tuple[float, ...] = ()
+        self.status: SafetyStatus | None = None
+        self.odom_count = 0
+        self.joints_count = 0
+        self._subscribers = [
+            rospy.Subscriber(self.name("odom"), Odometry, self._hear_odom),
+            rospy.Subscriber(self.name("joint_states"), JointState, self._hear_joints),
+            rospy.Subscriber(self.name("joint_commands"), Float64MultiArray, self._hear_wheels),
+            rospy.Subscriber(self.name("safety_status"), SafetyStatus, self._hear_status),
+        ]
+        self._cmd_vel = rospy.Publisher(self.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
+        self._e_stop = rospy.Publisher(self.name("e_stop"), Bool, queue_size=1, tcp_nodelay=True)
+        self._last_send = 0.0
+
+    def name(self, topic: str) -> str:
+        """Absolute."""
+        return f"/{self.namespace}/{topic}" if self.namespace else f"/{topic}"
+
+    def start(self, *names: str) -> None:
+        """Starts these nodes, or all four."""
+        for name in names or LOOP:
+            self.nodes[name] = Program(name, namespace=self.namespace)
+
+    def end(self) -> None:
+        """Ends all nodes and removes their shared memory: a master's port is never seen again."""
+        objects = {path for node in self.nodes.values() for path in node.shared_memory()}
+        for node in self.nodes.values():
+            node.end()
+        for path in objects:
+            path.unlink(missing_ok=True)
+
+    def restart(self, name: str) -> None:
+        """kill -9 and start again."""
+        self.nodes[name].kill()
+        self.start(name)
+
+    # what to ask of it
+
+    def send(self, linear: float, angular: float) -> None:
+        """cmd_vel, at most every SEND_PERIOD."""
+        if time.monotonic() - self._last_send < SEND_PERIOD:
+            return
+        self._last_send = time.monotonic()
+        message = Twist()
+        message.linear.x, message.angular.z = linear, angular
+        self._cmd_vel.publish(message)
+
+    def send_e_stop(self, stop: bool) -> None:
+        self._e_stop.publish(Bool(stop))
+
+    def call(self, service: str) -> TriggerResponse:
+        rospy.wait_for_service(self.name(service), LIMIT)
+        return rospy.ServiceProxy(self.name(service), Trigger)()
+
+    def release(self) -> None:
+        """Comes to rest under zero commands and resets until that is accepted."""
+        self.await_rest()
+        answer = [TriggerResponse()]
+
+        def accepted() -> bool:
+            answer[0] = self.call("e_stop_reset")
+            return bool(answer[0].success)
+
+        wait_for("an accepted reset", accepted, every=lambda: self.send(0, 0))
+
+    def await_ready(self) -> None:
+        """All nodes there, permit to drive; what a stalling machine latched is released."""
+        wait_for("safety_status", lambda: self.status is not None)
+        wait_for("the end of INIT", lambda: self.state != SafetyStatus.INIT)
+        wait_for("odometry", lambda: self.odom is not None)
+        if self.state == SafetyStatus.STOPPED:
+            self.release()
+
+    def drive_until(self, what: str, condition: Callable[[], bool], linear: float = 0.5, angular: float = 0.2) -> None:
+        """Sends until the condition holds. Stops that a stalling machine may latch are released on the way."""
+        end = time.monotonic() + LIMIT
+        while not condition():
+            if time.monotonic() > end:
+                raise AssertionError(f"not within {LIMIT:g} s of driving: {what}; causes: {self.causes}")
+            self.send(linear, angular)
+            if self.state == SafetyStatus.STOPPED and self.causes and self.causes <= STALL_CAUSES:
+                self.release()
+            time.sleep(0.02)
+
+    def await_rest(self) -> None:
+        """Sends zero until the wheels stand."""
+        wait_for("standstill", lambda: abs(self.speed) < 0.01, every=lambda: self.send(0, 0))
+
+    # what it says
+
+    @property
+    def state(self) -> int:
+        return SafetyStatus.INIT if self.status is None else self.status.state
+
+    @property
+    def causes(self) -> set[str]:
+        return set() if self.status is None else set(self.status.causes)
+
+    @property
+    def speed(self) -> float:
+        """m/s, estimated."""
+        return math.nan if self.odom is None else self.odom.twist.twist.linear.x
+
+    @property
+    def distance(self) -> float:
+        """m from the origin of odom, estimated."""
+        if self.odom is None:
+            return math.nan
+        position = self.odom.pose.pose.position
+        return math.hypot(position.x, position.y)
+
+    def driving(self) -> bool:
+        return self.speed > 0.4
+
+    def _hear_odom(self, message: Odometry) -> None:
+        self.odom = message
+        self.odom_count += 1
+
+    def _hear_joints(self, message: JointState) -> None:
+        self.joints = message
+        self.joints_count += 1
+
+    def _hear_wheels(self, message: Float64MultiArray) -> None:
+        self.wheels = tuple(message.data)
+
+    def _hear_status(self, message: SafetyStatus) -> None:
+        self.status = message
+
+
+@contextlib.contextmanager
+def running_robot(namespace: str = "") -> Iterator[Robot]:
+    """Four nodes, ready; ended whatever happens."""
+    robot = Robot(namespace)
+    try:
+        robot.start()
+        robot.await_ready()
+        yield robot
+    finally:
+        robot.end()
+
+
+def init_test_node(name: str) -> None:
+    """SIGINT stays with unittest."""
+    rospy.init_node(name, anonymous=True, disable_signals=True)
+
+
+def repository() -> Path:
+    return Path(roslib.packages.get_pkg_dir("robot_control"))
+
+
+def schedule_of(task: Path) -> tuple[int, set[int], str]:
+    """Scheduling class, cores and name of one thread of /proc."""
+    number = int(task.name)
+    return os.sched_getscheduler(number), os.sched_getaffinity(number), (task / "comm").read_text().strip()
