@@ -12,36 +12,36 @@ namespace robot_control {
 
 /// Why the commanded motion differs from the requested one; bits of CommandFrame::reasons.
 enum CommandReason : std::uint64_t {
-  kReasonNoCommand = 1u << 0,          ///< Nothing received in this run yet.
-  kReasonTimedOut = 1u << 1,           ///< The last command is older than cmd_vel_timeout.
-  kReasonRefused = 1u << 2,            ///< The last command was NaN or infinite.
-  kReasonSpeedLimited = 1u << 3,       ///< max_linear_speed or max_angular_speed.
+  kReasonNoCommand = 1u << 0,     ///< Nothing received in this run yet.
+  kReasonTimedOut = 1u << 1,      ///< The last command is older than cmd_vel_timeout.
+  kReasonRefused = 1u << 2,       ///< The last command was NaN or infinite.
+  kReasonSpeedLimited = 1u << 3,  ///< max_linear_speed or max_angular_speed.
   kReasonAccelerationLimited = 1u << 4,
   kReasonJerkLimited = 1u << 5,
-  kReasonCurvatureKept = 1u << 6,      ///< One axis was scaled to keep the commanded curvature.
-  kReasonSaturated = 1u << 7,          ///< A wheel's torque or speed is at its limit.
-  kReasonNoPermit = 1u << 8,           ///< No live permit: brake.
-  kReasonPermitBrake = 1u << 9,        ///< The permit orders the brake.
-  kReasonPermitRamp = 1u << 10,        ///< The permit orders a ramp to standstill.
-  kReasonNoState = 1u << 11,           ///< The state of this cycle was missing, held or invalid.
-  kReasonBadSensors = 1u << 12,        ///< Joint samples missing or not finite: brake.
-  kReasonHolding = 1u << 13,           ///< Standing with zero command: brake law holds the position.
+  kReasonCurvatureKept = 1u << 6,  ///< One axis was scaled to keep the commanded curvature.
+  kReasonSaturated = 1u << 7,      ///< A wheel's torque or speed is at its limit.
+  kReasonNoPermit = 1u << 8,       ///< No live permit: brake.
+  kReasonPermitBrake = 1u << 9,    ///< The permit orders the brake.
+  kReasonPermitRamp = 1u << 10,    ///< The permit orders a ramp to standstill.
+  kReasonNoState = 1u << 11,       ///< The state of this cycle was missing, held or invalid.
+  kReasonBadSensors = 1u << 12,    ///< Joint samples missing or not finite: brake.
+  kReasonHolding = 1u << 13,       ///< Standing with zero command: brake law holds the position.
 };
 
 struct CommandFrame {
   FrameHead head;
   std::uint64_t joint_count = 0;
-  std::array<JointCommand, kMaxJoints> joints{};        ///< in the order of RobotModel::joints
-  std::array<double, kMaxJoints> velocity_measured{};   ///< rad/s, of the tracking loop
-  Twist twist_requested;                                ///< as last received; zero once timed out or refused
-  Twist twist_limited;                                  ///< after limits: what the wheels are asked to do
+  std::array<JointCommand, kMaxJoints> joints{};       ///< in the order of RobotModel::joints
+  std::array<double, kMaxJoints> velocity_measured{};  ///< rad/s, of the tracking loop
+  Twist twist_requested;                               ///< as last received; zero once timed out or refused
+  Twist twist_limited;                                 ///< after limits: what the wheels are asked to do
   std::uint64_t reasons = 0;
-  std::uint64_t state_cycle = 0;            ///< of the state used
-  std::uint64_t permit_cycle = 0;           ///< of the permit used
-  std::uint64_t request_cycle = 0;          ///< in which the last command was received
-  std::uint64_t requests_received = 0;      ///< in this run
-  std::uint64_t requests_refused = 0;       ///< in this run: NaN or infinite
-  std::uint64_t timeouts = 0;               ///< in this run, one per event
+  std::uint64_t state_cycle = 0;        ///< of the state used
+  std::uint64_t permit_cycle = 0;       ///< of the permit used
+  std::uint64_t request_cycle = 0;      ///< in which the last command was received
+  std::uint64_t requests_received = 0;  ///< in this run
+  std::uint64_t requests_refused = 0;   ///< in this run: NaN or infinite
+  std::uint64_t timeouts = 0;           ///< in this run, one per event
 };
 
 }  // namespace robot_control

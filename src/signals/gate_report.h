@@ -34,12 +34,12 @@ enum GateReason : std::uint64_t {
 struct GateReport {
   GateVerdict verdict = GateVerdict::kBrake;
   std::uint64_t reasons = kGateFirstTick;
-  std::uint64_t command_cycle = 0;    ///< Of the command used; meaningless when none was.
-  std::uint64_t permit_cycle = 0;     ///< Of the permit used; meaningless when none was.
-  std::uint64_t held = 0;             ///< Ticks of this run on a held command.
-  std::uint64_t missed = 0;           ///< Ticks of this run braked for want of a command, tick 0 excepted.
-  std::uint64_t late_permits = 0;     ///< Ticks of this run whose permit was older than k-1, tick 0 excepted.
-  std::uint64_t refused = 0;          ///< Frames of this run refused (checksum, finiteness, future, count).
+  std::uint64_t command_cycle = 0;  ///< Of the command used; meaningless when none was.
+  std::uint64_t permit_cycle = 0;   ///< Of the permit used; meaningless when none was.
+  std::uint64_t held = 0;           ///< Ticks of this run on a held command.
+  std::uint64_t missed = 0;         ///< Ticks of this run braked for want of a command, tick 0 excepted.
+  std::uint64_t late_permits = 0;   ///< Ticks of this run whose permit was older than k-1, tick 0 excepted.
+  std::uint64_t refused = 0;        ///< Frames of this run refused (checksum, finiteness, future, count).
 };
 
 }  // namespace robot_control

@@ -30,22 +30,22 @@ enum StopCause : std::uint64_t {
   kCauseEmergencyStopTopic = 1u << 0,
   kCauseEmergencyStopService = 1u << 1,
   kCauseEmergencyStopInput = 1u << 2,
-  kCauseDriverLost = 1u << 3,         ///< No sensor frame for 20 periods (wall clock only).
+  kCauseDriverLost = 1u << 3,  ///< No sensor frame for 20 periods (wall clock only).
   kCauseDriverFault = 1u << 4,
-  kCauseControllerLost = 1u << 5,     ///< No command for 20 cycles.
-  kCauseEstimatorLost = 1u << 6,      ///< No state for 20 cycles.
-  kCauseHeartbeatLost = 1u << 7,      ///< The operator's heartbeat stopped.
-  kCauseMonitorRestarted = 1u << 8,   ///< The monitor was restarted while the driver ran on.
-  kCauseCorruptFrame = 1u << 9,       ///< A checksum was wrong.
-  kCauseNotFinite = 1u << 10,         ///< NaN or infinity in sensors or command.
+  kCauseControllerLost = 1u << 5,    ///< No command for 20 cycles.
+  kCauseEstimatorLost = 1u << 6,     ///< No state for 20 cycles.
+  kCauseHeartbeatLost = 1u << 7,     ///< The operator's heartbeat stopped.
+  kCauseMonitorRestarted = 1u << 8,  ///< The monitor was restarted while the driver ran on.
+  kCauseCorruptFrame = 1u << 9,      ///< A checksum was wrong.
+  kCauseNotFinite = 1u << 10,        ///< NaN or infinity in sensors or command.
 };
 
 /// Why a reset was refused; bits of Permit::reset_refusal.
 enum ResetRefusal : std::uint64_t {
-  kRefusalCauseActive = 1u << 0,   ///< A cause in `active` persists.
-  kRefusalCommand = 1u << 1,       ///< A motion is still being asked for.
-  kRefusalMoving = 1u << 2,        ///< A wheel still turns.
-  kRefusalInit = 1u << 3,          ///< Still waiting for a node.
+  kRefusalCauseActive = 1u << 0,  ///< A cause in `active` persists.
+  kRefusalCommand = 1u << 1,      ///< A motion is still being asked for.
+  kRefusalMoving = 1u << 2,       ///< A wheel still turns.
+  kRefusalInit = 1u << 3,         ///< Still waiting for a node.
 };
 
 /// Bits of Permit::missing, in state kInit.
@@ -54,15 +54,15 @@ enum MissingNode : std::uint64_t { kMissingSensors = 1, kMissingState = 2, kMiss
 struct Permit {
   FrameHead head;
   PermitAction action = PermitAction::kBrake;
-  std::uint64_t ramp_until = 0;    ///< last cycle of the ramp; kRamp only
-  std::uint64_t expiry = 0;        ///< last cycle in which this permit is alive
+  std::uint64_t ramp_until = 0;  ///< last cycle of the ramp; kRamp only
+  std::uint64_t expiry = 0;      ///< last cycle in which this permit is alive
   SupervisorState state = SupervisorState::kInit;
-  std::uint64_t causes = 0;        ///< latched since the last accepted reset
-  std::uint64_t active = 0;        ///< true in this very cycle
-  std::uint64_t first_cause = 0;   ///< one bit: what stopped the robot first
-  std::uint64_t since_cycle = 0;   ///< in which `state` was entered (of this run; 0 after a new run)
-  std::uint64_t missing = 0;       ///< who has not been seen in this run
-  std::uint64_t boot = 0;          ///< SensorFrame::boot of the driver it was issued for
+  std::uint64_t causes = 0;          ///< latched since the last accepted reset
+  std::uint64_t active = 0;          ///< true in this very cycle
+  std::uint64_t first_cause = 0;     ///< one bit: what stopped the robot first
+  std::uint64_t since_cycle = 0;     ///< in which `state` was entered (of this run; 0 after a new run)
+  std::uint64_t missing = 0;         ///< who has not been seen in this run
+  std::uint64_t boot = 0;            ///< SensorFrame::boot of the driver it was issued for
   std::uint64_t resets_handled = 0;  ///< counter of the last reset request that was answered
   std::uint64_t reset_refusal = 0;   ///< why that one was refused; 0 = accepted
 };

@@ -56,11 +56,11 @@ struct SensorFrame {
   ImuSample imu;
   std::array<Vector3, kMaxContacts> contact_forces{};  ///< N, base axes, mean over [t_k-1, t_k)
   std::uint64_t digital_inputs = 0;
-  double battery_voltage = 0;  ///< V
-  double battery_current = 0;  ///< A, positive when discharging
-  GateReport gate;             ///< of tick k-1
-  std::uint64_t overruns = 0;      ///< Ticks of this run that ended after the next deadline.
-  std::uint64_t slipped_ns = 0;    ///< Time a simulated plant fell behind the wall clock in this run.
+  double battery_voltage = 0;    ///< V
+  double battery_current = 0;    ///< A, positive when discharging
+  GateReport gate;               ///< of tick k-1
+  std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
+  std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
 };
 
 }  // namespace robot_control

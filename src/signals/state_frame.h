@@ -26,16 +26,16 @@ enum StateFlag : std::uint64_t {
 
 struct StateFrame {
   FrameHead head;
-  Pose pose_odom;              ///< base_link in odom
-  Twist twist_base;            ///< of base_link in its own axes
-  Matrix6 pose_covariance{};   ///< m², m·rad, rad²; odom axes
-  Matrix6 twist_covariance{};  ///< base axes
-  Vector3 gyro_bias{};         ///< rad/s, IMU axes
-  Vector3 accelerometer_bias{};                     ///< m/s², IMU axes
+  Pose pose_odom;                                    ///< base_link in odom
+  Twist twist_base;                                  ///< of base_link in its own axes
+  Matrix6 pose_covariance{};                         ///< m², m·rad, rad²; odom axes
+  Matrix6 twist_covariance{};                        ///< base axes
+  Vector3 gyro_bias{};                               ///< rad/s, IMU axes
+  Vector3 accelerometer_bias{};                      ///< m/s², IMU axes
   std::array<double, kMaxConfidences> confidence{};  ///< 0 (not used) … 1 (agrees fully), by SensorIndex
   std::uint64_t flags = 0;
-  double distance = 0;         ///< m travelled since the run began, always growing
-  std::uint64_t skipped = 0;   ///< sensor cycles of this run never seen
+  double distance = 0;        ///< m travelled since the run began, always growing
+  std::uint64_t skipped = 0;  ///< sensor cycles of this run never seen
 };
 
 }  // namespace robot_control
