@@ -1,6 +1,7 @@
 #include "control/control_problems.h"
 
 #include <array>
+#include <cmath>
 #include <sstream>
 
 #include "control/feed_forward.h"
@@ -13,6 +14,8 @@ namespace {
 struct Load {
   const char* name;
   double inertia;  ///< kg·m²
+
+  bool operator==(const Load& other) const noexcept { return inertia == other.inertia; }
 };
 
 std::array<Load, 4> loads(const RobotModel& robot, const WheelModel& wheel) {
@@ -50,8 +53,8 @@ std::string unstable_message(const DriveControllerParameters& parameters, const 
   // Half of what is just stable: a gain margin of two.
   std::ostringstream text;
   text.precision(3);
-  text << "pid_kp " << parameters.pid_kp << ", pid_ki " << parameters.pid_ki << ", pid_kd " << parameters.pid_kd
-       << ", tracking_bandwidth " << parameters.tracking_bandwidth << " Hz at " << 1 / period
+  text << "diff_drive_controller: pid_kp " << parameters.pid_kp << ", pid_ki " << parameters.pid_ki << ", pid_kd "
+       << parameters.pid_kd << ", tracking_bandwidth " << parameters.tracking_bandwidth << " Hz at " << std::lround(1 / period)
        << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " (" << load.inertia
        << " kg·m²): spectral radius " << radius << ", must be < 1. ";
   if (part > 0) {
@@ -81,8 +84,9 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
            << " N·m, must be > 0: the wheel could not be driven. Set <limit effort=…> in " << robot.source << ".";
       problems.push_back(text.str());
     }
-    const WheelLoopGains gains = wheel_loop_gains(parameters, *wheel);
     const std::array<Load, 4> candidates = loads(robot, *wheel);
+    if (wheel == &robot.right && candidates == loads(robot, robot.left)) continue;  // said of the left one
+    const WheelLoopGains gains = wheel_loop_gains(parameters, *wheel);
     const double bandwidth = parameters.tracking_bandwidth;
     if (const Load* load = unstable_load(gains, candidates, period, bandwidth)) {
       const double radius = wheel_loop_spectral_radius(gains, load->inertia, period, bandwidth);

@@ -58,18 +58,22 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 /// What a look-up found.
 enum class Lookup { kMissing, kFrame, kToken, kCorrupt };
 
+/// Whom a publication wakes. A loop in one thread, on private memory, saves the system call.
+enum class Wake { kReaders, kNobody };
+
 template <class Frame>
 class FrameWriter {
  public:
   /// `memory`: zeroed, or left by an earlier writer of the same layout. Not owned.
-  explicit FrameWriter(LatestFrames<Frame>* memory = nullptr) noexcept : memory_(memory) {}
+  explicit FrameWriter(LatestFrames<Frame>* memory = nullptr, Wake wake = Wake::kReaders) noexcept
+      : memory_(memory), wake_(wake) {}
 
   /// Seals the frame, stores it and wakes all readers. One futex call, nothing else.
   void publish(Frame& frame) noexcept {
     seal(frame);
     store(frame);
     memory_->sequence.fetch_add(1, std::memory_order_release);
-    futex_wake_all(memory_->sequence);
+    if (wake_ == Wake::kReaders) futex_wake_all(memory_->sequence);
   }
 
   /// Stores without sealing or waking: for tests that plant a broken frame.
@@ -88,6 +92,7 @@ class FrameWriter {
 
  private:
   LatestFrames<Frame>* memory_;
+  Wake wake_;
 };
 
 template <class Frame>

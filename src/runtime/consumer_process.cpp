@@ -1,8 +1,7 @@
 #include "runtime/consumer_process.h"
 
-#include <filesystem>
-
 #include "rt/clock.h"
+#include "runtime/start_check.h"
 
 namespace robot_control {
 namespace {
@@ -86,7 +85,9 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotMo
       trace_(bus, TraceRing::kController, lockstep()),
       cycle_(parameters.controller, robot, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &permit_.reader, command_.writer}, load_script(parameters.loop),
-             clock_of(parameters.loop)) {}
+             clock_of(parameters.loop)) {
+  require_drivable(parameters, robot);
+}
 
 std::vector<std::string> ControllerProcess::missing() const {
   std::vector<std::string> names;

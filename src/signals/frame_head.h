@@ -8,7 +8,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 
 namespace robot_control {
@@ -35,19 +34,23 @@ inline constexpr std::size_t kFrameWords = [] {
   return sizeof(Frame) / 8;
 }();
 
-/// 64-bit multiply-rotate hash over the words behind `head.checksum`, in four independent lanes.
+/// 64-bit multiply-rotate hash over the words behind `head.checksum`, in eight independent lanes
+/// (so that the multiplier's throughput counts, not its latency).
 /// Detects torn, truncated and overwritten frames; it is no protection against an attacker.
 template <class Frame>
 std::uint64_t checksum_of(const Frame& frame) noexcept {
   constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio, odd
-  std::array<std::uint64_t, kFrameWords<Frame>> words;
-  std::memcpy(words.data(), &frame, sizeof(Frame));
-  std::array<std::uint64_t, 4> lane{1, 2, 3, 4};
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    lane[i % 4] = std::rotl((lane[i % 4] ^ words[i]) * kOdd, 29);
+  constexpr std::size_t kLanes = 8;
+  const auto words = std::bit_cast<std::array<std::uint64_t, kFrameWords<Frame>>>(frame);
+  const auto mix = [](std::uint64_t hash, std::uint64_t word) { return std::rotl((hash ^ word) * kOdd, 29); };
+  std::array<std::uint64_t, kLanes> lanes{1, 2, 3, 4, 5, 6, 7, 8};
+  std::size_t i = 1;
+  for (; i + kLanes <= words.size(); i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane] = mix(lanes[lane], words[i + lane]);
   }
+  for (; i < words.size(); ++i) lanes[0] = mix(lanes[0], words[i]);
   std::uint64_t hash = words.size();
-  for (const std::uint64_t part : lane) hash = std::rotl((hash ^ part) * kOdd, 31);
+  for (const std::uint64_t lane : lanes) hash = mix(hash, lane);
   return hash;
 }
 

@@ -1,14 +1,13 @@
 #include "simulation/closed_loop.h"
 
 #include <string>
-#include <vector>
 
-#include "control/control_problems.h"
 #include "drivers/mujoco_plant.h"
 #include "runtime/controller_cycle.h"
 #include "runtime/driver_cycle.h"
 #include "runtime/estimator_cycle.h"
 #include "runtime/monitor_cycle.h"
+#include "runtime/start_check.h"
 
 namespace robot_control {
 namespace {
@@ -19,7 +18,7 @@ constexpr std::uint64_t kRun = 1;  // any number but 0: nobody else is on these 
 template <class Frame>
 struct Channel {
   std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
-  FrameWriter<Frame> writer{memory.get()};
+  FrameWriter<Frame> writer{memory.get(), Wake::kNobody};
   FrameReader<Frame> reader{memory.get()};
 };
 
@@ -30,11 +29,8 @@ CommandScript load_script(const Parameters& parameters) {
 
 RobotModel load_robot(const Parameters& parameters) {
   RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
-  const std::vector<std::string> problems = control_problems(parameters.controller, robot, parameters.loop.period());
-  if (problems.empty()) return robot;
-  std::string message;
-  for (const std::string& problem : problems) message += problem + "\n";
-  throw ParameterError(message);
+  require_drivable(parameters, robot);
+  return robot;
 }
 
 }  // namespace

@@ -67,9 +67,10 @@ int run(const std::string& path) {
     four.push_back(four_processes(parameters, robot));
   }
   const std::string unit = "simulated s per s";
-  print("lockstep", {{"bare mj_step loop", median(bare), unit, median(bare), "itself", 1},
-                     {"ClosedLoop", median(closed), unit, median(bare), "bare mj_step loop", median_ratio(closed, bare)},
-                     {"four processes", median(four), unit, median(bare), "bare mj_step loop", median_ratio(four, bare)}});
+  print("lockstep",
+        {{"bare mj_step loop", median(bare), unit, median(bare), "itself", 1},
+         {"ClosedLoop", median(closed), unit, median(bare), "bare mj_step loop", median_ratio(closed, bare)},
+         {"four processes", median(four), unit, median(bare), "bare mj_step loop", median_ratio(four, bare)}});
   return 0;
 }
 

@@ -98,35 +98,41 @@ int run(const std::string& path) {
 
   DriveController controller(parameters.controller, robot, period);
   CommandFrame command;
-  add(rows, "controller", measure([&] { controller.reset(0); },
-                                  [&](std::size_t k) {
-                                    const VelocityCommand request{.twist = drive.commands[k].twist_requested, .count = k};
-                                    controller.step({.sensors = &drive.sensors[k],
-                                                     .state = &drive.states[k],
-                                                     .permit = &drive.permits[k - 1],
-                                                     .request = request},
-                                                    command);
-                                  }));
+  add(rows, "controller",
+      measure([&] { controller.reset(0); },
+              [&](std::size_t k) {
+                const VelocityCommand request{.twist = drive.commands[k].twist_requested, .count = k};
+                controller.step({.sensors = &drive.sensors[k],
+                                 .state = &drive.states[k],
+                                 .permit = &drive.permits[k - 1],
+                                 .request = request},
+                                command);
+              }));
 
   std::vector<double> limits;
   for (const JointModel& joint : robot.joints) limits.push_back(joint.effort_limit);
   Gate gate(limits);
-  add(rows, "gate", measure([&] { gate.reset(); },
-                            [&](std::size_t k) {
-                              gate.step({.run = drive.sensors[k].head.run,
-                                         .cycle = k,
-                                         .permit_found = Lookup::kFrame,
-                                         .permit = &drive.permits[k - 1],
-                                         .command_found = Lookup::kFrame,
-                                         .command = &drive.commands[k - 1]});
-                            }));
+  add(rows, "gate",
+      measure([&] { gate.reset(); },
+              [&](std::size_t k) {
+                gate.step({.run = drive.sensors[k].head.run,
+                           .cycle = k,
+                           .permit_found = Lookup::kFrame,
+                           .permit = &drive.permits[k - 1],
+                           .command_found = Lookup::kFrame,
+                           .command = &drive.commands[k - 1]});
+              }));
 
   SafetyMonitor monitor(parameters.safety, period);
   Permit permit;
   add(rows, "monitor",
       measure([&] { monitor.reset({}); },
               [&](std::size_t k) {
-                monitor.step({.sensors = &drive.sensors[k], .command = &drive.commands[k - 1], .state_seen = true, .operator_input = {}}, permit);
+                monitor.step({.sensors = &drive.sensors[k],
+                              .command = &drive.commands[k - 1],
+                              .state_seen = true,
+                              .operator_input = {}},
+                             permit);
               }));
 
   print("step", rows);

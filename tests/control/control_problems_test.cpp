@@ -29,13 +29,13 @@ TEST(ControlProblems, RefusesTheArticlesGainsAndNamesValueRuleAndRemedy) {
   parameters.pid_kd = 0.5;
   EXPECT_THAT(
       control_problems(parameters, make_test_robot(), 1e-3),
-      AllOf(SizeIs(2), Each(AllOf(HasSubstr("pid_kp 20"), HasSubstr("must be < 1"), HasSubstr("Use at most")))));
+      AllOf(SizeIs(1), Each(AllOf(HasSubstr("pid_kp 20"), HasSubstr("must be < 1"), HasSubstr("Use at most")))));
 }
 
 TEST(ControlProblems, RefusesTheDefaultsAt100HzAndItsRemedyIsAccepted) {
   DriveControllerParameters parameters;
   const std::vector<std::string> problems = control_problems(parameters, make_test_robot(), 1e-2);
-  ASSERT_THAT(problems, SizeIs(2));
+  ASSERT_THAT(problems, SizeIs(1)) << "equal wheels are one problem";
   const auto advised = [&](const std::string& name) {
     const std::string advice = problems[0].substr(problems[0].find("Use at most"));
     return std::stod(advice.substr(advice.find(name) + name.size()));

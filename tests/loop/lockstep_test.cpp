@@ -118,8 +118,8 @@ TEST_F(Lockstep, AWallClockRunEqualsLockstepUntilTheFirstMissedCycle) {
     ASSERT_GE(wall_names.size(), columns);
     std::vector<std::size_t> place;
     for (const std::string& column : names) {
-      place.push_back(static_cast<std::size_t>(std::find(wall_names.begin(), wall_names.end(), column) -
-                                               wall_names.begin()));
+      place.push_back(
+          static_cast<std::size_t>(std::find(wall_names.begin(), wall_names.end(), column) - wall_names.begin()));
       ASSERT_LT(place.back(), wall_names.size()) << column;
     }
     std::size_t equal = 0;

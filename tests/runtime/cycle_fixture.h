@@ -21,7 +21,8 @@ inline RobotModel two_wheels() {
   robot.name = "two_wheels";
   robot.source = "test";
   robot.hash = 7;
-  robot.joints = {{"left_wheel_joint", "left_wheel_link", 3.0, 20.0}, {"right_wheel_joint", "right_wheel_link", 3.0, 20.0}};
+  robot.joints = {{"left_wheel_joint", "left_wheel_link", 3.0, 20.0},
+                  {"right_wheel_joint", "right_wheel_link", 3.0, 20.0}};
   robot.left = {.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .sign = 1, .inertia = 0.005};
   robot.right = {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .sign = 1, .inertia = 0.005};
   robot.wheel_base = 0.5;
@@ -65,8 +66,8 @@ struct Loop {
 
   /// What a killed and restarted node is: a new object on the channels that its predecessor left.
   void restart_estimator() {
-    estimator = std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer,
-                                                 nullptr);
+    estimator =
+        std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer, nullptr);
   }
   void restart_controller() {
     controller = std::make_unique<ControllerCycle>(
@@ -116,7 +117,8 @@ struct Loop {
   TestChannel<StateFrame> state;
   TestChannel<CommandFrame> command;
   TestChannel<Permit> permit;
-  DriverCycle driver{machine, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, kPeriodNs, nullptr};
+  DriverCycle driver{
+      machine, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, kPeriodNs, nullptr};
   std::unique_ptr<EstimatorCycle> estimator;
   std::unique_ptr<ControllerCycle> controller;
   std::unique_ptr<MonitorCycle> monitor;
