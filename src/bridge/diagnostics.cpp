@@ -26,7 +26,7 @@ void DiagnosticReport::value(const std::string& key, double number) {
   value(key, std::string(text.data()));
 }
 
-void DiagnosticReport::raise(unsigned char level, const std::string& sentence) {
+void DiagnosticReport::raise(msg::DiagnosticStatus::_level_type level, const std::string& sentence) {
   if (level < message_.level) return;
   if (level > message_.level) message_.message.clear();
   message_.level = level;

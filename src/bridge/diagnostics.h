@@ -26,7 +26,7 @@ class DiagnosticReport {
   const msg::DiagnosticStatus& message() const noexcept { return message_; }
 
  private:
-  void raise(unsigned char level, const std::string& sentence);
+  void raise(msg::DiagnosticStatus::_level_type level, const std::string& sentence);
 
   msg::DiagnosticStatus message_;
 };

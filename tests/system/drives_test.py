@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The loop drives, stops when it is told nothing, too much or nonsense, and says why."""
 
+import itertools
 import math
 import os
 import unittest
@@ -10,11 +11,10 @@ import rospy
 import rostest
 from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
+from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu, JointState
 from system_support import CONTROLLER, ESTIMATOR, LOOP, Robot, init_test_node, schedule_of, wait_for
 from tf2_msgs.msg import TFMessage
-
-from robot_control.msg import SafetyStatus
 
 
 class DrivesTest(unittest.TestCase):
@@ -61,7 +61,7 @@ class DrivesTest(unittest.TestCase):
         for subscriber in subscribers:
             subscriber.unregister()
         for name, period in (("joints", 0.010), ("odom", 0.020)):
-            intervals = sorted(b - a for a, b in zip(stamps[name], stamps[name][1:]))
+            intervals = sorted(b - a for a, b in itertools.pairwise(stamps[name]))
             self.assertAlmostEqual(intervals[len(intervals) // 2], period, delta=0.1 * period, msg=name)
             self.assertGreater(intervals[0], 0, "stamps grow")
         self.assertEqual(robot.joints.name, ["left_wheel_joint", "right_wheel_joint"])

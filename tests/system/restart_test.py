@@ -4,9 +4,8 @@
 import unittest
 
 import rostest
-from system_support import CONTROLLER, ESTIMATOR, MONITOR, PLANT, Robot, init_test_node, wait_for
-
 from robot_control.msg import SafetyStatus
+from system_support import CONTROLLER, ESTIMATOR, MONITOR, PLANT, Robot, init_test_node, wait_for
 
 
 class RestartTest(unittest.TestCase):
@@ -29,8 +28,11 @@ class RestartTest(unittest.TestCase):
     def expect_latched(self, cause: str) -> None:
         """STOPPED for this cause, however often a motion is asked for; after a reset the robot drives."""
         robot = self.robot
-        wait_for(cause, lambda: robot.state == SafetyStatus.STOPPED and cause in robot.causes,
-                 every=lambda: robot.send(0.5, 0.2))
+        wait_for(
+            cause,
+            lambda: robot.state == SafetyStatus.STOPPED and cause in robot.causes,
+            every=lambda: robot.send(0.5, 0.2),
+        )
         wait_for("standstill", lambda: abs(robot.speed) < 0.01, every=lambda: robot.send(0.5, 0.2))
         robot.release()
         robot.drive_until("0.5 m/s after the reset", robot.driving)
@@ -55,8 +57,11 @@ class RestartTest(unittest.TestCase):
 
     def test_monitor(self) -> None:
         self.robot.nodes[MONITOR].kill()
-        wait_for("standstill without a monitor", lambda: abs(self.robot.speed) < 0.01,
-                 every=lambda: self.robot.send(0.5, 0.2))
+        wait_for(
+            "standstill without a monitor",
+            lambda: abs(self.robot.speed) < 0.01,
+            every=lambda: self.robot.send(0.5, 0.2),
+        )
         self.robot.start(MONITOR)
         self.expect_latched("monitor_restarted")
 

@@ -8,7 +8,17 @@ from pathlib import Path
 import rospy
 import rostest
 import yaml
-from system_support import CONTROLLER, LOOP, MONITOR, PLANT, Program, init_test_node, repository, running_robot, wait_for
+from system_support import (
+    CONTROLLER,
+    LOOP,
+    MONITOR,
+    PLANT,
+    Program,
+    init_test_node,
+    repository,
+    running_robot,
+    wait_for,
+)
 
 
 def refusal(name: str, *arguments: str) -> str:
@@ -69,9 +79,7 @@ class StartTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             urdf, scene = Path(name, "box.urdf"), Path(name, "scene.xml")
             inertia = "<mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
-            urdf.write_text(
-                f"<robot name='box'><link name='base_link'><inertial>{inertia}</inertial></link></robot>"
-            )
+            urdf.write_text(f"<robot name='box'><link name='base_link'><inertial>{inertia}</inertial></link></robot>")
             scene.write_text("<mujoco><worldbody><geom type='nonsense'/></worldbody></mujoco>")
             self.assertIn("left_wheel_joint", refusal(PLANT, f"_urdf:={urdf}"))
             self.forget(PLANT)
@@ -83,12 +91,17 @@ class StartTest(unittest.TestCase):
             for name in LOOP:
                 robot.drive_until("0.5 m/s", robot.driving)
                 second = Program(name)
-                wait_for(f"the refusal of a second {name}", lambda second=second: not second.running,
-                         every=lambda: robot.send(0.5, 0.2))
+                wait_for(
+                    f"the refusal of a second {name}",
+                    lambda second=second: not second.running,
+                    every=lambda: robot.send(0.5, 0.2),
+                )
                 self.assertEqual(second.wait(), 1, second.output)
                 self.assertTrue(robot.nodes[name].running)
                 count = robot.odom_count
-                robot.drive_until("0.5 m/s still", lambda count=count: robot.driving() and robot.odom_count > count + 10)
+                robot.drive_until(
+                    "0.5 m/s still", lambda count=count: robot.driving() and robot.odom_count > count + 10
+                )
             renamed = Program(CONTROLLER, "__name:=second_controller")
             self.assertEqual(renamed.wait(), 1, "another name is no other controller")
 

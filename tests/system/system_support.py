@@ -17,11 +17,10 @@ import roslib.packages
 import rospy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64MultiArray
 from std_srvs.srv import Trigger, TriggerResponse
-
-from robot_control.msg import SafetyStatus
 
 PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
@@ -33,7 +32,9 @@ STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost"}
 """What a machine that stood still for 20 ms may latch by itself."""
 
 
-def wait_for(what: str, condition: Callable[[], bool], limit: float = LIMIT, every: Callable[[], None] | None = None) -> None:
+def wait_for(
+    what: str, condition: Callable[[], bool], limit: float = LIMIT, every: Callable[[], None] | None = None
+) -> None:
     """Polls until the condition holds; `every` is called at each look. Fails naming `what`."""
     end = time.monotonic() + limit
     while not condition():

@@ -1,0 +1,35 @@
+"""What send_cmd.py sends, without ROS."""
+
+import pytest
+from robot_control.velocity_sender import SendPlan, parse_plan
+
+
+def test_default_is_the_articles_command() -> None:
+    assert parse_plan([]) == SendPlan(linear=0.5, angular=0.2, period=0.5, count=None)
+
+
+def test_goes_on_until_interrupted_by_default() -> None:
+    assert SendPlan().sends_left(10**6)
+
+
+def test_count_ends_it() -> None:
+    plan = parse_plan(["--count", "2"])
+    assert plan.sends_left(1)
+    assert not plan.sends_left(2)
+
+
+@pytest.mark.parametrize(("seconds", "count"), [("2", 4), ("0.1", 1), ("2.1", 5)])
+def test_seconds_become_whole_sends(seconds: str, count: int) -> None:
+    assert parse_plan(["--seconds", seconds]).count == count
+
+
+def test_line_for_the_log_has_both_speeds_and_their_units() -> None:
+    assert SendPlan(linear=-0.25, angular=1.5).describe(3) == "cmd_vel 3: -0.25 m/s, 1.5 rad/s"
+
+
+@pytest.mark.parametrize("wrong", [["--period", "0"], ["--period", "nan"], ["--seconds", "-1"], ["--linear", "fast"]])
+def test_refuses_what_is_no_plan(wrong: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        parse_plan(wrong)
+    assert ended.value.code == 2
+    assert wrong[0] in capsys.readouterr().err
