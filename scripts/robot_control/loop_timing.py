@@ -45,11 +45,13 @@ def loop_timing(log: Log) -> LoopTiming:
     """Reads the columns of kind kTiming, which only wall-clock runs have, and the gate's counters."""
     follows = np.diff(log["cycle"]) == 1
     woke = log["driver_woke_ns"]
-    # Row to row, since a stamp in ns since boot is too long for adding small numbers to it in doubles for ever.
-    period = (np.diff(log["stamp_ns"]) + np.diff(woke))[follows]
+    # The wake-up is told relative to when the cycle was due: its stamp, later by what has slipped so far. The tick
+    # that slips begins its new grid itself; it was late by what slipped in it.
+    slipped = np.diff(log["slipped_ns"])
+    period = (np.diff(log["stamp_ns"]) + slipped + np.diff(woke))[follows]
     return LoopTiming(
         period=distribution(period),
-        wake_up=distribution(woke - log["slipped_ns"]),
+        wake_up=distribution(woke[1:] + slipped),
         sensors_to_command=distribution(log["command_published_ns"] - woke),
         cycles=int(np.nanmax(log["cycle"]) + 1),
         held=_count(log["held"]),
