@@ -179,7 +179,7 @@ OwnedBusObject claim_object(const std::string& channel, const std::string& name,
 }  // namespace
 
 std::string bus_object_name(const std::string& bus, const std::string& channel) {
-  const std::string name = "/robot_control." + std::to_string(geteuid()) + "." + bus + "." + channel;
+  std::string name = "/robot_control." + std::to_string(geteuid()) + "." + bus + "." + channel;
   const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.'; };
   if (bus.empty() || channel.empty() || name.size() > NAME_MAX ||
       !std::all_of(name.begin() + 1, name.end(), is_plain)) {
