@@ -1,59 +1,21 @@
 /// bench_lockstep PARAMS.yaml: the closed loop in virtual time against the bare physics engine.
 ///
 /// Per round, one after the other: a bare loop of `mj_step` of the same model, the ClosedLoop in this process,
-/// and four processes in lockstep (forked, on a bus of their own). Simulated seconds per second, median over
-/// the rounds, and the ratio to the bare loop of the same round.
+/// and four processes in lockstep on a bus of their own. Simulated seconds per second, median over the rounds,
+/// and the ratio to the bare loop of the same round.
 
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "bench/rows.h"
-#include "drivers/mujoco_model.h"
-#include "rt/clock.h"
-#include "simulation/closed_loop.h"
-#include "support/four_nodes.h"
+#include "support/loop_speed.h"
 
 namespace robot_control::bench {
 namespace {
 
 constexpr int kRounds = 7;
 constexpr std::uint64_t kCycles = 40'000;
-constexpr double kPatience = 120;  // s until a round of four processes is given up
-
-double simulated(const Parameters& parameters, std::int64_t start_ns) {
-  const double real = static_cast<double>(monotonic_ns() - start_ns) * 1e-9;
-  return static_cast<double>(kCycles) * parameters.loop.period() / real;
-}
-
-double bare_loop(const Parameters& parameters, const RobotModel& robot) {
-  const MujocoModel model = compile_model(robot, parameters.plant, parameters.loop.period());
-  const MujocoData data = set_down(model);
-  const std::int64_t start_ns = monotonic_ns();
-  for (std::uint64_t k = 0; k < kCycles; ++k) {
-    for (const int address : model.joint_velocity) data->qfrc_applied[address] = 0.05;
-    for (int step = 0; step < model.substeps; ++step) mj_step(model.model.get(), data.get());
-  }
-  return simulated(parameters, start_ns);
-}
-
-double closed_loop(const Parameters& parameters) {
-  ClosedLoop loop(parameters);
-  const std::int64_t start_ns = monotonic_ns();
-  for (std::uint64_t k = 0; k < kCycles; ++k) {
-    if (k % 500 == 0) loop.command({.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}});
-    loop.step();
-  }
-  return simulated(parameters, start_ns);
-}
-
-double four_processes(Parameters parameters, const RobotModel& robot) {
-  parameters.loop.clock = ClockMode::kLockstep;
-  parameters.loop.wait_for_nodes = true;
-  parameters.loop.wait_for_telemetry = false;
-  parameters.plant.cycles = kCycles;
-  return FourNodes(parameters, robot, false).run(kPatience);
-}
 
 int run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
@@ -62,15 +24,15 @@ int run(const std::string& path) {
   std::vector<double> closed;
   std::vector<double> four;
   for (int round = 0; round < kRounds; ++round) {
-    bare.push_back(bare_loop(parameters, robot));
-    closed.push_back(closed_loop(parameters));
-    four.push_back(four_processes(parameters, robot));
+    bare.push_back(bare_loop_speed(parameters, robot, kCycles));
+    closed.push_back(closed_loop_speed(parameters, kCycles));
+    four.push_back(four_nodes_speed(parameters, robot, kCycles));
   }
   const std::string unit = "simulated s per s";
-  print("lockstep",
-        {{"bare mj_step loop", median(bare), unit, median(bare), "itself", 1},
-         {"ClosedLoop", median(closed), unit, median(bare), "bare mj_step loop", median_ratio(closed, bare)},
-         {"four processes", median(four), unit, median(bare), "bare mj_step loop", median_ratio(four, bare)}});
+  const std::string reference = "bare mj_step loop";
+  print("lockstep", {{reference, median(bare), unit, median(bare), "itself", 1},
+                     {"ClosedLoop", median(closed), unit, median(bare), reference, median_ratio(closed, bare)},
+                     {"four processes", median(four), unit, median(bare), reference, median_ratio(four, bare)}});
   return 0;
 }
 
