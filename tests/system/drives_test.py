@@ -13,7 +13,7 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu, JointState
-from system_support import CONTROLLER, ESTIMATOR, LOOP, Robot, init_test_node, schedule_of, wait_for
+from system_support import CONTROLLER, ESTIMATOR, LOOP, Robot, init_test_node, page_faults_of, schedule_of, wait_for
 from tf2_msgs.msg import TFMessage
 
 
@@ -140,6 +140,21 @@ class DrivesTest(unittest.TestCase):
                 pinned = [affinity for _, affinity, _ in tasks if affinity == {0}]
                 self.assertEqual(len(pinned), 1, f"{name}: {tasks}")
                 self.assertTrue(all(affinity == {0} for affinity in fifo), f"{name}: {tasks}")
+
+    def test_takes_no_page_fault_in_a_real_time_thread(self) -> None:
+        # Where the memory is locked; elsewhere the kernel may take a page away at any time.
+        robot = self.robot
+        robot.drive_until("0.5 m/s", robot.driving)  # every part of the loop has run once
+        before = {}
+        for name in LOOP:
+            if "memory is not locked" in robot.nodes[name].output:
+                self.skipTest(f"{name}: no permission to lock memory")
+            tasks = list(Path(f"/proc/{robot.nodes[name].pid}/task").iterdir())
+            before.update({task: page_faults_of(task) for task in tasks if schedule_of(task)[0] == os.SCHED_FIFO})
+        if not before:
+            self.skipTest("no permission for SCHED_FIFO, by which the loops are told from other threads")
+        robot.drive_until("half a metre", lambda start=robot.distance: robot.distance > start + 0.5)
+        self.assertEqual({task: page_faults_of(task) for task in before}, before)
 
     def test_stamps_come_from_one_clock(self) -> None:
         wait_for("odometry", lambda: self.robot.odom is not None)

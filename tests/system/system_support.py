@@ -264,3 +264,9 @@ def schedule_of(task: Path) -> tuple[int, set[int], str]:
     """Scheduling class, cores and name of one thread of /proc."""
     number = int(task.name)
     return os.sched_getscheduler(number), os.sched_getaffinity(number), (task / "comm").read_text().strip()
+
+
+def page_faults_of(task: Path) -> int:
+    """Page faults of one thread of /proc since it began, minor and major (proc(5), fields 10 and 12 of stat)."""
+    fields = (task / "stat").read_text().rpartition(")")[2].split()
+    return int(fields[10 - 3]) + int(fields[12 - 3])
