@@ -9,7 +9,7 @@
 #include "bridge/motion_messages.h"
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
-#include "runtime/consumer_process.h"
+#include "runtime/controller_process.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -39,7 +39,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   void publish() override {
     SensorFrame sensors;
     if (process().sensors().newest(sensors) != Lookup::kFrame) return;
-    if (process().command().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
+    if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
     const FrameHead& head = command_.head;
     time().update(head.stamp_ns);
     if (!pace_.due(head.run, head.stamp_ns)) return;

@@ -11,7 +11,7 @@
 #include "bridge/status_messages.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "runtime/consumer_process.h"
+#include "runtime/monitor_process.h"
 
 namespace robot_control {
 namespace {
@@ -59,7 +59,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
 
  private:
   /// A permit that this process issued, or one that an earlier monitor left and this one continues.
-  bool seen(Permit& permit) { return process().permit().newest(permit) == Lookup::kFrame; }
+  bool seen(Permit& permit) { return process().output().newest(permit) == Lookup::kFrame; }
 
   void add(std::uint64_t OperatorInput::*counter) {
     const std::lock_guard lock(input_mutex_);

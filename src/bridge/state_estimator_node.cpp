@@ -6,7 +6,7 @@
 #include "bridge/motion_messages.h"
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
-#include "runtime/consumer_process.h"
+#include "runtime/estimator_process.h"
 
 namespace robot_control {
 namespace {
@@ -35,7 +35,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     if (joint_pace_.due(sensors_.head.run, sensors_.head.stamp_ns)) {
       joint_states_.publish(joint_states(sensors_, robot(), time().at(sensors_.head.stamp_ns)));
     }
-    if (process().state().newest(state_) != Lookup::kFrame || state_.head.run != sensors_.head.run) return;
+    if (process().output().newest(state_) != Lookup::kFrame || state_.head.run != sensors_.head.run) return;
     if (odom_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_odometry();
   }
 

@@ -18,8 +18,10 @@
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
-#include "runtime/consumer_process.h"
+#include "runtime/controller_process.h"
 #include "runtime/driver_process.h"
+#include "runtime/estimator_process.h"
+#include "runtime/monitor_process.h"
 #include "runtime/telemetry_process.h"
 
 namespace robot_control {

@@ -1,0 +1,31 @@
+#pragma once
+/// diff_drive_controller without ROS: woken by state, writes command.
+
+#include <string>
+#include <vector>
+
+#include "runtime/consumer_process.h"
+#include "runtime/controller_cycle.h"
+
+namespace robot_control {
+
+class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerTrace> {
+ public:
+  /// Throws BusError; ParameterError for a script that cannot be read, or gains that this robot makes unstable.
+  ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ~ControllerProcess() override { stop(); }
+
+  std::vector<std::string> missing() const override;
+  ControllerCycle& cycle() noexcept { return cycle_; }
+
+ private:
+  void poll_channels() override;
+  bool ready() override;
+  void loop() noexcept override;
+
+  Input<StateFrame> state_;
+  Input<Permit> permit_;
+  ControllerCycle cycle_;
+};
+
+}  // namespace robot_control
