@@ -54,9 +54,9 @@ std::string unstable_message(const DriveControllerParameters& parameters, const 
   std::ostringstream text;
   text.precision(3);
   text << "diff_drive_controller: pid_kp " << parameters.pid_kp << ", pid_ki " << parameters.pid_ki << ", pid_kd "
-       << parameters.pid_kd << ", tracking_bandwidth " << parameters.tracking_bandwidth << " Hz at " << std::lround(1 / period)
-       << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " (" << load.inertia
-       << " kg·m²): spectral radius " << radius << ", must be < 1. ";
+       << parameters.pid_kd << ", tracking_bandwidth " << parameters.tracking_bandwidth << " Hz at "
+       << std::lround(1 / period) << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name
+       << " (" << load.inertia << " kg·m²): spectral radius " << radius << ", must be < 1. ";
   if (part > 0) {
     text << "Use at most pid_kp " << 0.5 * part * parameters.pid_kp << ", pid_ki " << 0.5 * part * parameters.pid_ki
          << ", pid_kd " << 0.5 * part * parameters.pid_kd << ", or a higher rate.";
