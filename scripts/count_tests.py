@@ -40,6 +40,11 @@ def is_summary_of_nodes(path: Path) -> bool:
     return path.name.startswith("rostest-")
 
 
+def ros_name(stem: str) -> str:
+    """What a result file of rostest shares with the name of its CTest entry."""
+    return stem.removeprefix("rostest-").removeprefix("rosunit-").removesuffix("_test")
+
+
 def count(folders: list[Path]) -> tuple[Counter[str], list[str]]:
     """All cases, and the CTest entries and files that failed as a whole."""
     total: Counter[str] = Counter()
@@ -64,9 +69,7 @@ def count(folders: list[Path]) -> tuple[Counter[str], list[str]]:
             explained.add(path.stem)
         total += cases
     wholly_failed += [
-        entry
-        for entry in sorted(entries)
-        if not any(stem == entry or stem.removeprefix("rosunit-") in entry for stem in explained)
+        entry for entry in sorted(entries) if not any(stem == entry or ros_name(stem) in entry for stem in explained)
     ]
     total[FAILED] += len(wholly_failed)
     return total, wholly_failed

@@ -44,8 +44,10 @@ class Child:
     def __init__(self, command: Sequence[str], output: Path) -> None:
         self.output = output
         self._file: IO[bytes] = output.open("wb")
+        # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
+        hearing = ("env", "--default-signal=INT", *command)
         self._process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
+            hearing, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
         )
 
     @property

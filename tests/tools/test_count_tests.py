@@ -64,3 +64,10 @@ def test_rostest_cases_are_counted_once(count):
 def test_a_rostest_whose_node_died_is_a_failure(count):
     died = PASSED.replace("/></testsuite>", "><error message='died'/></testcase></testsuite>")
     assert count(**{"rostest-timeout": died})[1] == "0 passed, 1 failed, 0 skipped"
+
+
+@pytest.mark.parametrize("name", ["rostest-tests_system_drives", "rosunit-drives_test"])
+def test_a_failed_rostest_is_counted_once(count, name):
+    entry = CTEST.format(status="failed").replace("test_gate", "_ctest_robot_control_rostest_tests_system_drives.test")
+    failed = PASSED.replace("/></testsuite>", "><failure message='no'/></testcase></testsuite>")
+    assert count(**{name: failed, "Test": entry}) == (1, "0 passed, 1 failed, 0 skipped")

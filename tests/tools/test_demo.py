@@ -36,6 +36,14 @@ def test_a_child_that_heeds_sigint_ends_in_order(tmp_path):
     assert "bye" in (tmp_path / "output").read_text()
 
 
+def test_a_child_heeds_sigint_although_this_program_was_started_deaf_to_it(tmp_path):
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        assert child(tmp_path, "import time\nprint('ready')\ntime.sleep(60)").end()
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def test_a_child_that_ignores_sigint_is_killed(tmp_path):
     one = child(tmp_path, "import signal, time\nsignal.signal(2, signal.SIG_IGN)\nprint('ready')\ntime.sleep(60)")
     assert not one.end(limit=0.2)
