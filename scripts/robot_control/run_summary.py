@@ -28,6 +28,7 @@ STOP_CAUSES = (
     "monitor_restarted",
     "corrupt_frame",
     "not_finite",
+    "monitor_late",
 )
 """In the order of the bits of StopCause."""
 
