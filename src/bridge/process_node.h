@@ -1,7 +1,9 @@
 #pragma once
 /// A Node whose work is a Process: everything that the four nodes of the loop have in common.
 
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bridge/node.h"
@@ -16,10 +18,21 @@ class ProcessNode : public Node {
   explicit ProcessNode(const Setup& setup)
       : setup_(setup), time_(setup.parameters.loop.clock), process_(setup.parameters, setup.robot, setup.bus) {}
 
-  void poll() override { process_.poll(); }
+  void poll() override {
+    process_.poll();
+    std::vector<std::string> names = process_.missing();
+    const std::lock_guard lock(missing_mutex_);
+    missing_ = std::move(names);
+  }
   bool finished() const override { return process_.finished(); }
   void stop() override { process_.stop(); }
-  std::vector<std::string> missing() const override { return process_.missing(); }
+
+  /// As of the last poll; any thread.
+  std::vector<std::string> missing() const override {
+    const std::lock_guard lock(missing_mutex_);
+    return missing_;
+  }
+
   std::vector<std::string> realtime_messages() const override { return process_.realtime_messages(); }
 
  protected:
@@ -33,6 +46,8 @@ class ProcessNode : public Node {
   Setup setup_;
   TimeMap time_;
   Work process_;
+  mutable std::mutex missing_mutex_;
+  std::vector<std::string> missing_;
 };
 
 }  // namespace robot_control

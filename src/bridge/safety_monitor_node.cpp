@@ -70,6 +70,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   void hear_e_stop(bool stop) {
     const std::lock_guard lock(input_mutex_);
     input_.e_stop_level = stop ? 1 : 0;
+    ++input_.e_stop_messages;
     if (stop) ++input_.e_stop_triggers;
     process().cycle().inbox().store(input_);
   }

@@ -53,7 +53,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   bool reset_odometry(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
-    const std::vector<std::string> missing = process().missing();
+    const std::vector<std::string> missing = this->missing();
     response.success = missing.empty();
     response.message = response.success ? "the pose is zero from the next cycle on"
                                         : "not done: no sensors, " + missing.front() + " does not run";

@@ -1,9 +1,10 @@
 #pragma once
 /// The one thread of a process that runs in real time, and the set-up of the process around it.
 ///
-/// Order: `prepare_process` at the top of main (before ros::init: it makes the stacks of later threads small
-/// and locks the memory), then everything ordinary, last a RealtimeThread. Core and SCHED_FIFO are applied
-/// by that thread to itself as its last step before the body runs, so no other thread inherits them.
+/// Order: `prepare_process` before the process has threads (with ROS: before the first NodeHandle; it makes the
+/// stacks of later threads small and locks the memory), then everything ordinary, last a RealtimeThread. Core and
+/// SCHED_FIFO are applied by that thread to itself as its last step before the body runs, so no other thread inherits
+/// them.
 ///
 /// What was asked and not granted is said in one message each, with the remedy. Under kRequired that is an
 /// error at start-up. The core needs no privilege and is applied whatever the policy says.

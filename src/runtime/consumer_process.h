@@ -7,10 +7,12 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "runtime/command_script.h"
 #include "runtime/cycle_clock.h"
 #include "runtime/process.h"
+#include "runtime/start_check.h"
 #include "runtime/trace_sink.h"
 
 namespace robot_control {
@@ -46,19 +48,25 @@ class ConsumerProcess : public Process {
       : Process(parameters.loop, names.priority, names.thread),
         output_(bus, names.channel),
         sensors_(bus, ChannelNames::kSensors),
-        trace_(bus, names.ring, lockstep()),
-        robot_(robot) {}
+        robot_(identified(robot, parameters.loop)),
+        trace_(bus, names.ring, lockstep()) {}
 
-  bool driver_lives() const { return sensors_.channel.locked(); }
+  /// The driver, and before cycle 0 the telemetry that was asked for. Later the loop goes on without one.
+  std::vector<std::string> missing_anywhere() const {
+    std::vector<std::string> names;
+    if (!sensors_.channel.locked()) names.emplace_back("mujoco_plant");
+    if (waits_for_telemetry()) names.emplace_back("telemetry");
+    return names;
+  }
 
   void poll_channels() override {
     sensors_.poll();
     trace_.poll();
-    robot_agrees_ = sensors_.reader.memory() != nullptr && driver_lives() &&
+    robot_agrees_ = sensors_.reader.memory() != nullptr && sensors_.channel.locked() &&
                     same_robot(sensors_.reader.memory()->head, robot_.hash, robot_.source);
   }
 
-  bool ready() override { return robot_agrees_ && (!loop_parameters().wait_for_telemetry || trace_.reader_present()); }
+  bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
 
   /// The loop: the frame that is there first, then one step per wake. `silence` is called when no frame came
   /// within `wait_ns`.
@@ -74,8 +82,15 @@ class ConsumerProcess : public Process {
 
   Output<Frame> output_;
   Input<SensorFrame> sensors_;
+  RobotModel robot_;  ///< identified
 
  private:
+  bool waits_for_telemetry() const {
+    if (!loop_parameters().wait_for_telemetry || trace_.reader_present()) return false;
+    SensorFrame first;
+    return sensors_.reader.newest(first) != Lookup::kFrame || !current(sensors_.reader, first.head, robot_.hash);
+  }
+
   /// Tells the driver that this node waits on the sensors of its current run.
   void attach() noexcept {
     const auto* memory = sensors_.reader.memory();
@@ -83,7 +98,6 @@ class ConsumerProcess : public Process {
   }
 
   TraceSink<Row> trace_;
-  RobotModel robot_;
   bool robot_agrees_ = false;
 };
 

@@ -16,7 +16,8 @@ ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, co
 void ControllerCycle::enter_run() noexcept {
   CommandFrame last;
   const FrameReader<CommandFrame> own(channels_.command.memory());
-  const bool resumed = own.newest(last) == Lookup::kFrame && last.head.run == state_.head.run;
+  const Lookup found = own.newest(last);
+  const bool resumed = (found == Lookup::kFrame || found == Lookup::kToken) && last.head.run == state_.head.run;
   inbox_.load(received_);
   script_.rewind();
   if (resumed) script_.advance(last.head.cycle);

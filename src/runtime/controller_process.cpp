@@ -1,7 +1,5 @@
 #include "runtime/controller_process.h"
 
-#include "runtime/start_check.h"
-
 namespace robot_control {
 
 ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
@@ -9,15 +7,14 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotMo
                       {LoopPriority::kController, "drive_control", ChannelNames::kCommand, TraceRing::kController}),
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
-      cycle_(parameters.controller, robot, parameters.loop.period(),
+      cycle_(parameters.controller, robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer}, load_script(parameters.loop),
              clock_of(parameters.loop)) {
   require_drivable(parameters, robot);
 }
 
 std::vector<std::string> ControllerProcess::missing() const {
-  std::vector<std::string> names;
-  if (!driver_lives()) names.emplace_back("mujoco_plant");
+  std::vector<std::string> names = missing_anywhere();
   if (!state_.channel.locked()) names.emplace_back("state_estimator");
   if (!permit_.channel.locked()) names.emplace_back("safety_monitor");
   return names;

@@ -4,6 +4,7 @@
 
 #include "rt/clock.h"
 #include "rt/periodic.h"
+#include "runtime/start_check.h"
 
 namespace robot_control {
 namespace {
@@ -47,7 +48,7 @@ bool await(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_t cy
 
 DriverProcess::DriverProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
-      robot_(robot),
+      robot_(identified(robot, parameters.loop)),
       cycles_(parameters.plant.cycles),
       sensors_(bus, ChannelNames::kSensors),
       truth_(bus, ChannelNames::kTruth),
@@ -67,6 +68,10 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   cycle_ = std::make_unique<DriverCycle>(
       *driver_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
       loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns);
+  SensorFrame last;  // of an earlier process; time never goes back
+  if (lockstep() && sensors_.reader.newest(last) == Lookup::kFrame) {
+    cycle_->set_start(last.head.stamp_ns + loop_parameters().period_ns());
+  }
   cycle_->set_boot(mint());
   cycle_->begin_run(mint());
 }
@@ -136,6 +141,7 @@ void DriverProcess::loop_wall() noexcept {
 
 void DriverProcess::loop_lockstep() noexcept {
   const std::int64_t start_ns = monotonic_ns();
+  const std::int64_t first_stamp_ns = cycle_->next_stamp_ns();
   const std::uint64_t run = cycle_->run();
   bool more = true;
   while (more && !stopping().load(std::memory_order_relaxed)) {
@@ -148,7 +154,7 @@ void DriverProcess::loop_lockstep() noexcept {
       return;
     }
     awaited_.store(0);
-    real_time_factor_.store(static_cast<double>(cycle_->next_stamp_ns()) /
+    real_time_factor_.store(static_cast<double>(cycle_->next_stamp_ns() - first_stamp_ns) /
                             static_cast<double>(monotonic_ns() - start_ns + 1));
   }
 }

@@ -5,11 +5,11 @@ namespace robot_control {
 EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kEstimator, "state_estimator", ChannelNames::kState, TraceRing::kEstimator}),
-      cycle_(parameters.estimator, robot, parameters.loop.period(), sensors_.reader, output_.writer,
+      cycle_(parameters.estimator, robot_, parameters.loop.period(), sensors_.reader, output_.writer,
              clock_of(parameters.loop)) {}
 
 std::vector<std::string> EstimatorProcess::missing() const {
-  return driver_lives() ? std::vector<std::string>{} : std::vector<std::string>{"mujoco_plant"};
+  return missing_anywhere();
 }
 
 void EstimatorProcess::loop() noexcept {

@@ -19,7 +19,8 @@ MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel&
 void MonitorCycle::enter_run() noexcept {
   Permit last;
   const FrameReader<Permit> own(channels_.permit.memory());
-  const bool resumed = own.newest(last) == Lookup::kFrame && last.head.run == sensors_.head.run;
+  const Lookup found = own.newest(last);
+  const bool resumed = (found == Lookup::kFrame || found == Lookup::kToken) && last.head.run == sensors_.head.run;
   script_.rewind();
   if (resumed) script_.advance(last.head.cycle);
   receive_messages();
@@ -30,6 +31,7 @@ void MonitorCycle::receive_messages() noexcept {
   OperatorInput arrived = received_;
   inbox_.load(arrived);
   operator_input_.e_stop_level = arrived.e_stop_level;
+  operator_input_.e_stop_messages += arrived.e_stop_messages - received_.e_stop_messages;
   operator_input_.e_stop_triggers += arrived.e_stop_triggers - received_.e_stop_triggers;
   operator_input_.e_stop_services += arrived.e_stop_services - received_.e_stop_services;
   operator_input_.resets += arrived.resets - received_.resets;
@@ -46,11 +48,13 @@ void MonitorCycle::receive(std::uint64_t cycle) noexcept {
 
 bool MonitorCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
-  const Lookup found = channels_.sensors->newest(sensors_);
+  const Lookup found = channels_.sensors->newest(arrived_);
+  if (found == Lookup::kCorrupt) note_corrupt_sensors();
   if (found == Lookup::kMissing || found == Lookup::kCorrupt) return false;
-  if (!current(*channels_.sensors, sensors_.head, robot_hash_)) return false;
-  const Arrival arrival = clock_.judge(sensors_.head);
+  if (!current(*channels_.sensors, arrived_.head, robot_hash_)) return false;
+  const Arrival arrival = clock_.judge(arrived_.head);
   if (arrival == Arrival::kOld) return false;
+  sensors_ = arrived_;
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(sensors_.head);
   silent_ = false;
@@ -62,23 +66,43 @@ bool MonitorCycle::step() noexcept {
   const std::uint64_t run = sensors_.head.run;
   const std::uint64_t cycle = sensors_.head.cycle;
   receive(cycle);
-  input_ = {.sensors = &sensors_, .operator_input = operator_input_};
+  input_ = {.sensors = &sensors_, .corrupt = corrupt_sensors_ > 0, .operator_input = operator_input_};
+  corrupt_sensors_ = 0;
   if (cycle > 0) {
     const Lookup command_found = channels_.command->at(run, cycle - 1, command_);
     const Lookup state_found = channels_.state->at(run, cycle - 1, state_);
     input_.command = command_found == Lookup::kFrame ? &command_ : nullptr;
     input_.state_seen = state_found == Lookup::kFrame;
-    input_.corrupt = command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt;
+    input_.corrupt = input_.corrupt || command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt;
   }
   publish();
   trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }
 
+void MonitorCycle::note_corrupt_sensors() noexcept {
+  constexpr int kPersistence = 3;  // frames, as of any other corrupt frame
+  if (++corrupt_sensors_ != kPersistence || input_.sensors == nullptr) return;
+  monitor_.sensors_corrupt();
+  publish();
+}
+
 void MonitorCycle::silence() noexcept {
-  if (silent_ || clock_.run() == 0 || sensors_.driver_state == DriverState::kPaused) return;
-  silent_ = true;
-  monitor_.driver_lost();
+  if (!silent_ && input_.sensors != nullptr && sensors_.driver_state != DriverState::kPaused) {
+    silent_ = true;
+    monitor_.driver_lost();
+    publish();
+  }
+  idle();
+}
+
+void MonitorCycle::idle() noexcept {
+  if (input_.sensors == nullptr) return;
+  const std::uint64_t resets = operator_input_.resets;
+  receive_messages();
+  if (operator_input_.resets == resets) return;
+  input_.operator_input = operator_input_;
+  monitor_.refuse_reset(operator_input_);
   publish();
 }
 

@@ -35,15 +35,19 @@ class MonitorCycle {
   /// True when there was a new sensor frame of the driver's current run, and a permit was published.
   bool step() noexcept;
 
-  /// The wait for sensors ended without a frame. Unless the driver's last word was "paused", that latches
-  /// kCauseDriverLost, and the last permit is published again with it, for display.
+  /// Wall clock: the wait for sensors ended without a frame. Unless the driver's last word was "paused", that
+  /// latches kCauseDriverLost, and the last permit is published again with it, for display. Then as `idle`.
   void silence() noexcept;
+
+  /// No frame has come for a while: answers resets, with a refusal.
+  void idle() noexcept;
 
   const MonitorTrace& trace() const noexcept { return trace_; }
 
  private:
   void enter_run() noexcept;
   void receive_messages() noexcept;
+  void note_corrupt_sensors() noexcept;
   void receive(std::uint64_t cycle) noexcept;
   void publish() noexcept;
 
@@ -56,7 +60,9 @@ class MonitorCycle {
   OperatorInput received_;        ///< what the inbox held when last looked at
   OperatorInput operator_input_;  ///< inbox and script added up
   bool silent_ = false;
-  SensorFrame sensors_;
+  int corrupt_sensors_ = 0;  ///< in a row
+  SensorFrame arrived_;      ///< as read, not yet believed
+  SensorFrame sensors_;      ///< of the last step
   StateFrame state_;
   CommandFrame command_;
   MonitorInput input_;

@@ -7,13 +7,12 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
                       {LoopPriority::kMonitor, "safety_monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
-      cycle_(parameters.safety, robot, parameters.loop.period(),
+      cycle_(parameters.safety, robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer}, load_script(parameters.loop),
              clock_of(parameters.loop)) {}
 
 std::vector<std::string> MonitorProcess::missing() const {
-  std::vector<std::string> names;
-  if (!driver_lives()) names.emplace_back("mujoco_plant");
+  std::vector<std::string> names = missing_anywhere();
   if (!state_.channel.locked()) names.emplace_back("state_estimator");
   if (!command_.channel.locked()) names.emplace_back("diff_drive_controller");
   return names;
@@ -34,7 +33,7 @@ bool MonitorProcess::ready() {
 
 void MonitorProcess::loop() noexcept {
   if (lockstep()) {
-    consume(cycle_, sensors_.reader, kStopCheck, [] {});
+    consume(cycle_, sensors_.reader, kStopCheck, [this] { cycle_.idle(); });
   } else {
     consume(cycle_, sensors_.reader, kDriverLossPeriods * loop_parameters().period_ns(), [this] { cycle_.silence(); });
   }

@@ -5,21 +5,26 @@
 namespace robot_control {
 
 Process::Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name)
-    : loop_(loop), priority_(priority), thread_name_(std::move(thread_name)) {}
+    : loop_(loop), priority_(priority), thread_name_(std::move(thread_name)) {
+  if (thread_parameters().policy == RealtimePolicy::kRequired) RealtimeThread(thread_parameters(), [] {});
+}
 
 Process::~Process() {
   stop();
 }
 
+RealtimeParameters Process::thread_parameters() const {
+  const bool paced = loop_.clock == ClockMode::kWall;  // lockstep under SCHED_FIFO would starve the rest
+  return {.name = thread_name_,
+          .policy = paced ? loop_.realtime : RealtimePolicy::kOff,
+          .priority = paced ? static_cast<int>(priority_) : 0,
+          .core = static_cast<int>(loop_.core)};
+}
+
 void Process::poll() {
   poll_channels();
   if (thread_ != nullptr || !ready()) return;
-  const bool paced = loop_.clock == ClockMode::kWall;  // lockstep under SCHED_FIFO would starve the rest
-  thread_ = std::make_unique<RealtimeThread>(RealtimeParameters{.name = thread_name_,
-                                                                .policy = paced ? loop_.realtime : RealtimePolicy::kOff,
-                                                                .priority = paced ? static_cast<int>(priority_) : 0,
-                                                                .core = static_cast<int>(loop_.core)},
-                                             [this] { loop(); });
+  thread_ = std::make_unique<RealtimeThread>(thread_parameters(), [this] { loop(); });
 }
 
 void Process::stop() noexcept {

@@ -24,13 +24,13 @@ enum class LoopPriority : int { kDriver = 83, kMonitor = 82, kEstimator = 81, kC
 
 class Process {
  public:
+  /// Throws RealtimeError when realtime: required cannot be granted: now, not once everybody is there.
   Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name);
   virtual ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Ordinary thread, at 10 Hz. Throws BusError (a channel is foreign, the driver runs another robot) and
-  /// RealtimeError (realtime: required was not granted).
+  /// Ordinary thread, at 10 Hz. Throws BusError: a channel is foreign, the driver runs another robot.
   void poll();
 
   /// Ends the real-time thread within 0.2 s. Called by every destructor below.
@@ -56,6 +56,8 @@ class Process {
   bool lockstep() const noexcept { return loop_.clock == ClockMode::kLockstep; }
 
  private:
+  RealtimeParameters thread_parameters() const;
+
   LoopParameters loop_;
   LoopPriority priority_;
   std::string thread_name_;

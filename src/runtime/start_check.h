@@ -10,4 +10,8 @@ namespace robot_control {
 /// driven joint without torque.
 void require_drivable(const Parameters& parameters, const RobotModel& robot);
 
+/// The robot with rate and clock in its hash and source: what the driver announces and every other node compares
+/// with its own. A node of another rate or clock refuses as one of another robot does.
+RobotModel identified(const RobotModel& robot, const LoopParameters& loop);
+
 }  // namespace robot_control

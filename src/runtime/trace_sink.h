@@ -39,8 +39,12 @@ class TraceSink {
 
   void append(const Row& row, const std::atomic<bool>& stop) noexcept {
     constexpr std::int64_t kRetry = 50'000;  // ns; lockstep only, where nothing is real-time
-    while (lockstep_ && writer_.full(read_.load(std::memory_order_acquire)) && !stop.load()) sleep_ns(kRetry);
-    writer_.append(row, read_.load(std::memory_order_acquire));
+    const std::atomic<std::uint64_t>* read = read_.load(std::memory_order_acquire);
+    while (lockstep_ && writer_.full(read) && !stop.load()) {
+      sleep_ns(kRetry);
+      read = read_.load(std::memory_order_acquire);
+    }
+    writer_.append(row, read);
   }
 
  private:

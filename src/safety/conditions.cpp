@@ -15,8 +15,8 @@ Conditions::Conditions(const SafetyParameters& parameters, double period)
 
 void Conditions::enter_run(const OperatorInput& operator_input) noexcept {
   missing_ = kMissingSensors | kMissingState | kMissingCommand;
-  command_missed_ = 0;
-  state_missed_ = 0;
+  stepped_ = false;
+  last_cycle_ = command_seen_ = state_seen_ = 0;
   corrupt_ = 0;
   not_finite_ = 0;
   heartbeat_counts_ = false;
@@ -28,14 +28,18 @@ void Conditions::enter_run(const OperatorInput& operator_input) noexcept {
 
 std::uint64_t Conditions::step(const MonitorInput& input, bool driving) noexcept {
   const SensorFrame& sensors = *input.sensors;
+  const std::uint64_t cycle = sensors.head.cycle;
+  const bool late = stepped_ && cycle - last_cycle_ > loss_cycles_;
+  stepped_ = true;
+  last_cycle_ = cycle;
   missing_ &= ~static_cast<std::uint64_t>(kMissingSensors);
   if (input.state_seen) missing_ &= ~static_cast<std::uint64_t>(kMissingState);
   if (input.command != nullptr) missing_ &= ~static_cast<std::uint64_t>(kMissingCommand);
 
   const bool command_awaited = (missing_ & kMissingCommand) == 0;
   const bool state_awaited = (missing_ & kMissingState) == 0;
-  command_missed_ = command_awaited && input.command == nullptr ? command_missed_ + 1 : 0;
-  state_missed_ = state_awaited && !input.state_seen ? state_missed_ + 1 : 0;
+  if (input.state_seen || !state_awaited) state_seen_ = cycle;
+  if (input.command != nullptr || !command_awaited || !input.state_seen) command_seen_ = cycle;
   corrupt_ = input.corrupt ? corrupt_ + 1 : 0;
   const bool numbers_finite = finite(sensors) && (input.command == nullptr || finite(*input.command));
   not_finite_ = numbers_finite ? 0 : not_finite_ + 1;
@@ -43,8 +47,9 @@ std::uint64_t Conditions::step(const MonitorInput& input, bool driving) noexcept
   std::uint64_t active = operator_causes(input.operator_input);
   if ((sensors.digital_inputs & kInputEmergencyStop) != 0) active |= kCauseEmergencyStopInput;
   if (sensors.driver_state == DriverState::kFault || sensors.faults != 0) active |= kCauseDriverFault;
-  if (command_missed_ != 0 && command_missed_ >= loss_cycles_) active |= kCauseControllerLost;
-  if (state_missed_ != 0 && state_missed_ >= loss_cycles_) active |= kCauseEstimatorLost;
+  if (cycle - command_seen_ >= loss_cycles_) active |= kCauseControllerLost;
+  if (cycle - state_seen_ >= loss_cycles_) active |= kCauseEstimatorLost;
+  if (late) active |= kCauseMonitorLate;
   if (corrupt_ >= kPersistence) active |= kCauseCorruptFrame;
   if (not_finite_ >= kPersistence) active |= kCauseNotFinite;
   if (heartbeat_lost(input.operator_input.heartbeats, sensors.head.cycle, driving)) active |= kCauseHeartbeatLost;
@@ -54,7 +59,8 @@ std::uint64_t Conditions::step(const MonitorInput& input, bool driving) noexcept
 std::uint64_t Conditions::operator_causes(const OperatorInput& operator_input) noexcept {
   std::uint64_t active = 0;
   const bool triggered = operator_input.e_stop_triggers != seen_.e_stop_triggers;
-  if (operator_input.e_stop_level != 0 || triggered) active |= kCauseEmergencyStopTopic;
+  if (operator_input.e_stop_messages != 0) e_stop_held_ = false;
+  if (operator_input.e_stop_level != 0 || e_stop_held_ || triggered) active |= kCauseEmergencyStopTopic;
   if (operator_input.e_stop_services != seen_.e_stop_services) active |= kCauseEmergencyStopService;
   seen_.e_stop_triggers = operator_input.e_stop_triggers;
   seen_.e_stop_services = operator_input.e_stop_services;

@@ -57,14 +57,20 @@ void SafetyMonitor::driver_lost() noexcept {
   if (driver_known_ && !driver_paused_) pending_ |= kCauseDriverLost;
 }
 
+void SafetyMonitor::refuse_reset(const OperatorInput& operator_input) noexcept {
+  resets_handled_ = operator_input.resets;
+  reset_refusal_ = kRefusalSilent;
+}
+
 void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {
-  if (!last_) return;
-  const Permit& last = *last_;
-  if (last.boot == sensors.boot) {
-    supervisor_.restore(last.causes, last.first_cause, kCauseMonitorRestarted, sensors.head.cycle);
-    pending_ |= kCauseMonitorRestarted;
-  }
+  if (driver_known_) return;
+  const bool continued = last_ && last_->boot == sensors.boot;
+  const Permit last = continued ? *last_ : Permit{};
   last_.reset();
+  if (!continued && sensors.gate.permit_cycle == 0) return;
+  supervisor_.restore(last.causes, last.first_cause, kCauseMonitorRestarted, sensors.head.cycle);
+  pending_ |= kCauseMonitorRestarted;
+  if ((last.active & kCauseEmergencyStopTopic) != 0) conditions_.hold_e_stop();
 }
 
 void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {

@@ -32,13 +32,21 @@ class SafetyMonitor {
 
   /// After a restart of the monitor: `last` is what the channel still holds. Decided at the first step: if the
   /// driver that `last` was issued for still runs, the monitor begins STOPPED with kCauseMonitorRestarted and
-  /// what was latched then; if both started anew, in INIT.
+  /// what was latched then; if both started anew, in INIT. Without a readable `last` the driver is the witness:
+  /// a gate that has used a permit of this run was served by an earlier monitor.
   void resume(const Permit& last) noexcept;
 
   /// The driver has been silent for 20 periods (wall clock only): latches kCauseDriverLost from the next step
   /// on. No effect before the first step (a driver that was never there is missing, not lost) or while the
   /// driver's last word was "paused".
   void driver_lost() noexcept;
+
+  /// Three sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step on.
+  void sensors_corrupt() noexcept { pending_ |= kCauseCorruptFrame; }
+
+  /// No frame comes, so nothing can be judged: a reset asked for meanwhile is answered with kRefusalSilent and
+  /// does not release anything later.
+  void refuse_reset(const OperatorInput& operator_input) noexcept;
 
   /// Fills everything but `out.head`. A second step in the same cycle counts nothing twice.
   void step(const MonitorInput& input, Permit& out) noexcept;

@@ -30,6 +30,7 @@ inline constexpr auto kStopRules = std::to_array<StopRule>({
     {kCauseMonitorRestarted, StopCategory::kBrake},
     {kCauseCorruptFrame, StopCategory::kBrake},
     {kCauseNotFinite, StopCategory::kBrake},
+    {kCauseMonitorLate, StopCategory::kBrake},
 });
 
 /// All causes of one category as bits.

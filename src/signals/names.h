@@ -50,6 +50,8 @@ inline constexpr auto kStopCauseNames = std::to_array<BitName>({
      "look for two builds on one bus or failing memory, then call e_stop_reset"},
     {kCauseNotFinite, "not_finite", "sensors or command held NaN or infinity",
      "look at the sensors and at the controller's log, then call e_stop_reset"},
+    {kCauseMonitorLate, "monitor_late", "the safety monitor missed more than loss_cycles cycles",
+     "look what keeps safety_monitor from its core, then call e_stop_reset"},
 });
 
 inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
@@ -58,6 +60,7 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
      "stop the sender on cmd_vel, or let it send zero"},
     {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every wheel stands"},
     {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
+    {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
 });
 
 inline constexpr auto kMissingNodeNames = std::to_array<BitName>({

@@ -38,6 +38,7 @@ enum StopCause : std::uint64_t {
   kCauseMonitorRestarted = 1u << 8,  ///< The monitor was restarted while the driver ran on.
   kCauseCorruptFrame = 1u << 9,      ///< A checksum was wrong.
   kCauseNotFinite = 1u << 10,        ///< NaN or infinity in sensors or command.
+  kCauseMonitorLate = 1u << 11,      ///< The monitor itself missed more than loss_cycles cycles.
 };
 
 /// Why a reset was refused; bits of Permit::reset_refusal.
@@ -46,6 +47,7 @@ enum ResetRefusal : std::uint64_t {
   kRefusalCommand = 1u << 1,      ///< A motion is still being asked for.
   kRefusalMoving = 1u << 2,       ///< A wheel still turns.
   kRefusalInit = 1u << 3,         ///< Still waiting for a node.
+  kRefusalSilent = 1u << 4,       ///< No sensor frame comes: nothing can be judged.
 };
 
 /// Bits of Permit::missing, in state kInit.

@@ -17,6 +17,7 @@ struct VelocityCommand {
 /// The operator's inputs to the safety monitor. Each counter grows by one with every event.
 struct OperatorInput {
   std::uint64_t e_stop_level = 0;     ///< last value on topic `e_stop`: 1 = true
+  std::uint64_t e_stop_messages = 0;  ///< on that topic, true or false
   std::uint64_t e_stop_triggers = 0;  ///< true on the topic
   std::uint64_t e_stop_services = 0;  ///< calls of `e_stop_trigger`
   std::uint64_t resets = 0;           ///< calls of `e_stop_reset`

@@ -176,6 +176,51 @@ TEST_F(RunningLoop, LatchesTheLossOfTheDriverOnceItIsSilent) {
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
 }
 
+TEST_F(RunningLoop, AResetAskedForDuringSilenceReleasesNothingLater) {
+  loop.controller->inbox().store({.twist = {}, .count = 2});
+  loop.steps(20);
+  loop.monitor->silence();
+  loop.monitor->inbox().store({.resets = 1});
+  loop.monitor->silence();
+  EXPECT_EQ(loop.newest_permit().resets_handled, 1u);
+  EXPECT_EQ(loop.newest_permit().reset_refusal, std::uint64_t{kRefusalSilent});
+  loop.steps(20);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+}
+
+TEST_F(RunningLoop, AnswersAResetWhileTimeStandsStill) {
+  loop.monitor->idle();
+  loop.monitor->inbox().store({.resets = 1});
+  loop.monitor->idle();
+  EXPECT_EQ(loop.newest_permit().reset_refusal, std::uint64_t{kRefusalSilent});
+  loop.step();
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kDrive) << "and nothing was lost";
+}
+
+TEST_F(RunningLoop, StopsOnSensorsThatStayCorrupt) {
+  for (int frame = 0; frame < 3; ++frame) {
+    SensorFrame broken;
+    loop.driver.step();
+    loop.sensors.reader.newest(broken);
+    broken.imu.linear_acceleration[0] += 1;
+    loop.sensors.writer.store(broken);
+    EXPECT_FALSE(loop.monitor->step());
+  }
+  EXPECT_NE(loop.newest_permit().causes & kCauseCorruptFrame, 0u);
+  EXPECT_EQ(loop.newest_permit().action, PermitAction::kBrake);
+}
+
+TEST_F(RunningLoop, StopsAfterAHangOfTheMonitor) {
+  for (int tick = 0; tick < 30; ++tick) {
+    loop.driver.step();
+    loop.estimator->step();
+    loop.controller->step();
+  }
+  loop.steps(2);
+  EXPECT_NE(loop.newest_permit().causes & kCauseMonitorLate, 0u);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+}
+
 TEST_F(RunningLoop, HoldsTheCommandOverCyclesThatHardwareMissed) {
   loop.driver.skip(2);
   loop.step();

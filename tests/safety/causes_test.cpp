@@ -269,11 +269,38 @@ TEST_F(CausesTest, RemembersTheFirstCauseAndCollectsAll) {
   ++input_.operator_input.e_stop_services;
   step();
   input_.command = nullptr;
+  steps(kLoss);
   input_.state_seen = false;
   steps(kLoss);
   EXPECT_EQ(permit_.first_cause, std::uint64_t{kCauseEmergencyStopService});
   EXPECT_EQ(permit_.causes, kCauseEmergencyStopService | kCauseControllerLost | kCauseEstimatorLost);
-  EXPECT_EQ(permit_.active, kCauseControllerLost | kCauseEstimatorLost);
+  EXPECT_EQ(permit_.active, std::uint64_t{kCauseEstimatorLost});
+}
+
+TEST_F(CausesTest, WithoutAStateTheControllerIsNotBlamed) {
+  input_.command = nullptr;
+  input_.state_seen = false;
+  steps(kLoss);
+  expect_stop(SupervisorState::kStopped, kCauseEstimatorLost);
+}
+
+TEST_F(CausesTest, CountsCyclesNotLooks) {
+  input_.command = nullptr;
+  const std::uint64_t gone = cycle();
+  while (permit_.causes == 0) {
+    sensors_.head.cycle += 4;  // the monitor wakes every fifth cycle
+    step();
+  }
+  EXPECT_LT(cycle() - gone, kLoss + 5);
+}
+
+TEST_F(CausesTest, AMonitorThatMissedMoreThanLossCyclesStops) {
+  sensors_.head.cycle += kLoss - 1;
+  step();
+  expect_driving();
+  sensors_.head.cycle += kLoss;
+  step();
+  expect_stop(SupervisorState::kStopped, kCauseMonitorLate);
 }
 
 TEST_F(CausesTest, AFaultAfterAStopIsAFault) {

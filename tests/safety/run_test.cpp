@@ -235,6 +235,26 @@ TEST_F(RestartTest, BesideANewDriverBeginsInInit) {
   EXPECT_EQ(permit_.boot, 78u);
 }
 
+TEST_F(RestartTest, WithoutItsLastPermitTheGateIsTheWitness) {
+  drive();
+  sensors_.gate.permit_cycle = cycle();
+  monitor_ = SafetyMonitor(parameters(), kPeriod);
+  monitor_.reset(input_.operator_input);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});
+}
+
+TEST_F(RestartTest, ATopicThatSaidTrueIsTrueUntilItsNextMessage) {
+  input_.operator_input.e_stop_level = input_.operator_input.e_stop_messages = 1;
+  stand();
+  restart();
+  stand();
+  EXPECT_EQ(reset(), std::uint64_t{kRefusalCauseActive});
+  input_.operator_input.e_stop_messages = 1;  // false, at last
+  EXPECT_EQ(reset(), 0u);
+}
+
 TEST_F(RestartTest, ANewDriverBesideARunningMonitorClearsNothing) {
   e_stop();
   sensors_.boot = 78;

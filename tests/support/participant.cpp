@@ -77,8 +77,8 @@ void run_process(Process& process, double seconds) {
     process.poll();
     return !process.finished();
   });
-  process.stop();
   for (const std::string& text : process.realtime_messages()) std::fprintf(stderr, "%s\n", text.c_str());
+  process.stop();
 }
 
 void run_telemetry(TelemetryProcess& telemetry, double seconds) {
