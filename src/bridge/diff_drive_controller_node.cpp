@@ -38,10 +38,10 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
   void publish() override {
     SensorFrame sensors;
-    if (process().sensors().newest(sensors) != Lookup::kFrame) return;
+    if (process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head)) return;
     if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
     const FrameHead& head = command_.head;
-    time().update(head.stamp_ns);
+    time().follow(sensors);
     if (!pace_.due(head.run, head.stamp_ns)) return;
     const ros::Time stamp = time().at(head.stamp_ns);
     joint_commands_.publish(joint_commands(command_, robot()));

@@ -36,9 +36,9 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
   }
 
   void publish() override {
-    if (process().sensors().newest(sensors_) != Lookup::kFrame) return;
+    if (process().sensors().newest(sensors_) != Lookup::kFrame || !process().is_current(sensors_.head)) return;
     const FrameHead& head = sensors_.head;
-    time().update(head.stamp_ns);
+    time().follow(sensors_);
     if (clock_ && clock_pace_.due(head.run, head.stamp_ns)) publish_clock();
     if (imu_pace_.due(head.run, head.stamp_ns)) imu_.publish(imu(sensors_, robot(), time().at(head.stamp_ns)));
     if (!truth_pace_.due(head.run, head.stamp_ns) || process().truth().newest(truth_frame_) != Lookup::kFrame) return;

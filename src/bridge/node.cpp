@@ -1,5 +1,6 @@
 #include "bridge/node.h"
 
+#include <ros/master.h>
 #include <ros/ros.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "bridge/diagnostics.h"
 #include "bridge/messages.h"
 #include "rt/clock.h"
+#include "rt/futex.h"
 #include "rt/realtime_thread.h"
 
 namespace robot_control {
@@ -57,6 +59,18 @@ class WaitingNote {
   bool told_ = false;
   std::int64_t since_ns_ = monotonic_ns();
 };
+
+/// Without a master no parameter could be read: waits for it, and says so once. False when interrupted.
+bool await_master(const std::string& name) {
+  constexpr std::int64_t kRetry = 200'000'000;  // ns
+  for (bool told = false; !ros::master::check(); told = true) {
+    if (interrupted.load()) return false;
+    if (!told)
+      std::fprintf(stderr, "%s: waiting for the ROS master at %s\n", name.c_str(), ros::master::getURI().c_str());
+    sleep_ns(kRetry);
+  }
+  return true;
+}
 
 class NodeLoop {
  public:
@@ -111,13 +125,15 @@ int run_node(int argc, char** argv, const std::string& name, RobotSource source,
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+    catch_signals();
+    if (!await_master(name)) return 0;
     const Setup setup = read_setup(name, source);
     const LoopParameters& loop = setup.parameters.loop;
     prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
     const std::unique_ptr<Node> node = make(setup);
 
     ros::NodeHandle handle;
-    catch_signals();
+    catch_signals();  // again: ROS puts a handler of its own
     for (const std::string& text : setup.overrides) ROS_INFO("%s", text.c_str());
     node->connect(handle);
     ros::AsyncSpinner callbacks(kCallbackThreads);

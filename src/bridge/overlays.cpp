@@ -3,9 +3,9 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <limits>
-#include <sstream>
 
 namespace robot_control {
 namespace {
@@ -13,10 +13,23 @@ namespace {
 std::string number(double value) {
   if (std::isnan(value)) return ".nan";
   if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  return text.str();
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+/// As a YAML scalar that is a text whatever stands in it: the server knows types.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n') {
+      result += "\\n";
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
 }
 
 std::string text_of(XmlRpc::XmlRpcValue value) {
@@ -28,7 +41,7 @@ std::string text_of(XmlRpc::XmlRpcValue value) {
     case XmlRpc::XmlRpcValue::TypeDouble:
       return number(static_cast<double>(value));
     case XmlRpc::XmlRpcValue::TypeString:
-      return static_cast<std::string>(value);
+      return quoted(static_cast<std::string>(value));
     default:
       return value.toXml();  // a list where a value belongs: the schema refuses it
   }

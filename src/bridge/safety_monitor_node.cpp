@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <atomic>
 #include <mutex>
 
 #include "bridge/diagnostics.h"
@@ -43,12 +44,15 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     const std::int64_t now_ns = monotonic_ns();
     Permit permit;
     const bool found = seen(permit);
-    const bool changed = found != told_permit_ || (found && news(told_, permit));
+    const std::vector<std::string> absent = missing();
+    const bool changed = found != told_permit_ || absent != told_missing_ || (found && news(told_, permit));
     const std::int64_t silence_ns = now_ns - told_ns_;
     if (told_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
-    time().update(permit.head.stamp_ns);
-    status_.publish(found ? safety_status(permit, time(), parameters().loop.period_ns()) : waiting_status(missing()));
+    if (SensorFrame sensors; live(sensors)) time().follow(sensors);
+    status_.publish(found ? safety_status(permit, absent, time(), parameters().loop.period_ns())
+                          : waiting_status(absent));
     told_permit_ = found;
+    told_missing_ = absent;
     told_ = permit;
     told_ns_ = now_ns;
   }
@@ -58,8 +62,17 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   }
 
  private:
-  /// A permit that this process issued, or one that an earlier monitor left and this one continues.
-  bool seen(Permit& permit) { return process().output().newest(permit) == Lookup::kFrame; }
+  bool live(SensorFrame& sensors) {
+    return process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
+  }
+
+  /// A permit of the driver's present run, or of the run that this process has seen end. What an earlier
+  /// session left is none.
+  bool seen(Permit& permit) {
+    if (process().output().newest(permit) != Lookup::kFrame) return false;
+    if (process().is_current(permit.head)) seen_run_.store(permit.head.run);
+    return permit.head.run == seen_run_.load();
+  }
 
   void add(std::uint64_t OperatorInput::*counter) {
     const std::lock_guard lock(input_mutex_);
@@ -112,6 +125,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   OperatorInput input_;
   Permit told_;
   bool told_permit_ = false;
+  std::vector<std::string> told_missing_;
+  std::atomic<std::uint64_t> seen_run_{0};
   std::int64_t told_ns_ = 0;
 };
 

@@ -33,7 +33,7 @@ std::vector<Overlay> server_overlays(const std::string& node) {
   append(overlays, "robot", "robot");
   append(overlays, ros::this_node::getName(), node, {"config", "urdf"});
   if (std::string urdf; ros::param::get("~urdf", urdf)) {
-    overlays.push_back({"robot.urdf", urdf, ros::names::resolve("~urdf")});
+    overlays.push_back(overlays_of(urdf, "robot.urdf", ros::names::resolve("~urdf")).front());
   }
   return overlays;
 }
@@ -60,13 +60,15 @@ std::string clock_problem(ClockMode clock, bool use_sim_time) {
   }
   if (clock == ClockMode::kLockstep && !use_sim_time) {
     return "robot.clock is lockstep, but /use_sim_time is not true: run `rosparam set /use_sim_time true` "
-           "before the nodes are started (sim.launch clock:=lockstep does), or set robot.clock to wall";
+           "before the nodes are started (sim.launch clock:=lockstep does), or set robot.clock to wall; where an "
+           "earlier launch left robot/clock on the parameter server: `rosparam delete /robot/clock`";
   }
   return "";
 }
 
-Setup read_setup(const std::string& node, RobotSource source) {
-  Setup setup;
+namespace {
+
+void fill_setup(const std::string& node, RobotSource source, Setup& setup) {
   setup.node = node;
   const std::string path = config_path();
   const std::vector<Overlay> overlays = server_overlays(node);
@@ -88,8 +90,24 @@ Setup read_setup(const std::string& node, RobotSource source) {
     add(problems, error.what());
   }
   if (!problems.empty()) throw SetupError(problems);
+  // Each robot has a folder of its own: logs of two namespaces never meet in one file.
+  std::string& directory = setup.parameters.telemetry.directory;
+  directory += (directory.empty() ? "." : "") + ros::this_node::getNamespace();
   setup.bus = setup.parameters.loop.bus;
   if (setup.bus.empty()) setup.bus = bus_name(ros::master::getURI(), ros::this_node::getNamespace());
+}
+
+}  // namespace
+
+Setup read_setup(const std::string& node, RobotSource source) {
+  Setup setup;
+  try {
+    fill_setup(node, source, setup);
+  } catch (const SetupError& error) {
+    std::string text = error.what();
+    for (const std::string& line : setup.overrides) text += "\n  " + line;
+    throw SetupError(text);
+  }
   return setup;
 }
 

@@ -29,9 +29,8 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   void publish() override {
-    // The sensors of the driver's present run: what an earlier driver left behind is not published as fresh.
-    if (process().sensors().newest(sensors_) != Lookup::kFrame) return;
-    time().update(sensors_.head.stamp_ns);
+    if (process().sensors().newest(sensors_) != Lookup::kFrame || !process().is_current(sensors_.head)) return;
+    time().follow(sensors_);
     if (joint_pace_.due(sensors_.head.run, sensors_.head.stamp_ns)) {
       joint_states_.publish(joint_states(sensors_, robot(), time().at(sensors_.head.stamp_ns)));
     }

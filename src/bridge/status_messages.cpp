@@ -30,7 +30,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-msg::SafetyStatus safety_status(const Permit& permit, const TimeMap& time, std::int64_t period_ns) {
+msg::SafetyStatus safety_status(const Permit& permit, const std::vector<std::string>& absent, const TimeMap& time,
+                                std::int64_t period_ns) {
   msg::SafetyStatus message;
   message.header.stamp = time.at(permit.head.stamp_ns);
   message.state = static_cast<std::uint8_t>(permit.state);
@@ -47,7 +48,10 @@ msg::SafetyStatus safety_status(const Permit& permit, const TimeMap& time, std::
     message.remedies.emplace_back(row.remedy);
   }
   message.first_cause = names_of(kStopCauseNames, permit.first_cause);
-  if (permit.state == SupervisorState::kInit) assign(message.missing, sentences(kMissingNodeNames, permit.missing));
+  assign(message.missing, absent);
+  if (absent.empty() && permit.state == SupervisorState::kInit) {
+    assign(message.missing, sentences(kMissingNodeNames, permit.missing));
+  }
   message.resets = permit.resets_handled;
   assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal));
   message.run = permit.head.run;

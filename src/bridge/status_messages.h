@@ -11,8 +11,9 @@
 
 namespace robot_control {
 
-/// `period_ns` of the loop, for `since`.
-msg::SafetyStatus safety_status(const Permit& permit, const TimeMap& time, std::int64_t period_ns);
+/// `absent`: nodes that do not run now; `period_ns` of the loop, for `since`.
+msg::SafetyStatus safety_status(const Permit& permit, const std::vector<std::string>& absent, const TimeMap& time,
+                                std::int64_t period_ns);
 
 /// What is told before there is any permit: INIT, waiting for these nodes.
 msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);

@@ -16,13 +16,14 @@ void TimeMap::update(std::int64_t stamp_ns, std::int64_t offset_ns) noexcept {
   first_ = false;
 }
 
-void TimeMap::update(std::int64_t stamp_ns) {
+void TimeMap::follow(const SensorFrame& sensors) {
   if (clock_ == ClockMode::kLockstep) return;
   constexpr std::int64_t kPreempted = 50'000;  // ns; a longer gap between the readings would be taken for an offset
   const std::int64_t before = monotonic_ns();
   const auto day = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
   const std::int64_t gap = monotonic_ns() - before;
-  if (gap < kPreempted || first_) update(stamp_ns, day - before - gap / 2);
+  if (gap >= kPreempted && !first_) return;
+  update(sensors.head.stamp_ns, day - before - gap / 2 + static_cast<std::int64_t>(sensors.slipped_ns));
 }
 
 std::int64_t TimeMap::ros_ns(std::int64_t stamp_ns) const noexcept {

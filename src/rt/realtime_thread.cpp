@@ -3,6 +3,7 @@
 #include <linux/capability.h>
 #include <malloc.h>
 #include <pthread.h>
+#include <pwd.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <future>
@@ -26,8 +26,9 @@ constexpr std::size_t kGuardBytes = 64 * 1024;  // an overflow ends in SIGSEGV, 
 constexpr const char* kDocker = "in a container: --cap-add=SYS_NICE --cap-add=IPC_LOCK";
 
 std::string user_name() {
-  const char* user = std::getenv("USER");
-  return user != nullptr && *user != '\0' ? user : std::to_string(geteuid());
+  const passwd* entry = getpwuid(geteuid());
+  if (entry != nullptr) return entry->pw_name;
+  return std::string(":").append(std::to_string(geteuid()));  // limits.conf(5)
 }
 
 bool has_capability(int capability) {

@@ -5,6 +5,7 @@
 /// Such a node writes one channel (`output`), always reads the sensors, and is woken by the sensors or by another
 /// input. It starts once a living driver has announced the robot that it was itself started with.
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,6 +36,11 @@ template <class Frame, class Row>
 class ConsumerProcess : public Process {
  public:
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
+
+  /// Any thread: is this frame of the present run of a living driver? What an earlier one left is not.
+  bool is_current(const FrameHead& head) const noexcept {
+    return robot_agrees_.load() && current(sensors_.reader, head, robot_.hash);
+  }
 
   /// What this node published.
   const FrameReader<Frame>& output() const noexcept { return output_.reader; }
@@ -98,7 +104,7 @@ class ConsumerProcess : public Process {
   }
 
   TraceSink<Row> trace_;
-  bool robot_agrees_ = false;
+  std::atomic<bool> robot_agrees_{false};  ///< the driver lives, on this robot
 };
 
 }  // namespace robot_control

@@ -30,6 +30,11 @@ class DriverProcess final : public Process {
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
   const FrameReader<TruthFrame>& truth() const noexcept { return truth_.reader; }
 
+  /// Any thread: is this frame of the present run? What an earlier process left is not.
+  bool is_current(const FrameHead& head) const noexcept {
+    return attached_run(sensors_.writer.memory()->head) == head.run;
+  }
+
   /// Simulated over real time since the run began.
   double real_time_factor() const noexcept { return real_time_factor_.load(); }
 

@@ -16,6 +16,19 @@ std::vector<std::string> joint_names(const RobotModel& robot) {
   return names;
 }
 
+/// An earlier run.csv is renamed to run.1.csv, run.2.csv …, never overwritten.
+std::string fresh_path(const std::string& directory) {
+  const std::filesystem::path path = std::filesystem::path(directory) / "run.csv";
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) {
+    int number = 1;
+    const auto kept = [&] { return path.parent_path() / ("run." + std::to_string(number) + ".csv"); };
+    while (std::filesystem::exists(kept(), ignored)) ++number;
+    std::filesystem::rename(path, kept(), ignored);
+  }
+  return path.string();
+}
+
 }  // namespace
 
 /// One ring.
@@ -91,8 +104,8 @@ struct TelemetryProcess::Sources {
 };
 
 TelemetryProcess::TelemetryProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
-    : path_((std::filesystem::path(parameters.telemetry.directory) / "run.csv").string()),
-      positions_(bus, ChannelNames::kTraceRead),
+    : positions_(bus, ChannelNames::kTraceRead),
+      path_(fresh_path(parameters.telemetry.directory)),
       csv_(path_, log_columns(joint_names(robot), parameters.loop.clock == ClockMode::kWall)),
       join_(parameters.loop.period(), [this](const JoinedRow& row) { csv_.write(row); }),
       sources_(std::make_unique<Sources>(bus)) {

@@ -28,7 +28,8 @@ struct TelemetryCounts {
 
 class TelemetryProcess {
  public:
-  /// Throws BusError (another telemetry reads), LogError.
+  /// Writes run.csv in the parameters' directory; an earlier one is kept as run.N.csv. Throws BusError (another
+  /// telemetry reads), LogError.
   TelemetryProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
   ~TelemetryProcess();
   TelemetryProcess(const TelemetryProcess&) = delete;
@@ -54,8 +55,8 @@ class TelemetryProcess {
   class Source;
   struct Sources;
 
-  std::string path_;
   OwnedChannel<RingPositions> positions_;
+  std::string path_;
   CsvWriter csv_;
   Join join_;
   std::unique_ptr<Sources> sources_;

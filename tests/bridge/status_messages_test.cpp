@@ -23,8 +23,9 @@ class SafetyStatusTest : public testing::Test {
     permit_.since_cycle = 500;
   }
 
-  msg::SafetyStatus message() const { return safety_status(permit_, time_, kPeriod); }
+  msg::SafetyStatus message() const { return safety_status(permit_, absent_, time_, kPeriod); }
 
+  std::vector<std::string> absent_;
   TimeMap time_{ClockMode::kLockstep};  // stamps are ROS time
   Permit permit_;
 };

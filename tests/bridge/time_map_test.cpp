@@ -54,13 +54,27 @@ TEST(TimeMap, NeverTurnsBack) {
 TEST(TimeMap, IsTheTimeOfDayOnTheWallClock) {
   TimeMap map(ClockMode::kWall);
   const std::int64_t now_ns = monotonic_ns();
-  map.update(now_ns);
+  SensorFrame sensors;
+  sensors.head.stamp_ns = now_ns;
+  map.follow(sensors);
   EXPECT_NEAR(map.at(now_ns).toSec(), ros::WallTime::now().toSec(), 10.0);  // s; a machine may stall in between
+}
+
+TEST(TimeMap, AddsWhatASimulatedPlantLetSlip) {
+  TimeMap map(ClockMode::kWall);
+  SensorFrame sensors;
+  sensors.slipped_ns = 3 * kSecond;
+  sensors.head.stamp_ns = monotonic_ns() - 3 * kSecond;
+  map.follow(sensors);
+  const std::int64_t now_ns = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+  EXPECT_NEAR(static_cast<double>(map.ros_ns(sensors.head.stamp_ns)), static_cast<double>(now_ns), 1e9);
 }
 
 TEST(TimeMap, IsTheStampItselfInLockstep) {
   TimeMap map(ClockMode::kLockstep);
-  map.update(7 * kSecond);
+  SensorFrame sensors;
+  sensors.head.stamp_ns = 7 * kSecond;
+  map.follow(sensors);
   EXPECT_EQ(map.ros_ns(7 * kSecond), 7 * kSecond);
 }
 

@@ -1,0 +1,62 @@
+"""What `sim.launch record:=true` records, and where."""
+
+import os
+import sys
+from pathlib import Path
+
+import rosgraph.names
+
+TOPICS = (
+    "cmd_vel",
+    "cmd_vel_stamped",
+    "e_stop",
+    "heartbeat",
+    "joint_commands",
+    "joint_targets",
+    "joint_states",
+    "odom",
+    "tf",
+    "tf_static",
+    "imu/data_raw",
+    "cmd_vel_out",
+    "safety_status",
+    "ground_truth/odom",
+    "/diagnostics",
+    "/clock",
+    "/rosout",
+)
+"""The interface table; relative names belong to the namespace of the robot."""
+
+
+def namespace_of(arguments: list[str], environment: dict[str, str]) -> str:
+    """Namespace of this node: `__ns:=` on the command line, else ROS_NAMESPACE, else the root."""
+    for argument in arguments:
+        if argument.startswith("__ns:="):
+            return rosgraph.names.make_global_ns(argument.removeprefix("__ns:="))
+    return rosgraph.names.make_global_ns(environment.get("ROS_NAMESPACE", "/"))
+
+
+def record_command(arguments: list[str], environment: dict[str, str]) -> list[str]:
+    """The rosbag command for `FOLDER` and the remappings that roslaunch appends.
+
+    Raises:
+        SystemExit: no folder is named.
+    """
+    folders = [argument for argument in arguments if ":=" not in argument]
+    if len(folders) != 1:
+        raise SystemExit("usage: record.py FOLDER")
+    namespace = namespace_of(arguments, environment)
+    names = [rosgraph.names.resolve_name(topic, namespace) for topic in TOPICS]
+    prefix = Path(folders[0], namespace.strip("/"), "robot_control")
+    return ["rosbag", "record", f"--output-prefix={prefix}", *names]
+
+
+def main() -> None:
+    """Makes the folder and becomes rosbag."""
+    command = record_command(sys.argv[1:], dict(os.environ))
+    folder = Path(command[2].partition("=")[2]).parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SystemExit(f"record.py: {folder} cannot be made: {error.strerror}. Name another folder.") from None
+    os.execvp(command[0], command)
