@@ -70,6 +70,7 @@ class ClosedLoop:
             values.append(("robot.urdf", fspath(urdf)))
         if scene is not None:
             values.append(("mujoco_plant.scene", fspath(scene)))
+        self._running = False
         self._path = path
         self._values = values
         self.reset(seed)
@@ -96,7 +97,7 @@ class ClosedLoop:
 
     def step(self, cycles: int = 1) -> Log:
         """Runs `cycles` cycles; returns their log, arrays of shape (cycles,)."""
-        return self._loop.run(cycles, None)
+        return self._run(cycles, None)
 
     def run(self, seconds: float, command: Command = None) -> Log:
         """Runs for `seconds` of simulated time.
@@ -111,9 +112,16 @@ class ClosedLoop:
             Column name → float array of shape (cycles,); NaN where a node published nothing. Units: `units`.
         """
         cycles = round(seconds / self.period)
-        if command is None or callable(command):
+        return self._run(cycles, command if command is None or callable(command) else lambda _time: command)
+
+    def _run(self, cycles: int, command: Callable[[float], tuple[float, float]] | None) -> Log:
+        if self._running:
+            raise RuntimeError("step and run cannot be called from the command function of a run")
+        self._running = True
+        try:
             return self._loop.run(cycles, command)
-        return self._loop.run(cycles, lambda _time: command)
+        finally:
+            self._running = False
 
     @property
     def time(self) -> float:

@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,8 +29,21 @@ std::vector<Column> columns_of(const ClosedLoop& loop) {
   return log_columns(names, false);
 }
 
-/// Runs `cycles` cycles; `command(t)` gives (linear, angular), or is None.
+/// What a command function gave, as if just received.
+void receive(ClosedLoop& loop, const py::object& given) {
+  try {
+    const auto [linear, angular] = given.cast<std::pair<double, double>>();
+    loop.command(planar(linear, angular));
+  } catch (const py::cast_error&) {
+    throw py::type_error("command must give (linear, angular), two numbers in m/s and rad/s; it gave " +
+                         std::string(py::repr(given)));
+  }
+}
+
+/// Runs `cycles` cycles; `command(t)` gives (linear, angular), or is None. Other Python threads run meanwhile,
+/// where no command function needs the interpreter.
 py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command) {
+  constexpr std::int64_t kBlock = 1000;  // cycles between two looks for Ctrl-C
   if (cycles < 0) throw py::value_error("cycles must not be negative");
   const std::vector<Column> columns = columns_of(loop);
   std::vector<py::array_t<double>> arrays;
@@ -38,14 +52,22 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command) {
     arrays.emplace_back(cycles);
     cells.push_back(arrays.back().mutable_data());
   }
-  for (std::int64_t row = 0; row < cycles; ++row) {
-    if (!command.is_none()) {
-      const auto [linear, angular] = command(loop.time()).cast<std::pair<double, double>>();
-      loop.command(planar(linear, angular));
-    }
+  const auto step = [&](std::int64_t row) {
     loop.step();
     for (std::size_t i = 0; i < columns.size(); ++i) cells[i][row] = columns[i].value(loop.row());
-    if (row % 1000 == 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+  };
+  for (std::int64_t first = 0; first < cycles; first += kBlock) {
+    const std::int64_t last = std::min(first + kBlock, cycles);
+    if (command.is_none()) {
+      const py::gil_scoped_release release;
+      for (std::int64_t row = first; row < last; ++row) step(row);
+    } else {
+      for (std::int64_t row = first; row < last; ++row) {
+        receive(loop, command(loop.time()));
+        step(row);
+      }
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
   py::dict log;
   for (std::size_t i = 0; i < columns.size(); ++i) log[py::str(columns[i].name)] = arrays[i];

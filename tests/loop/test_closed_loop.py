@@ -211,6 +211,18 @@ def test_refuses_a_robot_without_wheels(tmp_path):
         ClosedLoop(urdf=urdf)
 
 
+@pytest.mark.parametrize("command", [5, (1,), (1, 2, 3), lambda t: None, lambda t: "fast"])
+def test_refuses_a_command_that_is_no_pair_of_numbers(loop, command):
+    with pytest.raises(TypeError, match="linear, angular"):
+        loop.run(0.01, command)
+    assert drive(loop, 0.01)["time"].shape == (10,), "the loop goes on"
+
+
+def test_refuses_to_step_inside_its_own_run(loop):
+    with pytest.raises(RuntimeError, match="command function"):
+        loop.run(0.01, lambda t: loop.step() and (0, 0))
+
+
 def test_refuses_a_missing_file():
     with pytest.raises((RobotError, ParameterError), match=r"nowhere.urdf"):
         ClosedLoop(urdf="/nowhere.urdf")
