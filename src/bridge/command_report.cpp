@@ -15,6 +15,24 @@ std::string format(const char* pattern, Values... values) {
 
 }  // namespace
 
+CommandReport::CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters)
+    : kinematics_(robot),
+      limits_{parameters.max_linear_speed, parameters.max_angular_speed, parameters.max_linear_acceleration,
+              parameters.max_angular_acceleration},
+      timeout_(parameters.cmd_vel_timeout) {}
+
+std::string CommandReport::speeds(const PlanarTwist& wish) const {
+  const double scale = kinematics_.wheel_speed_scale(wish);
+  const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
+  const WheelPair rims = kinematics_.rim_speeds(twist);
+  std::string text = format("left %.2f m/s, right %.2f m/s (cmd_vel %g m/s, %g rad/s", rims.left, rims.right,
+                            wish.linear, wish.angular);
+  if (twist.linear != wish.linear || twist.angular != wish.angular) {
+    text += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
+  }
+  return text + ")";
+}
+
 std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
   std::vector<ReportLine> lines;
   if (command.head.run != run_) {
@@ -39,10 +57,7 @@ std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
     const double linear = command.twist_requested.linear[0];
     const double angular = command.twist_requested.angular[2];
     if (!told_ || linear != linear_ || angular != angular_) {
-      const double half = angular * wheel_base_ / 2;
-      const char* limited = (command.reasons & kReasonSpeedLimited) != 0 ? ", above the speed limits" : "";
-      lines.push_back({false, format("left %.2f m/s, right %.2f m/s (cmd_vel %g m/s, %g rad/s%s)", linear - half,
-                                     linear + half, linear, angular, limited)});
+      lines.push_back({false, speeds({linear, angular})});
     }
     told_ = true;
     refusing_ = false;

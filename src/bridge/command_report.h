@@ -1,11 +1,15 @@
 #pragma once
-/// What the controller tells about the commands it received: every changed value with the wheel speeds it means,
-/// one warning per timeout that stopped a motion, one per series of refused (NaN, infinite) messages. Pure.
+/// What the controller tells about the commands it received: every changed value with the wheel speeds it leads to,
+/// those after the speed limits where it lies above them; one warning per timeout that stopped a motion, one per series
+/// of refused (NaN, infinite) messages. Pure.
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "control/drive_controller.h"
+#include "control/kinematics.h"
+#include "control/speed_limiter.h"
 #include "robot/robot_model.h"
 #include "signals/command_frame.h"
 
@@ -18,14 +22,17 @@ struct ReportLine {
 
 class CommandReport {
  public:
-  CommandReport(const RobotModel& robot, double timeout) noexcept : wheel_base_(robot.wheel_base), timeout_(timeout) {}
+  CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters);
 
   /// Any number of cycles may lie between two frames.
   std::vector<ReportLine> look(const CommandFrame& command);
 
  private:
-  double wheel_base_;  ///< m
-  double timeout_;     ///< s
+  std::string speeds(const PlanarTwist& wish) const;
+
+  DriveKinematics kinematics_;
+  SpeedLimits limits_;
+  double timeout_;  ///< s
   std::uint64_t run_ = 0;
   std::uint64_t received_ = 0;
   std::uint64_t refused_ = 0;

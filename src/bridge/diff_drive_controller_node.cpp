@@ -18,9 +18,7 @@ namespace {
 class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
  public:
   explicit DiffDriveControllerNode(const Setup& setup)
-      : ProcessNode(setup),
-        pace_(report().command_rate),
-        command_report_(robot(), parameters().controller.cmd_vel_timeout) {}
+      : ProcessNode(setup), pace_(report().command_rate), command_report_(robot(), parameters().controller) {}
 
   void connect(ros::NodeHandle& handle) override {
     joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);

@@ -94,8 +94,16 @@ class NodeLoop {
     next_poll_ns_ = now_ns + kPollPeriod;
     node_.poll();
     waiting_.look(node_.missing(), now_ns);
-    const std::vector<std::string> messages = node_.realtime_messages();
-    for (; realtime_told_ < messages.size(); ++realtime_told_) ROS_WARN("%s", messages[realtime_told_].c_str());
+    tell_refusals(node_.realtime_messages());
+  }
+
+  /// In one line: every node says it.
+  void tell_refusals(const std::vector<std::string>& refusals) {
+    if (refusals_told_ || refusals.empty()) return;
+    refusals_told_ = true;
+    std::string text;
+    for (const std::string& refusal : refusals) text += (text.empty() ? "" : ", ") + refusal;
+    ROS_WARN("%s: see README, real-time privileges", text.c_str());
   }
 
   void diagnose(std::int64_t now_ns) {
@@ -114,7 +122,7 @@ class NodeLoop {
   const Setup& setup_;
   ros::Publisher diagnostics_;
   WaitingNote waiting_;
-  std::size_t realtime_told_ = 0;
+  bool refusals_told_ = false;
   std::int64_t next_poll_ns_ = 0;
   std::int64_t next_diagnostic_ns_ = 0;
 };

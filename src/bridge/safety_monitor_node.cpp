@@ -100,12 +100,17 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
     const std::lock_guard one_at_a_time(reset_mutex_);
     Permit permit;
-    const std::uint64_t before = seen(permit) ? permit.resets_handled : 0;
+    Permit before;
+    if (seen(permit)) before = permit;
     add(&OperatorInput::resets);
     for (const std::int64_t end = monotonic_ns() + kResetWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
-      if (!seen(permit) || permit.resets_handled == before) continue;
+      if (!seen(permit)) continue;
+      if (permit.resets_handled == before.resets_handled) {
+        before = permit;
+        continue;
+      }
       response.success = permit.reset_refusal == 0;
-      response.message = response.success ? "released" : refusal_text(permit, publishers_of(command_topics_));
+      response.message = reset_text(before, permit, publishers_of(command_topics_));
       return true;
     }
     response.success = 0;

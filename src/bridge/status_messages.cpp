@@ -76,7 +76,8 @@ bool news(const Permit& last, const Permit& now) {
          last.head.run != now.head.run;
 }
 
-std::string refusal_text(const Permit& permit, const std::vector<std::string>& senders) {
+std::string reset_text(const Permit& before, const Permit& permit, const std::vector<std::string>& senders) {
+  if (permit.reset_refusal == 0) return before.causes == 0 ? "nothing was stopped" : "released";
   std::string text = "refused: " + sentences_of(kResetRefusalNames, permit.reset_refusal);
   if ((permit.reset_refusal & kRefusalCauseActive) != 0) {
     text += "; persists: " + sentences_of(kStopCauseNames, permit.active);

@@ -21,7 +21,8 @@ msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);
 /// Does `now` tell anything that `last` did not? (Cycle and stamp alone are no news.)
 bool news(const Permit& last, const Permit& now);
 
-/// The answer to e_stop_reset: why it was refused and what to do; `senders` are the nodes on cmd_vel.
-std::string refusal_text(const Permit& permit, const std::vector<std::string>& senders);
+/// The answer to e_stop_reset: what it released, or why it was refused and what to do. `before`: the last permit
+/// without the answer; `permit`: the one with it; `senders`: the nodes on cmd_vel.
+std::string reset_text(const Permit& before, const Permit& permit, const std::vector<std::string>& senders);
 
 }  // namespace robot_control

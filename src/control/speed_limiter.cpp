@@ -17,6 +17,15 @@ double allowed_part(double wish, double limit) noexcept {
 
 }  // namespace
 
+PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) noexcept {
+  const double scale = std::min(allowed_part(target.linear, limits.max_linear_speed),
+                                allowed_part(target.angular, limits.max_angular_speed));
+  if (scale == 1.0) return target;
+  // The clamp takes back what rounding may have added to the limiting axis.
+  return {std::clamp(scale * target.linear, -limits.max_linear_speed, limits.max_linear_speed),
+          std::clamp(scale * target.angular, -limits.max_angular_speed, limits.max_angular_speed)};
+}
+
 SpeedLimiter::SpeedLimiter(const SpeedLimits& limits) : limits_(limits) {}
 
 void SpeedLimiter::seed(const PlanarTwist& twist) noexcept {
@@ -25,20 +34,13 @@ void SpeedLimiter::seed(const PlanarTwist& twist) noexcept {
   reasons_ = 0;
 }
 
-PlanarTwist SpeedLimiter::within_speed(const PlanarTwist& target) noexcept {
-  const double scale = std::min(allowed_part(target.linear, limits_.max_linear_speed),
-                                allowed_part(target.angular, limits_.max_angular_speed));
-  if (scale == 1.0) return target;
-  reasons_ |= kReasonSpeedLimited;
-  if (target.linear != 0 && target.angular != 0) reasons_ |= kReasonCurvatureKept;
-  // The clamp takes back what rounding may have added to the limiting axis.
-  return {std::clamp(scale * target.linear, -limits_.max_linear_speed, limits_.max_linear_speed),
-          std::clamp(scale * target.angular, -limits_.max_angular_speed, limits_.max_angular_speed)};
-}
-
 PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt) noexcept {
   reasons_ = 0;
-  const PlanarTwist goal = within_speed(target);
+  const PlanarTwist goal = within_speed(target, limits_);
+  if (goal.linear != target.linear || goal.angular != target.angular) {
+    reasons_ |= kReasonSpeedLimited;
+    if (target.linear != 0 && target.angular != 0) reasons_ |= kReasonCurvatureKept;
+  }
   const PlanarTwist distance{goal.linear - value_.linear, goal.angular - value_.angular};
   const double linear_part = allowed_part(distance.linear, limits_.max_linear_acceleration * dt);
   const double angular_part = allowed_part(distance.angular, limits_.max_angular_acceleration * dt);

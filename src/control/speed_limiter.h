@@ -28,6 +28,9 @@ struct SpeedLimits {
   double max_angular_acceleration = 4.0;  ///< rad/s²
 };
 
+/// target*: what is left of `target` within the speed limits.
+PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) noexcept;
+
 class SpeedLimiter {
  public:
   explicit SpeedLimiter(const SpeedLimits& limits);
@@ -45,8 +48,6 @@ class SpeedLimiter {
   std::uint64_t reasons() const noexcept { return reasons_; }
 
  private:
-  PlanarTwist within_speed(const PlanarTwist& target) noexcept;
-
   SpeedLimits limits_;
   PlanarTwist value_;
   PlanarTwist acceleration_;

@@ -43,7 +43,9 @@ void check_markup(const RobotDescription& description, TiXmlDocument& xml) {
 }  // namespace
 
 void refuse(const std::string& source, const std::string& element, const std::string& what, const std::string& remedy) {
-  throw RobotError(source + ": " + element + ": " + what + ". " + remedy + ".");
+  // TinyXML's sentences bring their full stop along.
+  const std::string sentence = what.substr(0, what.find_last_not_of('.') + 1);
+  throw RobotError(source + ": " + element + ": " + sentence + ". " + remedy + ".");
 }
 
 UrdfDocument parse_urdf(const RobotDescription& description) {

@@ -23,7 +23,6 @@ namespace {
 
 constexpr std::size_t kOrdinaryStackBytes = 1024 * 1024;
 constexpr std::size_t kGuardBytes = 64 * 1024;  // an overflow ends in SIGSEGV, not in a neighbour's memory
-constexpr const char* kDocker = "in a container: --cap-add=SYS_NICE --cap-add=IPC_LOCK";
 
 std::string user_name() {
   const passwd* entry = getpwuid(geteuid());
@@ -49,9 +48,8 @@ rlim_t raise_limit(__rlimit_resource resource, rlim_t wanted) {
   return setrlimit(resource, &limit) == 0 ? limit.rlim_cur : 0;
 }
 
-std::string memory_remedy() {
-  return "remedy: '" + user_name() + " - memlock unlimited' in /etc/security/limits.d/realtime.conf and a new login, " +
-         "or CAP_IPC_LOCK; " + kDocker;
+std::string memory_refusal(const std::string& why) {
+  return "memory is not locked (" + why + "; remedy: '" + user_name() + " - memlock unlimited' or CAP_IPC_LOCK)";
 }
 
 RealtimeReport lock_memory() {
@@ -59,14 +57,12 @@ RealtimeReport lock_memory() {
   const rlim_t limit = raise_limit(RLIMIT_MEMLOCK, RLIM_INFINITY);
   if (limit != RLIM_INFINITY && !has_capability(CAP_IPC_LOCK)) {
     report.memory_lock = Grant::kRefused;
-    report.refusals.push_back("memory is not locked: the limit is " + std::to_string(limit / 1024) +
-                              " KiB, not unlimited, so page faults may delay the loop; " + memory_remedy());
+    report.refusals.push_back(memory_refusal("limit " + std::to_string(limit / 1024) + " KiB"));
     return report;
   }
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     report.memory_lock = Grant::kRefused;
-    report.refusals.push_back(std::string("memory is not locked: mlockall says '") + std::strerror(errno) +
-                              "', so page faults may delay the loop; " + memory_remedy());
+    report.refusals.push_back(memory_refusal(std::strerror(errno)));
     return report;
   }
   report.memory_lock = Grant::kGranted;
@@ -92,9 +88,9 @@ void take_core(int core, RealtimeReport& report) {
   }
   report.core = error == 0 ? Grant::kGranted : Grant::kRefused;
   if (error == 0) return;
-  report.refusals.push_back("core " + std::to_string(core) + " is not granted: '" + std::strerror(error) +
-                            "'; remedy: set the parameter 'core' to one of this process's cores ('taskset -cp " +
-                            std::to_string(getpid()) + "' lists them), or to -1");
+  report.refusals.push_back("core " + std::to_string(core) + " is not granted (" + std::strerror(error) +
+                            "; remedy: robot.core: one that 'taskset -cp " + std::to_string(getpid()) +
+                            "' lists, or -1)");
 }
 
 void take_priority(int priority, RealtimeReport& report) {
@@ -103,10 +99,8 @@ void take_priority(int priority, RealtimeReport& report) {
   const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
   report.priority = error == 0 ? Grant::kGranted : Grant::kRefused;
   if (error == 0) return;
-  report.refusals.push_back(
-      "SCHED_FIFO priority " + std::to_string(priority) + " is not granted: '" + std::strerror(error) +
-      "', the limit is " + std::to_string(limit) + ", so other programs may delay the loop; remedy: '" + user_name() +
-      " - rtprio 99' in /etc/security/limits.d/realtime.conf and a new login, or CAP_SYS_NICE; " + kDocker);
+  report.refusals.push_back("SCHED_FIFO priority " + std::to_string(priority) + " is not granted (limit " +
+                            std::to_string(limit) + "; remedy: '" + user_name() + " - rtprio 99' or CAP_SYS_NICE)");
 }
 
 bool refused(const RealtimeParameters& parameters, const RealtimeReport& report) {
@@ -180,7 +174,7 @@ RealtimeThread::RealtimeThread(const RealtimeParameters& parameters, std::functi
   join();
   std::string message = "realtime: required, but";
   for (const std::string& refusal : report_.refusals) message += "\n  " + refusal;
-  throw RealtimeError(message);
+  throw RealtimeError(message + "\n  how to grant it: README, real-time privileges");
 }
 
 RealtimeThread::~RealtimeThread() {

@@ -6,7 +6,8 @@
 /// SCHED_FIFO are applied by that thread to itself as its last step before the body runs, so no other thread inherits
 /// them.
 ///
-/// What was asked and not granted is said in one message each, with the remedy. Under kRequired that is an
+/// What was asked and not granted is said in a few words each, with the remedy: "<what> (<why>; remedy: <line of
+/// /etc/security/limits.d or capability>)". Under kRequired that is an
 /// error at start-up. The core needs no privilege and is applied whatever the policy says.
 
 #include <cstddef>
@@ -30,7 +31,7 @@ struct RealtimeReport {
   Grant memory_lock = Grant::kNotAsked;
   Grant priority = Grant::kNotAsked;
   Grant core = Grant::kNotAsked;
-  std::vector<std::string> refusals;  ///< one message per Grant::kRefused: what, why, remedy
+  std::vector<std::string> refusals;  ///< one per Grant::kRefused
 };
 
 /// All refusals, one per line.

@@ -8,6 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 class CommandReportTest : public testing::Test {
  protected:
@@ -45,10 +46,22 @@ class CommandReportTest : public testing::Test {
   static RobotModel robot() {
     RobotModel robot;
     robot.wheel_base = 0.5;
+    robot.left.radius = robot.right.radius = 0.1;
+    robot.left.joint = 0;
+    robot.right.joint = 1;
+    robot.joints.resize(2);
     return robot;
   }
 
-  CommandReport report_{robot(), 1.25};
+  static DriveControllerParameters parameters() {
+    DriveControllerParameters parameters;
+    parameters.max_linear_speed = 1.0;
+    parameters.max_angular_speed = 2.0;
+    parameters.cmd_vel_timeout = 1.25;
+    return parameters;
+  }
+
+  CommandReport report_{robot(), parameters()};
 };
 
 TEST_F(CommandReportTest, TellsTheWheelSpeedsOfTheArticlesCommand) {
@@ -57,6 +70,16 @@ TEST_F(CommandReportTest, TellsTheWheelSpeedsOfTheArticlesCommand) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_FALSE(lines[0].warning);
   EXPECT_THAT(lines[0].text, HasSubstr("left 0.45 m/s, right 0.55 m/s"));
+}
+
+TEST_F(CommandReportTest, TellsTheSpeedsAfterTheLimits) {
+  // 3 m/s is thrice the limit, so both axes are divided by 3: 1 ∓ 0.4 · 0.5 / 2
+  EXPECT_THAT(receive(3, 1.2)[0].text, HasSubstr("left 0.90 m/s, right 1.10 m/s (cmd_vel 3 m/s, 1.2 rad/s, "
+                                                 "limited to 1 m/s, 0.4 rad/s)"));
+}
+
+TEST_F(CommandReportTest, SpeaksOfNoLimitWhereNoneWasMet) {
+  EXPECT_THAT(receive(1, 2)[0].text, Not(HasSubstr("limited")));
 }
 
 TEST_F(CommandReportTest, IsSilentWhileTheValueStays) {

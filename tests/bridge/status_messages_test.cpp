@@ -25,6 +25,13 @@ class SafetyStatusTest : public testing::Test {
 
   msg::SafetyStatus message() const { return safety_status(permit_, absent_, time_, kPeriod); }
 
+  Permit stopped() const {
+    Permit stopped = permit_;
+    stopped.state = SupervisorState::kStopped;
+    stopped.causes = stopped.first_cause = kCauseEmergencyStopTopic;
+    return stopped;
+  }
+
   std::vector<std::string> absent_;
   TimeMap time_{ClockMode::kLockstep};  // stamps are ROS time
   Permit permit_;
@@ -77,15 +84,23 @@ TEST_F(SafetyStatusTest, TellsNewsFromRepetition) {
   EXPECT_TRUE(news(permit_, later));
 }
 
+TEST_F(SafetyStatusTest, AnswersAnAcceptedReset) {
+  EXPECT_EQ(reset_text(stopped(), permit_, {}), "released");
+}
+
+TEST_F(SafetyStatusTest, DoesNotClaimToHaveReleasedWhatWasNotStopped) {
+  EXPECT_EQ(reset_text(permit_, permit_, {}), "nothing was stopped");
+}
+
 TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheSenders) {
   permit_.reset_refusal = kRefusalCommand;
-  EXPECT_THAT(refusal_text(permit_, {"/send_cmd", "/teleop"}), HasSubstr("/send_cmd, /teleop"));
+  EXPECT_THAT(reset_text(stopped(), permit_, {"/send_cmd", "/teleop"}), HasSubstr("/send_cmd, /teleop"));
 }
 
 TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheCauseThatPersists) {
   permit_.reset_refusal = kRefusalCauseActive;
   permit_.active = kCauseEmergencyStopTopic;
-  EXPECT_THAT(refusal_text(permit_, {}), HasSubstr("e_stop"));
+  EXPECT_THAT(reset_text(stopped(), permit_, {}), HasSubstr("e_stop"));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kLeftJoint = "<joint name=\"left_wheel_joint\"";
 const std::string kLeftLink = "<link name=\"left_wheel_link\">";
@@ -49,8 +50,8 @@ TEST(RobotRefusals, MalformedXmlWithItsLine) {
               names("XML", "line "));
 }
 
-TEST(RobotRefusals, AnEmptyText) {
-  EXPECT_THAT(refusal({"", "diffbot.urdf"}), names("XML", ""));
+TEST(RobotRefusals, AnEmptyTextWithOneFullStopPerSentence) {
+  EXPECT_THAT(refusal({"", "diffbot.urdf"}), AllOf(names("XML", "empty. "), Not(HasSubstr(".."))));
 }
 
 TEST(RobotRefusals, XmlThatIsNoRobot) {
