@@ -12,6 +12,7 @@ unset PYTHONHOME
 LINTERS=$REPOSITORY/build/linters  # venv with ruff and mypy
 
 say() { printf '== %s\n' "$*"; }
+usage() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }  # the comment at the head of the script
 fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
 
 # One compiler per processor, but no more than one per 2 GB: the optimiser needs about 1 GB on Eigen.

@@ -34,11 +34,20 @@ def to_table(result: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def _writable_file(text: str) -> Path:
+    path = Path(text)
+    try:
+        path.open("a").close()
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{text} cannot be written to: {error.strerror}") from None
+    return path
+
+
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/bench; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(NAMES)} (default: all)")
-    parser.add_argument("--json", type=Path, help="file to write all figures to")
+    parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)

@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -104,11 +105,8 @@ def run_demo(seconds: float, out: Path) -> int:
 def refusals(launch_log: str) -> list[str]:
     """What real-time privileges were not granted, each kind once although every node says it, with its remedy."""
     found: dict[str, str] = {}
-    for line in launch_log.splitlines():
-        match = re.search(r"(memory is not locked|SCHED_FIFO priority|core \d+ is not granted).*", line)
-        if match and "remedy" in match.group(0):
-            text = re.sub(r"\x1b\[[0-9;]*m", "", match.group(0))
-            found.setdefault(match.group(1), text)
+    for match in re.finditer(r"(memory is|SCHED_FIFO priority|core) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
+        found.setdefault(match[1], match[0])
     return list(found.values())
 
 
@@ -197,8 +195,11 @@ def _last_row(log: Path) -> dict[str, str] | None:
 
 
 def _print_refusals(launch_log: str) -> None:
-    for refusal in refusals(launch_log):
+    said = refusals(launch_log)
+    for refusal in said:
         print(f"real time: {refusal}")
+    if said:
+        print("real time: see README, real-time privileges")
 
 
 def _tail(path: Path, lines: int = 25) -> str:
@@ -212,6 +213,18 @@ def _seconds(text: str) -> float:
     return value
 
 
+def _folder(text: str) -> Path:
+    """Makes it and writes in it: a permission bit alone does not tell whether that succeeds (read-only, /proc)."""
+    folder = Path(text).resolve()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{folder} cannot be written to: {error.strerror}") from None
+    return folder
+
+
 def _interrupt(signal_number: int, _frame: FrameType | None) -> None:
     raise KeyboardInterrupt(signal.Signals(signal_number).name)
 
@@ -220,7 +233,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/demo: `seconds` and `out`; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
-    parser.add_argument("--out", type=Path, default=Path("demo_out"), help="folder (default ./demo_out)")
+    parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
     return parser.parse_args(arguments)
 
 
@@ -229,8 +242,8 @@ def main() -> int:
     given = parse()
     signal.signal(signal.SIGTERM, _interrupt)
     try:
-        return run_demo(given.seconds, given.out.resolve())
-    except DemoError as error:
+        return run_demo(given.seconds, given.out)
+    except (DemoError, OSError) as error:
         print(f"scripts/demo: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

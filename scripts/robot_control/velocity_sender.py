@@ -4,6 +4,11 @@ import argparse
 import math
 from dataclasses import dataclass
 
+LOCKSTEP = (
+    "Paced by the wall clock: in lockstep, where many simulated seconds pass between two sends, every command times "
+    "out. Give that run a command_script instead."
+)
+
 
 @dataclass(frozen=True)
 class SendPlan:
@@ -31,19 +36,29 @@ def positive(text: str) -> float:
     return value
 
 
+def number_of_sends(text: str) -> int:
+    """argparse type: a whole number above zero."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number above zero")
+    return value
+
+
 def parse_plan(arguments: list[str]) -> SendPlan:
     """Reads the command line (without the program's name); ends the program on a wrong one.
 
     NaN and infinity are allowed as a velocity: the controller refuses them, and that can be seen with this tool.
     """
-    parser = argparse.ArgumentParser(prog="send_cmd.py", description="Repeats one velocity command on cmd_vel.")
+    parser = argparse.ArgumentParser(
+        prog="send_cmd.py", description="Repeats one velocity command on cmd_vel.", epilog=LOCKSTEP
+    )
     parser.add_argument("--linear", type=float, default=SendPlan.linear, help="m/s (default %(default)s)")
     parser.add_argument("--angular", type=float, default=SendPlan.angular, help="rad/s (default %(default)s)")
     parser.add_argument(
         "--period", type=positive, default=SendPlan.period, help="s between sends (default %(default)s)"
     )
     end = parser.add_mutually_exclusive_group()
-    end.add_argument("--count", type=int, help="end after so many sends")
+    end.add_argument("--count", type=number_of_sends, help="end after so many sends")
     end.add_argument("--seconds", type=positive, help="end after so many seconds")
     given = parser.parse_args(arguments)
     count = given.count

@@ -46,6 +46,12 @@ def test_a_program_that_fails_is_a_failure(tmp_path, monkeypatch, text):
     assert bench.main() == 1
 
 
+def test_a_file_that_cannot_be_written_to_is_refused_before_anything_is_measured(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        bench.parse(["--json", str(tmp_path / "nowhere" / "all.json")])
+    assert "cannot be written to" in capsys.readouterr().err
+
+
 def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])

@@ -8,13 +8,13 @@ from robot_control import demo
 
 def test_each_kind_of_refusal_is_said_once_with_its_remedy():
     line = (
-        "[ WARN] [123.4] state_estimator: SCHED_FIFO priority 81 is not granted: 'Operation not permitted'; remedy: X"
+        "\x1b[33m[ WARN] [123.4]: memory is not locked (limit 8192 KiB; remedy: X), "
+        "SCHED_FIFO priority 81 is not granted (limit 0; remedy: Y): see README\x1b[0m"
     )
-    log = "\n".join([line, line.replace("81", "80"), "memory is not locked: the limit is 8192 KiB; remedy: Y", "noise"])
-    said = demo.refusals(log)
-    assert len(said) == 2
-    assert said[0].startswith("SCHED_FIFO priority 81")
-    assert said[1].endswith("remedy: Y")
+    assert demo.refusals("\n".join([line, line.replace("81", "80"), "noise"])) == [
+        "memory is not locked (limit 8192 KiB; remedy: X)",
+        "SCHED_FIFO priority 81 is not granted (limit 0; remedy: Y)",
+    ]
 
 
 def test_nothing_is_said_when_all_was_granted():
@@ -71,6 +71,34 @@ def test_a_run_too_short_to_judge_is_refused(seconds, capsys):
     with pytest.raises(SystemExit):
         demo.parse([f"--seconds={seconds}"])
     assert "--seconds" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("out", ["file", "file/below", "/proc/xx"])
+def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_starts(out, tmp_path, capsys):
+    (tmp_path / "file").touch()
+    with pytest.raises(SystemExit) as ended:
+        demo.parse(["--out", str(tmp_path / out)])
+    assert ended.value.code == 2
+    assert "cannot be written to" in capsys.readouterr().err
+
+
+def test_the_folder_is_made_and_left_empty(tmp_path):
+    assert demo.parse(["--out", str(tmp_path / "new" / "out")]).out == tmp_path / "new" / "out"
+    assert list((tmp_path / "new" / "out").iterdir()) == []
+
+
+def test_a_disk_that_fails_on_the_way_is_told_without_a_traceback(tmp_path, monkeypatch, capsys):
+    def fail(seconds, out):
+        raise OSError(28, "No space left on device", str(out / "run.png"))
+
+    monkeypatch.setattr(demo, "run_demo", fail)
+    monkeypatch.setattr(sys, "argv", ["demo", "--out", str(tmp_path)])
+    before = signal.getsignal(signal.SIGTERM)
+    try:
+        assert demo.main() == 2
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert "No space left on device" in capsys.readouterr().err
 
 
 def test_sigterm_ends_like_an_interrupt():

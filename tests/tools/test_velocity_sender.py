@@ -27,9 +27,26 @@ def test_line_for_the_log_has_both_speeds_and_their_units() -> None:
     assert SendPlan(linear=-0.25, angular=1.5).describe(3) == "cmd_vel 3: -0.25 m/s, 1.5 rad/s"
 
 
-@pytest.mark.parametrize("wrong", [["--period", "0"], ["--period", "nan"], ["--seconds", "-1"], ["--linear", "fast"]])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        ["--period", "0"],
+        ["--period", "nan"],
+        ["--seconds", "-1"],
+        ["--linear", "fast"],
+        ["--count", "-3"],
+        ["--count", "0"],
+        ["--count", "2.5"],
+    ],
+)
 def test_refuses_what_is_no_plan(wrong: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         parse_plan(wrong)
     assert ended.value.code == 2
     assert wrong[0] in capsys.readouterr().err
+
+
+def test_help_names_what_to_use_in_lockstep(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        parse_plan(["--help"])
+    assert "command_script" in capsys.readouterr().out
