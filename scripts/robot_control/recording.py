@@ -46,7 +46,7 @@ def record_command(arguments: list[str], environment: dict[str, str]) -> list[st
     if len(folders) != 1:
         raise SystemExit("usage: record.py FOLDER")
     namespace = namespace_of(arguments, environment)
-    names = [rosgraph.names.resolve_name(topic, namespace) for topic in TOPICS]
+    names = [rosgraph.names.ns_join(namespace, topic) for topic in TOPICS]
     prefix = Path(folders[0], namespace.strip("/"), "robot_control")
     return ["rosbag", "record", f"--output-prefix={prefix}", *names]
 
