@@ -1,35 +1,66 @@
 #!/usr/bin/python3
 """What must not start does not, and says why; what runs is not disturbed."""
 
+import os
+import socket
+import subprocess
 import tempfile
 import unittest
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import rospy
 import rostest
 import yaml
+from geometry_msgs.msg import TwistStamped
+from robot_control.msg import SafetyStatus
+from std_msgs.msg import Float64MultiArray
 from system_support import (
     CONTROLLER,
+    ESTIMATOR,
     LOOP,
     MONITOR,
     PLANT,
     Program,
     init_test_node,
+    refusal,
     repository,
     running_robot,
     wait_for,
 )
 
 
-def refusal(name: str, *arguments: str) -> str:
-    """Starts a node that must refuse; what it says."""
-    program = Program(name, *arguments)
+def unprivileged() -> list[str]:
+    """A command that runs another one without real-time privileges; skips the test where there is none."""
+    prefix = ["prlimit", "--rtprio=0:0", "--memlock=65536:65536"]
+    if os.geteuid() == 0:
+        prefix += ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--inh-caps=-all"]
+    look = [*prefix, "test", "-r", str(repository() / "config" / "robot_params.yaml")]
+    answer = subprocess.run(look, capture_output=True, text=True, check=False)
+    if answer.returncode != 0:
+        raise unittest.SkipTest(f"no unprivileged user can be had that reads the package: {answer.stderr or look}")
+    status = subprocess.run([*prefix, "cat", "/proc/self/status"], capture_output=True, text=True, check=True).stdout
+    if int(status.partition("CapEff:")[2].split()[0], 16) != 0:
+        raise unittest.SkipTest("this user's programs keep capabilities, and with them the privileges")
+    return prefix
+
+
+@contextmanager
+def parameter(name: str, value: object) -> Iterator[None]:
+    """Stands on the parameter server meanwhile."""
+    rospy.set_param(name, value)
     try:
-        code = program.wait()
+        yield
     finally:
-        program.end()
-    assert code == 1, f"{name} ended with {code}, not 1:\n{program.output}"
-    return program.output
+        rospy.delete_param(name)
+
+
+def free_port() -> int:
+    """A loopback port where nobody listens."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
 
 
 class StartTest(unittest.TestCase):
@@ -60,6 +91,23 @@ class StartTest(unittest.TestCase):
         self.assertIn("pid_kq", output)
         self.assertIn("/diff_drive_controller/pid_kq", output, "where it stands")
         self.forget(CONTROLLER)
+
+    def test_refusal_shows_the_overrides_in_force(self) -> None:
+        output = refusal(PLANT, "_urdf:=/nonexistent.urdf")
+        self.assertIn("/mujoco_plant/urdf", output, "where it stands")
+        self.assertIn("/nonexistent.urdf", output)
+        self.forget(PLANT)
+
+    def test_refuses_without_the_real_time_that_is_required(self) -> None:
+        # At once: nobody else runs.
+        prefix = unprivileged()
+        with parameter("robot/realtime", "required"), tempfile.TemporaryDirectory() as home:
+            Path(home).chmod(0o777)
+            output = refusal(MONITOR, prefix=prefix, environment={"ROS_HOME": home})
+        self.assertIn("realtime: required, but", output)
+        self.assertIn("memory is not locked", output)
+        self.assertIn("SCHED_FIFO", output)
+        self.assertIn("rtprio 99", output, "the remedy")
 
     def test_refuses_simulated_time_left_over(self) -> None:
         rospy.set_param("/use_sim_time", True)
@@ -119,6 +167,80 @@ class StartTest(unittest.TestCase):
             program.end()
         for path in objects:
             path.unlink(missing_ok=True)
+
+    def test_waits_for_the_master_and_says_so_once(self) -> None:
+        port = free_port()
+        with tempfile.TemporaryDirectory() as logs:
+            environment = {"ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_LOG_DIR": logs}
+            program = Program(MONITOR, environment=environment)
+            master = None
+            objects: set[Path] = set()
+            try:
+                notice = f"waiting for the ROS master at {environment['ROS_MASTER_URI']}"
+                wait_for("the notice", lambda: notice in program.output)
+                master = subprocess.Popen(
+                    ["rosmaster", "--core", "-p", str(port)],
+                    stdout=subprocess.DEVNULL,
+                    stderr=subprocess.DEVNULL,
+                    env={**os.environ, **environment},
+                )
+                wait_for("its start", lambda: "waiting for mujoco_plant" in program.output)
+                objects = program.shared_memory()
+                self.assertEqual(program.output.count(notice), 1, program.output)
+            finally:
+                program.end()
+                if master is not None:
+                    master.terminate()
+                    master.wait()
+                for path in objects:
+                    path.unlink(missing_ok=True)
+
+    def test_waiting_for_a_master_ends_on_sigint(self) -> None:
+        program = Program(MONITOR, environment={"ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}"})
+        try:
+            wait_for("the notice", lambda: "waiting for the ROS master" in program.output)
+        finally:
+            code = program.end()
+        self.assertEqual(code, 0, program.output)
+
+    def test_tells_nothing_of_an_earlier_session_as_fresh(self) -> None:
+        # The controller ends first, so its last command drives; then the monitor latches its loss.
+        with running_robot() as robot:
+            robot.drive_until("0.5 m/s", robot.driving)
+            robot.nodes[CONTROLLER].end()
+            wait_for("controller_lost", lambda: "controller_lost" in robot.causes)
+            for name in LOOP:
+                robot.nodes[name].end()
+            run = robot.status.run
+            robot.status = robot.odom = None
+
+            wheels: list[float] = []
+            limited: list[float] = []
+            told: list[SafetyStatus] = []
+            subscribers = [
+                rospy.Subscriber("joint_commands", Float64MultiArray, lambda m: wheels.extend(m.data)),
+                rospy.Subscriber("cmd_vel_out", TwistStamped, lambda m: limited.append(m.twist.linear.x)),
+                rospy.Subscriber("safety_status", SafetyStatus, told.append),
+            ]
+            robot.start(MONITOR)
+            absent = {PLANT, ESTIMATOR, CONTROLLER}
+            wait_for("the names of who is missing", lambda: told and set(told[-1].missing) == absent)
+            robot.start(CONTROLLER)
+            wait_for("the controller's wait", lambda: "waiting for mujoco_plant" in robot.nodes[CONTROLLER].output)
+            for status in told:
+                self.assertEqual((status.state, status.causes), (SafetyStatus.INIT, []), status)
+            self.assertEqual((wheels, limited), ([], []), "nothing has been commanded")
+
+            robot.start(PLANT, ESTIMATOR)
+            robot.await_ready()
+            self.assertNotEqual(robot.status.run, run)
+            wait_for("50 commands", lambda: len(limited) > 50 and len(wheels) > 100)
+            for subscriber in subscribers:
+                subscriber.unregister()
+            # What lay there: 0.5 m/s, 4.5 and 5.5 rad/s.
+            self.assertLess(max(map(abs, limited)), 0.01)
+            self.assertLess(max(map(abs, wheels)), 0.1)
+            self.assertNotIn("left 0.45 m/s", robot.nodes[CONTROLLER].output)
 
     def forget(self, *names: str) -> None:
         """Private parameters outlive their nodes."""

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import roslib.packages
@@ -46,9 +46,19 @@ def wait_for(
 
 
 class Program:
-    """A program of the package with its output in a file."""
+    """A program of the package with its output in a file.
 
-    def __init__(self, name: str, *arguments: str, namespace: str = "") -> None:
+    `prefix`: a command that runs the program; `environment`: lies over that of the test.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *arguments: str,
+        namespace: str = "",
+        prefix: Sequence[str] = (),
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
         self.name = name
         self._output = tempfile.NamedTemporaryFile(prefix=f"{name}-", suffix=".log")
         found = roslib.packages.find_node("robot_control", name)
@@ -56,7 +66,11 @@ class Program:
             raise AssertionError(f"robot_control has no program {name}")
         ns = [f"__ns:={namespace}"] if namespace else []
         self._process = subprocess.Popen(
-            [found[0], *arguments, *ns], stdin=subprocess.DEVNULL, stdout=self._output, stderr=subprocess.STDOUT
+            [*prefix, found[0], *arguments, *ns],
+            stdin=subprocess.DEVNULL,
+            stdout=self._output,
+            stderr=subprocess.STDOUT,
+            env={**os.environ, **(environment or {})},
         )
 
     @property
@@ -100,6 +114,19 @@ class Program:
             paths = (Path(line.split(maxsplit=5)[5]) for line in lines if "/dev/shm/robot_control." in line)
             return {path for path in paths if path.exists()}
         return set()
+
+
+def refusal(
+    name: str, *arguments: str, prefix: Sequence[str] = (), environment: Mapping[str, str] | None = None
+) -> str:
+    """Starts a node that must refuse; what it says."""
+    program = Program(name, *arguments, prefix=prefix, environment=environment)
+    try:
+        code = program.wait()
+    finally:
+        program.end()
+    assert code == 1, f"{name} ended with {code}, not 1:\n{program.output}"
+    return program.output
 
 
 class Robot:

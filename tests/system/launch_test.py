@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""sim.launch: a run that ends by itself, its log, its bag, a namespace of its own."""
+
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+from xmlrpc.client import ServerProxy
+
+import rosbag
+import rosgraph
+import rospy
+import rostest
+from robot_control.recording import TOPICS
+from system_support import LIMIT, MONITOR, refusal, repository, wait_for
+
+SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "tf_static", "/clock", "/rosout"}
+"""Topics without messages, certainly or perhaps: nobody commands, no transform is static, /clock is of lockstep alone,
+and what the nodes log they may have logged before the recorder came."""
+LAUNCH_LIMIT = 3 * LIMIT
+"""s; a launch is a dozen programs, and roslaunch gives each 15 s to end."""
+
+
+class Launch:
+    """sim.launch with its output in a file."""
+
+    def __init__(self, *arguments: str) -> None:
+        self._output = tempfile.NamedTemporaryFile(prefix="sim-launch-", suffix=".log")
+        self._process = subprocess.Popen(
+            ["roslaunch", str(repository() / "launch" / "sim.launch"), *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=self._output,
+            stderr=subprocess.STDOUT,
+        )
+
+    @property
+    def output(self) -> str:
+        return Path(self._output.name).read_text(errors="replace")
+
+    @property
+    def running(self) -> bool:
+        return self._process.poll() is None
+
+    def wait(self) -> int:
+        return self._process.wait(LAUNCH_LIMIT)
+
+    def end(self) -> None:
+        """SIGINT; roslaunch ends its nodes in any case."""
+        if self.running:
+            self._process.send_signal(signal.SIGINT)
+        self.wait()
+
+
+def received_by_recorder(namespace: str) -> set[str]:
+    """Topics of which the recorder has had messages; rosbag adds a number to its name."""
+    master = rosgraph.Master("/launch_test")
+    try:
+        _, subscribers, _ = master.getSystemState()
+        prefix = rosgraph.names.ns_join(namespace, "record_")
+        recorder = next(name for _, names in subscribers for name in names if name.startswith(prefix))
+        # roscpp answers with the bare statistics: publications first, then subscriptions.
+        subscriptions = ServerProxy(master.lookupNode(recorder)).getBusStats("/launch_test")[1]
+    except (StopIteration, rosgraph.MasterException, OSError):
+        return set()  # not there yet
+    return {topic for topic, links in subscriptions if any(link[2] > 0 for link in links)}
+
+
+class LaunchTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.out = Path(folder.name, "not", "there", "yet")
+        self.bus = f"launch{os.getpid()}.{time.monotonic_ns()}"
+        self.addCleanup(self.remove_what_stays)
+
+    def remove_what_stays(self) -> None:
+        """Parameters outlive a launch; so does shared memory."""
+        for name in ("/robot", "/mujoco_plant"):
+            if rospy.has_param(name):
+                rospy.delete_param(name)
+        for path in Path("/dev/shm").glob(f"robot_control.*.{self.bus}.*"):
+            path.unlink(missing_ok=True)
+
+    def launch(self, *arguments: str) -> Launch:
+        launch = Launch("telemetry:=true", f"out:={self.out}", f"bus:={self.bus}", *arguments)
+        self.addCleanup(launch.end)
+        return launch
+
+    def run_lockstep(self, cycles: int) -> None:
+        """Ends by itself, with a row for every cycle."""
+        script = self.out.parents[2] / "script.csv"
+        script.write_text("cycle,linear,angular\n0,0.5,0.2\n1000,0.5,0.2\n")
+        launch = self.launch("clock:=lockstep", f"cycles:={cycles}", f"command_script:={script}")
+        self.assertEqual(launch.wait(), 0, launch.output)
+        lines = (self.out / "run.csv").read_text().splitlines()
+        rows = [line for line in lines if line[0].isdigit()]
+        self.assertEqual(len(rows), cycles, launch.output)
+
+    def record(self, namespace: str) -> set[str]:
+        """Topics in the bag of a launch that ran until the recorder had heard all that is told."""
+        ns = [f"__ns:={namespace}"] if namespace else []
+        launch = self.launch("clock:=wall", "record:=true", *ns)
+        told = {rosgraph.names.ns_join(f"/{namespace}", topic) for topic in set(TOPICS) - SILENT}
+
+        def heard() -> bool:
+            self.assertTrue(launch.running, launch.output)
+            return told <= received_by_recorder(f"/{namespace}")
+
+        wait_for("a message of every topic at the recorder", heard, LAUNCH_LIMIT)
+        launch.end()
+        bags = list((self.out / namespace).glob("*.bag"))
+        self.assertEqual(len(bags), 1, launch.output)
+        with rosbag.Bag(str(bags[0])) as bag:
+            topics = set(bag.get_type_and_topic_info().topics)
+        self.assertLessEqual(told, topics)
+        return topics
+
+    def test_ends_by_itself_with_every_row_and_keeps_an_earlier_log(self) -> None:
+        self.run_lockstep(3000)
+        first = (self.out / "run.csv").read_bytes()
+        self.run_lockstep(200)
+        self.assertEqual((self.out / "run.1.csv").read_bytes(), first)
+
+        # Both outlive the launch; who repairs one of them is told of the other.
+        self.assertEqual((rospy.get_param("/use_sim_time"), rospy.get_param("/robot/clock")), (True, "lockstep"))
+        rospy.set_param("/use_sim_time", False)
+        self.assertIn("`rosparam delete /robot/clock`", refusal(MONITOR))
+
+    def test_records_every_topic_that_has_messages(self) -> None:
+        topics = self.record("")
+        self.assertLessEqual({"/odom", "/tf", "/joint_states", "/cmd_vel_out", "/imu/data_raw"}, topics)
+        self.assertTrue((self.out / "run.csv").is_file())
+
+    def test_second_robot_logs_and_records_in_a_folder_of_its_own(self) -> None:
+        topics = self.record("robot2")
+        self.assertLessEqual({"/robot2/odom", "/robot2/tf", "/diagnostics"}, topics)
+        self.assertNotIn("/odom", topics)
+        self.assertTrue((self.out / "robot2" / "run.csv").is_file())
+        self.assertFalse((self.out / "run.csv").exists())
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "launch", LaunchTest)
