@@ -35,7 +35,7 @@ struct LoopParameters {
   std::int64_t core = 0;            ///< the one core the chain is pinned to; -1 = not pinned
   std::string bus;                  ///< empty: from master and namespace
   std::string command_script;       ///< CSV path; empty: none
-  bool wait_for_nodes = true;       ///< cycle 0 begins when all four nodes hold their channels
+  bool wait_for_nodes = false;      ///< cycle 0 begins when all four nodes hold their channels; always in lockstep
   bool wait_for_telemetry = false;  ///< … and telemetry is reading
 
   double period() const { return 1.0 / rate; }                           ///< s
