@@ -113,10 +113,11 @@ auto reporting(const std::string& channel, const std::string& name, Action actio
 [[noreturn]] void fail_locked(const std::string& channel, const std::string& name, Finding finding) {
   if (finding == Finding::kUsable || finding == Finding::kEmpty) {
     fail(channel, name, "another process writes this channel; a second instance of its node is refused",
-         "stop the first instance ('fuser " + file_of(name) + "'), or start this one in another namespace (__ns:=…)");
+         "stop the first instance ('fuser " + file_of(name) +
+             "', package psmisc), or start this one in another namespace (__ns:=…)");
   }
   fail(channel, name, std::string("another process writes this channel, and its object ") + text(finding),
-       "stop that process ('fuser " + file_of(name) + "'): all nodes must be of one build");
+       "stop that process ('fuser " + file_of(name) + "', package psmisc): all nodes must be of one build");
 }
 
 void make(SharedMemory& object, const BusLayout& layout, MemoryMapping& mapping) {
