@@ -1,4 +1,5 @@
-# One library per folder of src/. Its dependencies are the architecture: what is not linked is not included.
+# One library per folder of src/, linked to those whose functions it calls. Who may include whom is held by
+# tests/tools/test_architecture.py.
 #   robot_control_library(NAME SOURCES … LINK …)
 
 add_library(robot_control_options INTERFACE)

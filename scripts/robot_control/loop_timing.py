@@ -31,7 +31,7 @@ class LoopTiming:
     """From the driver's wake-up to the published command."""
     cycles: int
     held: int
-    """Ticks on a command one to three cycles old."""
+    """Ticks k on a command of cycle k-4 … k-2."""
     missed: int
     """Ticks braked for want of a command."""
     late_permits: int

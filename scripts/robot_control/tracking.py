@@ -28,7 +28,7 @@ CYCLE_TOLERANCE = 0.05
 POSE_TOLERANCE = 0.01
 EXCUSED_CYCLES = 50
 SETTLE = 0.5
-"""s; 2.5 time constants kp/ki = 0.2 s of the wheel loop, whose feed-forward leaves little to settle."""
+"""s; 5 time constants kp/ki = 0.1 s of the wheel loop, whose feed-forward leaves little to settle."""
 RISE_LIMIT = 2.0
 """s from first asked to reached; the article's command needs 0.5 s at 1 m/s², the default acceleration limit."""
 ROWS_NEEDED = 0.99

@@ -69,7 +69,6 @@ std::string clock_problem(ClockMode clock, bool use_sim_time) {
 namespace {
 
 void fill_setup(const std::string& node, RobotSource source, Setup& setup) {
-  setup.node = node;
   const std::string path = config_path();
   const std::vector<Overlay> overlays = server_overlays(node);
   for (const Overlay& overlay : overlays) {

@@ -26,7 +26,6 @@ enum class RobotSource {
 };
 
 struct Setup {
-  std::string node;  ///< program and block of the YAML file: "state_estimator"
   Parameters parameters;
   RobotModel robot;
   std::string bus;
@@ -37,7 +36,7 @@ struct Setup {
 /// too; empty when they agree.
 std::string clock_problem(ClockMode clock, bool use_sim_time);
 
-/// Throws SetupError with all problems at once.
+/// `node`: program and block of the YAML file ("state_estimator"). Throws SetupError with all problems at once.
 Setup read_setup(const std::string& node, RobotSource source);
 
 }  // namespace robot_control

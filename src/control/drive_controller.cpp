@@ -1,6 +1,5 @@
 #include "control/drive_controller.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "control/control_problems.h"

@@ -58,7 +58,7 @@ struct ControlInput {
   VelocityCommand request;         ///< the inbox; a new message is one with a new count
 };
 
-/// The gate executes a command in at most this many ticks (DESIGN: commands of cycles k−4 … k−1).
+/// The gate executes a command in at most this many ticks (commands of cycles k−4 … k−1: hal/gate.h, kCommandLife).
 inline constexpr std::uint64_t kHeldCycles = 4;
 
 /// rad/s that no wheel reaches (10⁴ rpm): a faster change of angle is an encoder's error.

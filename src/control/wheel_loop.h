@@ -60,7 +60,8 @@ struct WheelPlan {
   double feed_forward = 0;  ///< N·m
 };
 
-/// All in the joint's own sign. Order in a cycle: `measure`, then either `resume` (braked) or `step`.
+/// All in the joint's own sign. Order in a cycle: `measure`; `resume`, perhaps `carry`, while the wheel does not
+/// follow this loop; `step` where it shall be driven, in the cycle of the hand-over after `resume`.
 class WheelLoop {
  public:
   /// `bandwidth` Hz of the tracking loop, `effort_limit` N·m, `period` s.

@@ -2,6 +2,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <array>
 #include <csetjmp>
 #include <cstring>
 #include <string>

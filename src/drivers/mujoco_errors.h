@@ -6,9 +6,6 @@
 /// `mjData::warning` after every step). An error must not return into MuJoCo: inside `run_guarded` it leaves the
 /// guarded function by longjmp, outside it throws DriverError with MuJoCo's message.
 
-#include <array>
-#include <cstdint>
-
 namespace robot_control {
 
 /// Process-wide; may be called again.

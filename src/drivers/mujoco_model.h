@@ -19,7 +19,7 @@
 
 namespace robot_control {
 
-/// A MuJoCo step is at most this long, s: the contact of PHYSICS ("solref .004") needs four steps per time constant.
+/// A MuJoCo step is at most this long, s: the contact's time constant of 4 ms (mjcf.h) needs four steps.
 inline constexpr double kLongestStep = 0.001;
 
 struct DeleteMujoco {

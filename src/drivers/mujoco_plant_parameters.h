@@ -8,7 +8,7 @@ namespace robot_control {
 
 struct MujocoPlantParameters {
   std::string scene;              ///< MJCF path: the world around the robot
-  std::uint64_t seed = 0;         ///< of every random number in the plant
+  std::uint64_t seed = 0;         ///< of every random number in the plant; it draws none yet, its sensors are exact
   std::uint64_t cycles = 0;       ///< the node ends by itself after so many cycles; 0 = never
   double brake_effort = 3.0;      ///< N·m, the brake's bound per joint
   double brake_damping = 2.0;     ///< N·m·s/rad

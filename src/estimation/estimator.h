@@ -34,7 +34,7 @@ namespace robot_control {
 
 class Estimator {
  public:
-  static constexpr std::uint64_t kMaxHeld = 4;       ///< cycles, as many as a command may be held
+  static constexpr std::uint64_t kMaxHeld = 4;       ///< cycles, as many as a command lives (hal/gate.h)
   static constexpr double kPlanarVariance = 1.0e-4;  ///< m², rad²
   static constexpr double kGyroRange = 100;          ///< rad/s; beyond what any MEMS gyro measures
   static constexpr double kRestartPosition = 0.05;   ///< m, standard deviation added by a restart

@@ -2,16 +2,16 @@
 /// One yaw increment from two: the wheels' and the gyro's, weighted by their noise densities [rad²/s].
 ///
 ///   wheels   q_w = wheel_slip_noise² · s / wheel_base²           s: smoothed |left| + |right| speed, m/s
-///   gyro     q_g = gyro_noise² + gyro_turn_noise² · |ω| + σ_b² · kBiasHorizon
+///   gyro     q_g = q_n + σ_b² · kBiasHorizon,   q_n = gyro_noise² + gyro_turn_noise² · |ω|
 ///   gain     K = q_w / (q_w + q_g)        turn = turn_wheels + K · (turn_gyro − turn_wheels)
 ///
 /// s is smoothed over kSpeedSmoothing, so that K does not depend on in which cycle an encoder counts: weighting
 /// the cycles between two counts by their own travel would lose most of a slow turn. At rest s → 0, K → 0: the
 /// gyro's noise does not turn a standing robot. A bias error σ_b is not white; over the horizon between two
-/// stops it weighs like the density above.
+/// stops it weighs like the density above. Over skipped cycles gap_variance / dt is added to q_g and q_n.
 ///
 /// Innovation: the difference of the two rates, smoothed, y, with variance
-///   S = (q_w + q_g) / (2 · kSmoothing) + σ_b² + rate_floor²,       nis = y² / S
+///   S = (q_w + q_n) / (2 · kSmoothing) + σ_b² + rate_floor²,       nis = y² / S
 /// `confidence` = exp(−nis / 2): 1 where wheels and gyro agree, 0.01 at three standard deviations. Beyond those
 /// it is slip: then q_w is at least 2 · kSmoothing · y², the density that explains y, so that the gyro leads and
 /// the covariance grows.
@@ -53,7 +53,6 @@ class YawFusion {
   double gain() const noexcept { return gain_; }                      ///< K
   double wheel_variance() const noexcept { return wheel_variance_; }  ///< rad², of this turn_wheels
   double gyro_variance() const noexcept { return gyro_variance_; }    ///< rad², of this turn_gyro, bias apart
-  double nis() const noexcept { return nis_; }
   double confidence() const noexcept;
   bool slip() const noexcept { return nis_ > kSlipNis; }
 

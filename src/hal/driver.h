@@ -3,7 +3,6 @@
 
 #include <span>
 #include <stdexcept>
-#include <string>
 
 #include "signals/joint.h"
 #include "signals/sensor_frame.h"

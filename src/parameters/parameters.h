@@ -1,5 +1,5 @@
 #pragma once
-/// Everything a user sets, as structs. The schema below is the only place that knows a YAML key.
+/// Everything a user sets, as structs. schema.h is the only place that knows a YAML key.
 ///
 /// A tree of values (YAML file first, then overlays: a parameter server, a Python dict) is read into
 /// `Parameters` at once. Missing, unknown, mistyped, NaN, infinite and out-of-range values are collected, and

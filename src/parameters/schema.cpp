@@ -82,7 +82,7 @@ constexpr auto kDiffDriveController = std::to_array<Key>({
 });
 
 constexpr auto kSafetyMonitor = std::to_array<Key>({
-    // More than the four cycles over which the gate holds a command: a held command is not yet a lost node.
+    // More than the four cycles that a command lives at the gate: a held command is not yet a lost node.
     {"loss_cycles", in<&P::safety, &SafetyParameters::loss_cycles>, "cycles", 5, 10000},
     {"heartbeat_timeout", in<&P::safety, &SafetyParameters::heartbeat_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
     {"ramp_time", in<&P::safety, &SafetyParameters::ramp_time>, "s", 0.01, 60},

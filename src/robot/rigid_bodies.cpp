@@ -3,7 +3,6 @@
 #include <urdf_model/model.h>
 
 #include <Eigen/Eigenvalues>
-#include <cmath>
 
 #include "robot/kdl_tree.h"
 #include "robot/urdf_document.h"

@@ -1,6 +1,5 @@
 #include "robot/wheel.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "robot/urdf_document.h"

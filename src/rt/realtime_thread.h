@@ -7,8 +7,8 @@
 /// them.
 ///
 /// What was asked and not granted is said in a few words each, with the remedy: "<what> (<why>; remedy: <line of
-/// /etc/security/limits.d or capability>)". Under kRequired that is an
-/// error at start-up. The core needs no privilege and is applied whatever the policy says.
+/// /etc/security/limits.d or capability>)". Under kRequired that is an error at start-up. The
+/// core needs no privilege and is applied whatever the policy says.
 
 #include <cstddef>
 #include <functional>

@@ -6,7 +6,6 @@
 /// Failures of the system calls are thrown as std::system_error that names the object.
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 

@@ -19,7 +19,8 @@
 
 namespace robot_control {
 
-/// The ends of the chain's priorities: driver > monitor > estimator > controller.
+/// SCHED_FIFO, driver > monitor > estimator > controller: above the kernel's interrupt threads (50), below its own
+/// watchdogs and migration threads (99).
 enum class LoopPriority : int { kDriver = 83, kMonitor = 82, kEstimator = 81, kController = 80 };
 
 class Process {

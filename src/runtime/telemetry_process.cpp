@@ -1,6 +1,7 @@
 #include "runtime/telemetry_process.h"
 
 #include <filesystem>
+#include <optional>
 
 #include "runtime/trace_sink.h"
 

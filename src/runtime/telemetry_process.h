@@ -4,10 +4,8 @@
 /// It owns the read positions. Only once all four rings are mapped and the positions stored does it say so
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

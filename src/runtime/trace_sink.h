@@ -1,8 +1,8 @@
 #pragma once
 /// A node's end of the trace: one row per cycle into its ring.
 ///
-/// In lockstep a full ring blocks its writer, and so the cycle, while a telemetry reads; with none, and
-/// always in wall-clock time, rows are dropped and counted.
+/// While a telemetry reads, a full ring blocks its writer, and so the cycle, in lockstep; in wall-clock time the
+/// new row is dropped and counted. With no telemetry the oldest rows are overwritten.
 
 #include <atomic>
 #include <cstdint>

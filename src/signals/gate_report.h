@@ -16,7 +16,7 @@ enum class GateVerdict : std::uint64_t {
 /// Why a verdict is not kPassed; bits of GateReport::reasons.
 enum GateReason : std::uint64_t {
   kGateFirstTick = 1u << 0,         ///< Tick 0 of a run.
-  kGateNoPermit = 1u << 1,          ///< No permit of this run.
+  kGateNoPermit = 1u << 1,          ///< No permit of this run, of cycles k-4 … k-1.
   kGatePermitExpired = 1u << 2,     ///< The newest permit expired: the monitor made no progress.
   kGatePermitBrake = 1u << 3,       ///< The permit orders the brake.
   kGateRampOver = 1u << 4,          ///< The ramp's last cycle has passed.
@@ -39,7 +39,7 @@ struct GateReport {
   std::uint64_t held = 0;           ///< Ticks of this run on a held command.
   std::uint64_t missed = 0;         ///< Ticks of this run braked for want of a command, tick 0 excepted.
   std::uint64_t late_permits = 0;   ///< Ticks of this run whose permit was older than k-1, tick 0 excepted.
-  std::uint64_t refused = 0;        ///< Frames of this run refused (checksum, finiteness, future, count).
+  std::uint64_t refused = 0;        ///< Frames of this run refused: checksum, future, count, finiteness, mode.
 };
 
 }  // namespace robot_control

@@ -71,7 +71,8 @@ inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
 
 inline constexpr auto kGateReasonNames = std::to_array<BitName>({
     {kGateFirstTick, "first_tick", "the first tick of a run brakes", ""},
-    {kGateNoPermit, "no_permit", "there is no permit of this run", "start safety_monitor"},
+    {kGateNoPermit, "no_permit", "there is no permit of this run from the last 4 cycles",
+     "look whether safety_monitor runs and gets its core"},
     {kGatePermitExpired, "permit_expired", "the newest permit has expired",
      "look whether safety_monitor runs and gets its core"},
     {kGatePermitBrake, "permit_brake", "the permit orders the brake", "read the cause in safety_status"},

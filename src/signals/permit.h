@@ -13,7 +13,7 @@ enum class PermitAction : std::uint64_t {
   kDrive = 2,
 };
 
-/// A permit is alive for this many cycles after its own; then it has expired (DESIGN: its cycle + 4).
+/// A permit is alive for this many cycles after its own; then it has expired.
 inline constexpr std::uint64_t kPermitLife = 4;
 
 enum class SupervisorState : std::uint64_t {
@@ -32,12 +32,12 @@ enum StopCause : std::uint64_t {
   kCauseEmergencyStopInput = 1u << 2,
   kCauseDriverLost = 1u << 3,  ///< No sensor frame for 20 periods (wall clock only).
   kCauseDriverFault = 1u << 4,
-  kCauseControllerLost = 1u << 5,    ///< No command for 20 cycles.
-  kCauseEstimatorLost = 1u << 6,     ///< No state for 20 cycles.
+  kCauseControllerLost = 1u << 5,    ///< No command for loss_cycles cycles.
+  kCauseEstimatorLost = 1u << 6,     ///< No state for loss_cycles cycles.
   kCauseHeartbeatLost = 1u << 7,     ///< The operator's heartbeat stopped.
   kCauseMonitorRestarted = 1u << 8,  ///< The monitor was restarted while the driver ran on.
-  kCauseCorruptFrame = 1u << 9,      ///< A checksum was wrong.
-  kCauseNotFinite = 1u << 10,        ///< NaN or infinity in sensors or command.
+  kCauseCorruptFrame = 1u << 9,      ///< A checksum was wrong in three cycles in a row.
+  kCauseNotFinite = 1u << 10,        ///< NaN or infinity in sensors or command, three cycles in a row.
   kCauseMonitorLate = 1u << 11,      ///< The monitor itself missed more than loss_cycles cycles.
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 /// One row per cycle and node for the log: the frame it published and when.
 
-#include <array>
 #include <cstdint>
 
 #include "signals/command_frame.h"

@@ -2,7 +2,6 @@
 /// mujoco_plant → telemetry, tests: what really happens. No estimator, controller or monitor sees it.
 
 #include <array>
-#include <cstdint>
 
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
