@@ -43,6 +43,7 @@ class LoopTiming:
 
 def loop_timing(log: Log) -> LoopTiming:
     """Reads the columns of kind kTiming, which only wall-clock runs have, and the gate's counters."""
+    log = while_all_ran(log)
     follows = np.diff(log["cycle"]) == 1
     woke = log["driver_woke_ns"]
     # The wake-up is told relative to when the cycle was due: its stamp, later by what has slipped so far. The tick
@@ -60,6 +61,15 @@ def loop_timing(log: Log) -> LoopTiming:
         overruns=_count(log["overruns"]),
         slipped=_count(log["slipped_ns"]) / 1e9,
     )
+
+
+def while_all_ran(log: Log) -> Log:
+    """Without the tail in which the nodes end one after the other: nobody's deadline is missed there."""
+    together = ~np.isnan(log["command_published_ns"]) & ~np.isnan(log["permit_published_ns"])
+    if not together.any():
+        return log
+    rows = int(np.flatnonzero(together)[-1]) + 1
+    return {name: values[:rows] for name, values in log.items()}
 
 
 def distribution(nanoseconds: FloatArray) -> Distribution:

@@ -35,7 +35,7 @@ ROWS_NEEDED = 0.99
 """Share of the steady cycles whose truth must be in the log: what is not seen cannot be judged."""
 
 GATE_BRAKE = 0  # GateVerdict::kBrake
-GATE_LATE = 1 << 2 | 1 << 5  # GateReason: kGatePermitExpired, kGateNoCommand
+GATE_LATE = 1 << 1 | 1 << 2 | 1 << 5  # GateReason: kGateNoPermit, kGatePermitExpired, kGateNoCommand
 
 
 class NotSteadyError(ValueError):

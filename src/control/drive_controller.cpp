@@ -83,7 +83,7 @@ bool DriveController::measure(const SensorFrame& sensors) noexcept {
   if (!usable(sensors)) return false;
   periods_ = last_cycle_ ? static_cast<double>(sensors.head.cycle - *last_cycle_) : 1.0;
   last_cycle_ = sensors.head.cycle;
-  followed_ = driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kHeldCycles);
+  followed_ = driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kCommandLife);
   const WheelPair angle{sensors.joints[left_joint_].position, sensors.joints[right_joint_].position};
   standstill_.step(angle, sensors.head.cycle);
   if (track(angle, sensors)) {

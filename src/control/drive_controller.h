@@ -17,7 +17,7 @@
 /// integrators keep what they last knew.
 ///
 /// A state frame that is missing, held or invalid does not stop the drive: the wheel loops need only the encoders.
-/// Skipped cycles: dt = (k − k_previous)·period. After more than kHeldCycles the driver has braked by itself.
+/// Skipped cycles: dt = (k − k_previous)·period. After more than kCommandLife the driver has braked by itself.
 
 #include <cstdint>
 #include <optional>
@@ -57,9 +57,6 @@ struct ControlInput {
   const Permit* permit = nullptr;  ///< the newest unexpired one ≤ k-1
   VelocityCommand request;         ///< the inbox; a new message is one with a new count
 };
-
-/// The gate executes a command in at most this many ticks (commands of cycles k−4 … k−1: hal/gate.h, kCommandLife).
-inline constexpr std::uint64_t kHeldCycles = 4;
 
 /// rad/s that no wheel reaches (10⁴ rpm): a faster change of angle is an encoder's error.
 inline constexpr double kFastestWheel = 1000;

@@ -26,9 +26,6 @@
 
 namespace robot_control {
 
-/// The newest command and permit that were latched at tick k are of cycles k-kCommandLife … k-1.
-inline constexpr std::uint64_t kCommandLife = 4;
-
 struct GateInput {
   std::uint64_t run = 0;
   std::uint64_t cycle = 0;  ///< k

@@ -65,4 +65,9 @@ class CommandScript {
   std::size_t next_ = 0;
 };
 
+/// The script of the parameter `command_script`: where that is empty, one in which nothing ever happens.
+inline CommandScript load_script(const std::string& path) {
+  return path.empty() ? CommandScript() : CommandScript(path);
+}
+
 }  // namespace robot_control

@@ -10,16 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "runtime/command_script.h"
 #include "runtime/cycle_clock.h"
 #include "runtime/process.h"
 #include "runtime/start_check.h"
 #include "runtime/trace_sink.h"
 
 namespace robot_control {
-
-/// The script of the parameters; an empty one where none is named. Throws ParameterError.
-CommandScript load_script(const LoopParameters& loop);
 
 /// What the cycles stamp their trace with: nothing in lockstep, where time stands still.
 Now clock_of(const LoopParameters& loop);

@@ -8,8 +8,8 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotMo
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
       cycle_(parameters.controller, robot_, parameters.loop.period(),
-             {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer}, load_script(parameters.loop),
-             clock_of(parameters.loop)) {
+             {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
+             load_script(parameters.loop.command_script), clock_of(parameters.loop)) {
   require_drivable(parameters, robot);
 }
 

@@ -2,7 +2,8 @@
 /// The driver's duty in one tick k:
 ///   latch command k-1 and permit k-1 → sample sensors of x(t_k) → publish sensors k → gate
 ///   → apply torque over [t_k, t_k+1).
-/// Latched are the newest command and permit of cycles k-4 … k-1: an older one is missing to the gate.
+/// Latched are the newest command of cycles k-4 … k-1 and the newest permit of cycles k-7 … k-1, of which the gate
+/// tells one that has expired from none.
 /// Sensor-to-torque delay is exactly one period. No clock is read here; `now` stamps the trace only.
 
 #include <cstdint>

@@ -8,8 +8,8 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
       cycle_(parameters.safety, robot_, parameters.loop.period(),
-             {&sensors_.reader, &state_.reader, &command_.reader, output_.writer}, load_script(parameters.loop),
-             clock_of(parameters.loop)) {}
+             {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
+             load_script(parameters.loop.command_script), clock_of(parameters.loop)) {}
 
 std::vector<std::string> MonitorProcess::missing() const {
   std::vector<std::string> names = missing_anywhere();

@@ -28,6 +28,9 @@ enum CommandReason : std::uint64_t {
   kReasonHolding = 1u << 13,       ///< Standing with zero command: brake law holds the position.
 };
 
+/// The gate executes a command in at most this many ticks: at tick k those of cycles k-kCommandLife … k-1.
+inline constexpr std::uint64_t kCommandLife = 4;
+
 struct CommandFrame {
   FrameHead head;
   std::uint64_t joint_count = 0;

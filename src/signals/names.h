@@ -71,7 +71,7 @@ inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
 
 inline constexpr auto kGateReasonNames = std::to_array<BitName>({
     {kGateFirstTick, "first_tick", "the first tick of a run brakes", ""},
-    {kGateNoPermit, "no_permit", "there is no permit of this run from the last 4 cycles",
+    {kGateNoPermit, "no_permit", "there is no permit of this run from the last 7 cycles",
      "look whether safety_monitor runs and gets its core"},
     {kGatePermitExpired, "permit_expired", "the newest permit has expired",
      "look whether safety_monitor runs and gets its core"},

@@ -22,11 +22,6 @@ struct Channel {
   FrameReader<Frame> reader{memory.get()};
 };
 
-CommandScript load_script(const Parameters& parameters) {
-  const std::string& path = parameters.loop.command_script;
-  return path.empty() ? CommandScript() : CommandScript(path);
-}
-
 RobotModel load_robot(const Parameters& parameters) {
   RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
   require_drivable(parameters, robot);
@@ -44,9 +39,11 @@ struct ClosedLoop::Parts {
                nullptr),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
-                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, load_script(given), nullptr),
+                   {&sensors.reader, &state.reader, &permit.reader, command.writer},
+                   load_script(given.loop.command_script), nullptr),
         monitor(given.safety, robot, given.loop.period(),
-                {&sensors.reader, &state.reader, &command.reader, permit.writer}, load_script(given), nullptr) {
+                {&sensors.reader, &state.reader, &command.reader, permit.writer},
+                load_script(given.loop.command_script), nullptr) {
     plant.start();
     driver.set_boot(kRun);
     driver.begin_run(kRun);

@@ -216,7 +216,7 @@ TEST_F(DriveControllerTest, TakesSkippedCyclesIntoTheRamp) {
 
 TEST_F(DriveControllerTest, ReseedsAfterMoreSkippedCyclesThanTheGateHolds) {
   bench.send(0, 0);
-  bench.cycle += kHeldCycles;
+  bench.cycle += kCommandLife;
   bench.step();
 
   const double measured =

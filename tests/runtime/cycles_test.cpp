@@ -51,6 +51,7 @@ TEST_F(RunningLoop, BrakesWhenTheMonitorStops) {
     loop.controller->step();
   }
   EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "there was a permit, and it is told from none";
   EXPECT_EQ(loop.machine.mode, JointMode::kBrake);
 }
 

@@ -57,6 +57,7 @@ def healthy_run():
         "stamp_ns": 5e12 + cycle * 1e6,
         "driver_woke_ns": np.full(CYCLES, 4_000.0),
         "command_published_ns": np.full(CYCLES, 11_000.0),
+        "permit_published_ns": np.full(CYCLES, 9_000.0),
         "overruns": zero,
         "slipped_ns": zero,
     }

@@ -33,6 +33,20 @@ def test_a_tick_that_slips_is_late_and_ends_a_long_period(run):
     assert timing.slipped == pytest.approx(0.005)
 
 
+def test_what_is_missed_while_the_nodes_end_is_nobodys_deadline(run):
+    run["command_published_ns"][-20:] = np.nan
+    run["missed"][-16:] = np.arange(1, 17)
+    timing = loop_timing(run)
+    assert timing.missed == 0
+    assert timing.cycles == CYCLES - 20
+
+
+def test_a_controller_that_was_killed_and_came_back_missed_its_deadlines(run):
+    run["command_published_ns"][100:120] = np.nan
+    run["missed"][104:] = 16
+    assert loop_timing(run).missed == 16
+
+
 def test_a_lost_row_is_no_long_period(run):
     kept = {name: np.delete(values, 100) for name, values in run.items()}
     assert loop_timing(kept).period.max == 1000.0
