@@ -4,7 +4,6 @@
 import itertools
 import math
 import os
-import unittest
 from pathlib import Path
 
 import rospy
@@ -13,23 +12,11 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu, JointState
-from system_support import CONTROLLER, ESTIMATOR, LOOP, Robot, init_test_node, page_faults_of, schedule_of, wait_for
+from system_support import CONTROLLER, ESTIMATOR, LOOP, RobotTestCase, page_faults_of, schedule_of, wait_for
 from tf2_msgs.msg import TFMessage
 
 
-class DrivesTest(unittest.TestCase):
-    robot: Robot
-
-    @classmethod
-    def setUpClass(cls) -> None:
-        init_test_node("drives_test")
-        cls.robot = Robot()
-        cls.robot.start()
-
-    @classmethod
-    def tearDownClass(cls) -> None:
-        cls.robot.end()
-
+class DrivesTest(RobotTestCase):
     def setUp(self) -> None:
         self.robot.send_e_stop(False)
         self.robot.await_ready()

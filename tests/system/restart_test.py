@@ -4,29 +4,16 @@
 import itertools
 import signal
 import time
-import unittest
 
 import rospy
 import rostest
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import JointState
-from system_support import CONTROLLER, ESTIMATOR, MONITOR, PLANT, Robot, init_test_node, wait_for
+from system_support import CONTROLLER, ESTIMATOR, MONITOR, PLANT, RobotTestCase, wait_for
 
 
-class RestartTest(unittest.TestCase):
-    robot: Robot
-
-    @classmethod
-    def setUpClass(cls) -> None:
-        init_test_node("restart_test")
-        cls.robot = Robot()
-        cls.robot.start()
-
-    @classmethod
-    def tearDownClass(cls) -> None:
-        cls.robot.end()
-
+class RestartTest(RobotTestCase):
     def setUp(self) -> None:
         self.robot.await_ready()
         self.robot.drive_until("0.5 m/s", self.robot.driving)

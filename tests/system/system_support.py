@@ -10,6 +10,7 @@ import signal
 import subprocess
 import tempfile
 import time
+import unittest
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -281,6 +282,22 @@ def running_robot(namespace: str = "") -> Iterator[Robot]:
 def init_test_node(name: str) -> None:
     """SIGINT stays with unittest."""
     rospy.init_node(name, anonymous=True, disable_signals=True)
+
+
+class RobotTestCase(unittest.TestCase):
+    """Tests that share one robot in the root namespace."""
+
+    robot: Robot
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node(cls.__name__)
+        cls.robot = Robot()
+        cls.robot.start()
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.robot.end()
 
 
 def repository() -> Path:
