@@ -14,13 +14,9 @@ ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, co
       robot_hash_(robot.hash) {}
 
 void ControllerCycle::enter_run() noexcept {
-  CommandFrame last;
-  const FrameReader<CommandFrame> own(channels_.command.memory());
-  const Lookup found = own.newest(last);
-  const bool resumed = (found == Lookup::kFrame || found == Lookup::kToken) && last.head.run == state_.head.run;
   inbox_.load(received_);
   script_.rewind();
-  if (resumed) script_.advance(last.head.cycle);
+  if (const auto last = published_before(channels_.command, state_.head.run)) script_.advance(*last);
   controller_.reset(request_.count);
 }
 

@@ -2,6 +2,7 @@
 /// What a consumer of the sensors channel has already seen, and when it woke.
 
 #include <cstdint>
+#include <optional>
 
 #include "rt/latest_frames.h"
 #include "signals/frame_head.h"
@@ -55,6 +56,15 @@ inline bool current(const FrameReader<SensorFrame>& sensors, const FrameHead& he
   const auto* memory = sensors.memory();
   return memory != nullptr && memory->head.attached_run.load(std::memory_order_acquire) == head.run &&
          memory->head.robot_hash.load(std::memory_order_acquire) == robot_hash;
+}
+
+/// Cycle that an earlier process of this node published last in this run, frame or token; nothing: it was not here.
+template <class Frame>
+std::optional<std::uint64_t> published_before(const FrameWriter<Frame>& own, std::uint64_t run) noexcept {
+  Frame last;
+  const Lookup found = FrameReader<Frame>(own.memory()).newest(last);
+  if ((found != Lookup::kFrame && found != Lookup::kToken) || last.head.run != run) return std::nullopt;
+  return last.head.cycle;
 }
 
 /// Lockstep: cycle k has passed here, without a frame.

@@ -17,12 +17,8 @@ MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel&
 }
 
 void MonitorCycle::enter_run() noexcept {
-  Permit last;
-  const FrameReader<Permit> own(channels_.permit.memory());
-  const Lookup found = own.newest(last);
-  const bool resumed = (found == Lookup::kFrame || found == Lookup::kToken) && last.head.run == sensors_.head.run;
   script_.rewind();
-  if (resumed) script_.advance(last.head.cycle);
+  if (const auto last = published_before(channels_.permit, sensors_.head.run)) script_.advance(*last);
   receive_messages();
   monitor_.reset(operator_input_);
 }
@@ -81,8 +77,7 @@ bool MonitorCycle::step() noexcept {
 }
 
 void MonitorCycle::note_corrupt_sensors() noexcept {
-  constexpr int kPersistence = 3;  // frames, as of any other corrupt frame
-  if (++corrupt_sensors_ != kPersistence || input_.sensors == nullptr) return;
+  if (++corrupt_sensors_ != Conditions::kPersistence || input_.sensors == nullptr) return;
   monitor_.sensors_corrupt();
   publish();
 }

@@ -60,9 +60,9 @@ class MonitorCycle {
   OperatorInput received_;        ///< what the inbox held when last looked at
   OperatorInput operator_input_;  ///< inbox and script added up
   bool silent_ = false;
-  int corrupt_sensors_ = 0;  ///< in a row
-  SensorFrame arrived_;      ///< as read, not yet believed
-  SensorFrame sensors_;      ///< of the last step
+  std::uint64_t corrupt_sensors_ = 0;  ///< in a row
+  SensorFrame arrived_;                ///< as read, not yet believed
+  SensorFrame sensors_;                ///< of the last step
   StateFrame state_;
   CommandFrame command_;
   MonitorInput input_;
