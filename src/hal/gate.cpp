@@ -8,11 +8,6 @@
 namespace robot_control {
 namespace {
 
-bool finite(const JointCommand& joint) noexcept {
-  return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.stiffness) &&
-         std::isfinite(joint.damping) && std::isfinite(joint.effort);
-}
-
 bool is_brake(const JointCommand& joint) noexcept {
   return joint.mode == JointMode::kBrake;
 }

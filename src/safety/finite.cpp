@@ -18,11 +18,6 @@ bool finite(const JointSample& joint) noexcept {
   return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.effort);
 }
 
-bool finite(const JointCommand& joint) noexcept {
-  return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.stiffness) &&
-         std::isfinite(joint.damping) && std::isfinite(joint.effort);
-}
-
 }  // namespace
 
 bool finite(const SensorFrame& sensors) noexcept {

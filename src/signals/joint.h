@@ -1,6 +1,7 @@
 #pragma once
 /// One joint: what is measured of it and what can be asked of it.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -32,5 +33,11 @@ struct JointCommand {
   double damping = 0;    ///< N·m·s/rad or N·s/m
   double effort = 0;     ///< N·m or N
 };
+
+/// Every number of it, used by its mode or not.
+inline bool finite(const JointCommand& joint) noexcept {
+  return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.stiffness) &&
+         std::isfinite(joint.damping) && std::isfinite(joint.effort);
+}
 
 }  // namespace robot_control
