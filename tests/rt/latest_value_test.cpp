@@ -45,7 +45,9 @@ TEST(LatestValue, IsNeverTornAndNeverGoesBack) {
   Value value;
   std::uint64_t last = 0;
   std::uint64_t loads = 0;
-  for (const std::int64_t end = monotonic_ns() + 500'000'000; monotonic_ns() < end;) {
+  const std::int64_t begin = monotonic_ns();
+  // How many loads fit into a time is the machine's affair; patience only ends a hang.
+  while ((loads < 100 || monotonic_ns() < begin + 500'000'000) && monotonic_ns() < begin + 60'000'000'000) {
     if (!latest.load(value)) continue;
     ++loads;
     ASSERT_EQ(value.words, value_of(value.words[0]).words);
@@ -54,7 +56,7 @@ TEST(LatestValue, IsNeverTornAndNeverGoesBack) {
   }
   stop.store(true);
   writer.join();
-  EXPECT_GT(loads, 100u);
+  EXPECT_GE(loads, 100u);
 }
 
 }  // namespace
