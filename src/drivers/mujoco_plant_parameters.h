@@ -1,19 +1,64 @@
 #pragma once
-/// What a user sets of the simulated machine.
+/// What a user sets of the simulated machine: the world, the brakes, and everything in which the plant differs from
+/// an ideal one. Random numbers come from `seed` alone: same seed, same bytes.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace robot_control {
 
+enum class TyreModel {
+  kBrush,   ///< tyre.h: Coulomb friction that is right while sliding
+  kNative,  ///< MuJoCo's own contact friction
+};
+
 struct MujocoPlantParameters {
-  std::string scene;              ///< MJCF path: the world around the robot
-  std::uint64_t seed = 0;         ///< of every random number in the plant; it draws none yet, its sensors are exact
-  std::uint64_t cycles = 0;       ///< the node ends by itself after so many cycles; 0 = never
-  double brake_effort = 3.0;      ///< N·m, the brake's bound per joint
-  double brake_damping = 2.0;     ///< N·m·s/rad
-  double brake_stiffness = 300;   ///< N·m/rad, position hold below `brake_hold_speed`
-  double brake_hold_speed = 0.3;  ///< rad/s
+  std::string scene;         ///< MJCF path: the world around the robot
+  std::uint64_t seed = 0;    ///< of every random number in the plant
+  std::uint64_t cycles = 0;  ///< the node ends by itself after so many cycles; 0 = never
+
+  // The ground.
+  TyreModel tyre = TyreModel::kBrush;
+  std::optional<double> ground_friction;  ///< of all the ground; else each shape of the scene has its own
+  double slope = 0;                       ///< rad, the whole world tilted: uphill along x of the start pose
+
+  // The brakes, each wheel's. Left out: derived from robot and ground (brake_limits.h).
+  std::optional<double> brake_effort;      ///< N·m
+  std::optional<double> brake_damping;     ///< N·m·s/rad
+  std::optional<double> brake_stiffness;   ///< N·m/rad, position hold below brake_hold_speed
+  std::optional<double> brake_hold_speed;  ///< rad/s
+
+  // The robot differs from what its controller believes.
+  double left_radius_error = 0;  ///< true radius = radius · (1 + error)
+  double right_radius_error = 0;
+  double wheel_base_error = 0;                         ///< true wheel base = wheel base · (1 + error)
+  double payload = 0;                                  ///< kg, fixed to the base
+  double payload_x = 0, payload_y = 0, payload_z = 0;  ///< m, base axes
+
+  // The motors, each wheel's; of the motor shaft, `gear_ratio` turns of it are one of the wheel (motor.h).
+  double gear_ratio = 1;
+  double rotor_inertia = 0;          ///< kg·m²
+  double no_load_speed = 0;          ///< rad/s, where the torque has fallen to zero; 0: never
+  double motor_friction = 0;         ///< N·m, Coulomb
+  double motor_damping = 0;          ///< N·m·s/rad
+  std::uint64_t actuator_delay = 0;  ///< cycles beyond the one of the bus
+
+  // The sensors (sensor_errors.h). Defaults of gyro and accelerometer: Bosch BMI088, data sheet BST-BMI088-DS001.
+  bool sensor_errors = true;                ///< false: none of what follows
+  double encoder_resolution = 4096;         ///< counts per turn of a wheel; 0: exact
+  double gyro_noise = 2.4e-4;               ///< rad/s/√Hz
+  double gyro_bias = 0.0175;                ///< rad/s, standard deviation of each axis' draw
+  double gyro_bias_walk = 1.0e-5;           ///< rad/s/√s
+  double accelerometer_noise = 1.7e-3;      ///< m/s²/√Hz
+  double accelerometer_bias = 0.2;          ///< m/s², standard deviation of each axis' draw
+  double accelerometer_bias_walk = 1.0e-4;  ///< m/s²/√s
+  std::uint64_t sensor_delay = 0;           ///< cycles
+
+  // A push at the base's origin, base axes turned into the world at its start.
+  double push_x = 0, push_y = 0, push_z = 0;  ///< N
+  double push_start = 0;                      ///< s
+  double push_duration = 0;                   ///< s; 0: none
 };
 
 }  // namespace robot_control

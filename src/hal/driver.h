@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "signals/injected_fault.h"
 #include "signals/joint.h"
 #include "signals/sensor_frame.h"
 #include "signals/truth_frame.h"
@@ -38,6 +39,9 @@ class Driver {
 
   /// What really is at t_k, where the driver knows (a simulator). False: no truth to be had.
   virtual bool truth(TruthFrame& /*truth*/) noexcept { return false; }
+
+  /// From the next `read` on the machine has these faults. False: it is no simulator.
+  virtual bool inject(const InjectedFaults& /*faults*/) noexcept { return false; }
 };
 
 }  // namespace robot_control

@@ -24,6 +24,7 @@ struct Shape {
   double radius = 0;                               ///< m; sphere, cylinder
   double length = 0;                               ///< m; cylinder
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< m, full lengths; box
+  std::vector<Eigen::Vector3d> points;             ///< m, shape frame; mesh: corners of its convex hull, scaled
   std::string link;                                ///< that it stands in, for messages
 };
 
@@ -35,9 +36,14 @@ struct BodyJoint {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, body axes
   double effort_limit = 0;                          ///< N·m or N; 0: passive
   double velocity_limit = 0;                        ///< rad/s or m/s
-  double lower = 0, upper = 0;                      ///< rad or m; revolute and prismatic
+  double lower = 0, upper = 0;                      ///< rad or m; revolute and prismatic; equal: no limit
   double damping = 0;                               ///< N·m·s/rad or N·s/m
   double friction = 0;                              ///< N·m or N
+  double spring_stiffness = 0;                    ///< N/m or N·m/rad; a suspension's, assumed: URDF has no word for it
+  double spring_load = 0;                         ///< N or N·m that the spring exerts at zero
+  std::string mimicked;                           ///< joint that this one follows; empty: none
+  double mimic_multiplier = 1, mimic_offset = 0;  ///< q = multiplier · q_mimicked + offset
+  bool driven = false;                            ///< transmission, ros2_control or drive plugin names it
 };
 
 struct RigidBody {

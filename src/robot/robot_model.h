@@ -5,6 +5,7 @@
 /// frame (REP 103: x forward, y left, z up).
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -20,12 +21,19 @@ class RobotError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a user may say about the robot beside its URDF (the `robot:` block).
+/// What a user may say about the robot beside its URDF (the `robot:` block). It is what estimator and controller
+/// believe; a simulated plant stays as the URDF says. Where both speak and differ by more than 1 %, a note says so.
 struct RobotParameters {
-  std::string left_wheel_joint = "left_wheel_joint";
-  std::string right_wheel_joint = "right_wheel_joint";
-  std::optional<double> wheel_base;    ///< m; overrides the URDF
-  std::optional<double> wheel_radius;  ///< m; overrides the URDF, both sides
+  std::vector<std::string> left_wheel_joints;   ///< both empty: found, see drive_wheels.h
+  std::vector<std::string> right_wheel_joints;  ///< as many as left ones
+  std::optional<double> wheel_base;             ///< m, between left and right wheel centres
+  std::optional<double> wheel_base_multiplier;  ///< effective over geometric wheel base; see RobotModel
+  std::optional<double> wheel_radius;           ///< m, every wheel
+  std::optional<double> wheel_effort_limit;     ///< N·m, every wheel; holds for the simulated drive, too
+  std::optional<double> wheel_velocity_limit;   ///< rad/s, every wheel
+  std::optional<double> mass;                   ///< kg
+  std::optional<Vector3> centre_of_gravity;     ///< m, base axes
+  std::string imu_link;                         ///< empty: "imu_link" where there is one, else the IMU is in the base
 };
 
 /// A URDF text and where it was read, for messages ("urdf/diffbot.urdf", "/robot_description").
@@ -34,23 +42,53 @@ struct RobotDescription {
   std::string source;
 };
 
-/// A moving joint, in the order of the frames' joint arrays: wheels first (left, right), then the others as
-/// they stand in the file.
+enum class JointRole {
+  kWheel,    ///< driven by the controller
+  kPassive,  ///< nobody drives it: swivel and wheel of a caster, suspension, rocker, follower of a mimic
+  kHeld,     ///< driven by somebody else (arm, lift, gripper): braked, always
+};
+
+/// A moving joint, in the order of the frames' joint arrays: wheels first, in the order of RobotModel::wheels, then
+/// the others as they stand in the file.
 struct JointModel {
   std::string name;
   std::string child_link;
-  double effort_limit = 0;    ///< N·m or N
-  double velocity_limit = 0;  ///< rad/s or m/s
+  double effort_limit = 0;    ///< N·m or N; 0 for passive joints, above 0 for wheels
+  double velocity_limit = 0;  ///< rad/s or m/s; 0: none known
+  JointRole role = JointRole::kWheel;
 };
 
+enum class Side { kLeft, kRight };
+
+/// A wheel that rolls on a lateral axle.
 struct WheelModel {
-  std::size_t joint = 0;  ///< index into RobotModel::joints
-  Vector3 centre_base{};  ///< m, centre of the wheel's shape
-  double radius = 0;      ///< m
-  double width = 0;       ///< m
-  double sign = 1;        ///< +1: positive joint velocity drives forward
-  double inertia = 0;     ///< kg·m² about the axle
+  std::size_t joint = 0;     ///< index into RobotModel::joints
+  Vector3 centre_base{};     ///< m, centre of the wheel's shape
+  double radius = 0;         ///< m
+  double width = 0;          ///< m
+  double sign = 1;           ///< +1: positive joint velocity drives forward
+  double inertia = 0;        ///< kg·m² about the axle, rotor_inertia included
+  double rotor_inertia = 0;  ///< kg·m², assumed of a drive whose URDF leaves it out (drive_wheels.h)
+  Side side = Side::kLeft;
 };
+
+inline constexpr std::size_t kMaxWheels = 8;
+
+/// Something that was not simply taken from the URDF, for the user's eyes.
+struct RobotNote {
+  enum class Kind {
+    kAssumed,     ///< the URDF is silent
+    kRepaired,    ///< what it says is impossible
+    kIgnored,     ///< it says something that has no use here
+    kOverridden,  ///< the `robot:` block says otherwise by more than 1 %
+    kSuspicious,  ///< taken as it stands, but look at it
+  };
+  Kind kind = Kind::kAssumed;
+  std::string element;  ///< "<link name=\"…\">"
+  std::string text;     ///< a sentence with value and unit, without a full stop
+};
+
+struct RigidBodies;
 
 struct RobotModel {
   std::string name;
@@ -58,18 +96,29 @@ struct RobotModel {
   std::string urdf;        ///< the text itself
   std::uint64_t hash = 0;  ///< of the URDF text and every override; equal hash = same robot
   std::vector<JointModel> joints;
-  WheelModel left;
-  WheelModel right;
-  double wheel_base = 0;             ///< m, distance between the left and right wheel centres
-  double mass = 0;                   ///< kg, all links
-  Vector3 centre_of_gravity_base{};  ///< m
-  double yaw_inertia = 0;            ///< kg·m² about the vertical through the middle of the axle
-  std::string base_link;
-  std::string imu_link;  ///< empty: the IMU sits in base_link
-  Pose imu_in_base;      ///< orientation rotates from IMU axes to base axes
+  std::vector<WheelModel> wheels;  ///< left ones front to back, then right ones; wheels[i].joint == i
+  double wheel_base = 0;           ///< m, distance between the left and right wheel centres, mean over the axles
+
+  /// Effective over geometric wheel base: what the wheels' speed difference is to be divided by. 1 for one wheel a
+  /// side. Wheels behind each other scrub in a turn; for equal loads and isotropic friction the moments balance at
+  ///   1 + 4 mean(xᵢ²)/b²,   xᵢ the axles' positions from their mean, b the wheel base: 1 + (L/b)² for two axles.
+  double wheel_base_multiplier = 1;
+
+  double mass = 0;                            ///< kg, all links
+  Vector3 centre_of_gravity_base{};           ///< m
+  double yaw_inertia = 0;                     ///< kg·m² about the vertical through the middle of the axles
+  std::string base_link;                      ///< the root link
+  std::string imu_link;                       ///< empty: the IMU sits in base_link
+  Pose imu_in_base;                           ///< orientation rotates from IMU axes to base axes
+  std::vector<WheelModel> casters;            ///< passive wheels that roll; `side` and `sign` mean nothing
+  std::shared_ptr<const RigidBodies> bodies;  ///< what a simulator needs; never null after read_robot
+  std::vector<RobotNote> notes;
+
+  /// m
+  double effective_wheel_base() const noexcept { return wheel_base * wheel_base_multiplier; }
 };
 
-/// Reads a file; throws RobotError naming it.
+/// Reads a file; throws RobotError naming it. A name that ends in .xacro is expanded first (xacro.h).
 RobotDescription load_description(const std::string& path);
 
 /// Throws RobotError: malformed XML, no such joint, not a wheel, no shape, no mass, more than kMaxJoints …

@@ -7,6 +7,7 @@
 #include "signals/frame_head.h"
 #include "signals/gate_report.h"
 #include "signals/geometry.h"
+#include "signals/injected_fault.h"
 #include "signals/joint.h"
 
 namespace robot_control {
@@ -60,6 +61,7 @@ struct SensorFrame {
   double battery_current = 0;    ///< A, positive when discharging
   GateReport gate;               ///< of tick k-1
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
+  InjectedFaults injected{};     ///< of a simulator; a node that finds itself in it fails as told
   std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
 };
 

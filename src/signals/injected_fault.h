@@ -1,0 +1,42 @@
+#pragma once
+/// Faults that a simulated machine is told to have, in PX4's words: which component fails, and how.
+/// (PX4 user guide, "System Failure Injection".)
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace robot_control {
+
+/// Index into InjectedFaults. Left and right mean every wheel of that side.
+enum class FaultComponent : std::size_t {
+  kLeftEncoder,
+  kRightEncoder,
+  kGyro,
+  kAccelerometer,
+  kLeftMotor,
+  kRightMotor,
+  kController,
+  kEstimator,
+  kMonitor,
+};
+inline constexpr std::size_t kFaultComponents = 9;
+
+enum class FaultKind : std::uint64_t {
+  kOk,            ///< healthy again
+  kOff,           ///< no output
+  kStuck,         ///< the last output, for ever
+  kGarbage,       ///< random output
+  kWrong,         ///< plausible and wrong
+  kSlow,          ///< a new output every 10 cycles only
+  kDelayed,       ///< the output of 10 cycles ago
+  kIntermittent,  ///< off and on at random
+};
+
+using InjectedFaults = std::array<FaultKind, kFaultComponents>;  ///< all zero: everything is healthy
+
+inline FaultKind fault_of(const InjectedFaults& faults, FaultComponent component) noexcept {
+  return faults[static_cast<std::size_t>(component)];
+}
+
+}  // namespace robot_control
