@@ -32,11 +32,19 @@ enum class FaultKind : std::uint64_t {
   kDelayed,       ///< the output of 10 cycles ago
   kIntermittent,  ///< off and on at random
 };
+inline constexpr std::size_t kFaultKinds = 8;
 
 using InjectedFaults = std::array<FaultKind, kFaultComponents>;  ///< all zero: everything is healthy
 
 inline FaultKind fault_of(const InjectedFaults& faults, FaultComponent component) noexcept {
   return faults[static_cast<std::size_t>(component)];
+}
+
+/// All of them in one number, for the log: Σ kind · 8^component, in octal one digit per component. 0: healthy.
+constexpr std::uint64_t fault_code(const InjectedFaults& faults) noexcept {
+  std::uint64_t code = 0;
+  for (std::size_t i = 0; i < kFaultComponents; ++i) code |= (static_cast<std::uint64_t>(faults[i]) & 7u) << (3 * i);
+  return code;
 }
 
 }  // namespace robot_control

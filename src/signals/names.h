@@ -8,12 +8,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "signals/command_frame.h"
 #include "signals/gate_report.h"
+#include "signals/injected_fault.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -163,6 +165,69 @@ constexpr std::string_view name_of(JointMode mode) noexcept {
   constexpr std::array<std::string_view, 4> kNames{"brake", "effort", "velocity", "impedance"};
   const auto index = static_cast<std::size_t>(mode);
   return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+/// In the order of FaultComponent and of FaultKind: the words of the service inject_fault.
+inline constexpr std::array<std::string_view, kFaultComponents> kFaultComponentNames{
+    "left_encoder", "right_encoder", "gyro",      "accelerometer", "left_motor",
+    "right_motor",  "controller",    "estimator", "monitor"};
+inline constexpr std::array<std::string_view, kFaultKinds> kFaultKindNames{"ok",    "off",  "stuck",   "garbage",
+                                                                           "wrong", "slow", "delayed", "intermittent"};
+
+constexpr std::string_view name_of(FaultComponent component) noexcept {
+  const auto index = static_cast<std::size_t>(component);
+  return index < kFaultComponentNames.size() ? kFaultComponentNames[index] : "unknown";
+}
+
+constexpr std::string_view name_of(FaultKind kind) noexcept {
+  const auto index = static_cast<std::size_t>(kind);
+  return index < kFaultKindNames.size() ? kFaultKindNames[index] : "unknown";
+}
+
+/// The index of a word; nothing where the list does not know it.
+constexpr std::optional<std::size_t> index_of(std::span<const std::string_view> words, std::string_view word) noexcept {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == word) return i;
+  }
+  return std::nullopt;
+}
+
+constexpr std::optional<FaultComponent> fault_component(std::string_view name) noexcept {
+  const auto index = index_of(kFaultComponentNames, name);
+  return index ? std::optional(static_cast<FaultComponent>(*index)) : std::nullopt;
+}
+
+constexpr std::optional<FaultKind> fault_kind(std::string_view name) noexcept {
+  const auto index = index_of(kFaultKindNames, name);
+  return index ? std::optional(static_cast<FaultKind>(*index)) : std::nullopt;
+}
+
+/// Sets the fault that two words name. Otherwise changes nothing and returns what is wrong with them and which ones
+/// there are; empty: done. Allocates.
+inline std::string set_fault(InjectedFaults& faults, std::string_view component, std::string_view kind) {
+  const auto unknown = [](std::string_view what, std::string_view word, std::span<const std::string_view> words) {
+    std::string text = "unknown ";
+    text.append(what).append(" \"").append(word).append("\"; there are");
+    for (const std::string_view known : words) text.append(" ").append(known);
+    return text;
+  };
+  const auto component_found = fault_component(component);
+  if (!component_found) return unknown("component", component, kFaultComponentNames);
+  const auto kind_found = fault_kind(kind);
+  if (!kind_found) return unknown("kind of fault", kind, kFaultKindNames);
+  faults[static_cast<std::size_t>(*component_found)] = *kind_found;
+  return {};
+}
+
+/// "gyro off, monitor slow"; "none". Allocates.
+inline std::string names_of(const InjectedFaults& faults) {
+  std::string text;
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    if (faults[i] == FaultKind::kOk) continue;
+    if (!text.empty()) text += ", ";
+    text.append(kFaultComponentNames[i]).append(" ").append(name_of(faults[i]));
+  }
+  return text.empty() ? "none" : text;
 }
 
 /// The row of one bit; null where the table does not know it.
