@@ -1,10 +1,12 @@
 #include "control/control_problems.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
 
 #include "control/feed_forward.h"
+#include "control/wheel_loop_gains.h"
 #include "control/wheel_loop_stability.h"
 
 namespace robot_control {
@@ -26,73 +28,85 @@ std::array<Load, 4> loads(const RobotModel& robot, const WheelModel& wheel) {
            {"driving straight with its mass doubled", 2 * straight - wheel.inertia}}};
 }
 
-const Load* unstable_load(const WheelLoopGains& gains, const std::array<Load, 4>& candidates, double period,
-                          double bandwidth) {
-  for (const Load& load : candidates) {
-    if (!(wheel_loop_spectral_radius(gains, load.inertia, period, bandwidth) < 1)) return &load;
+/// What decides about stability.
+struct Loop {
+  WheelLoopGains gains;
+  double bandwidth;  ///< Hz
+  double period;     ///< s
+  std::array<Load, 4> loads;
+
+  bool operator==(const Loop& other) const noexcept {
+    return gains.kp == other.gains.kp && gains.ki == other.gains.ki && loads == other.loads;
   }
-  return nullptr;
-}
+
+  double radius(const Load& load) const { return wheel_loop_spectral_radius(gains, load.inertia, period, bandwidth); }
+
+  /// Null: stable with every load.
+  const Load* unstable_load() const {
+    const auto found = std::ranges::find_if(loads, [&](const Load& load) { return !(radius(load) < 1); });
+    return found == loads.end() ? nullptr : &*found;
+  }
+};
 
 /// The largest common factor < 1 on all three gains, in steps of 2^(1/4), that is stable for every load; 0: none.
-double stable_part(const WheelLoopGains& gains, const std::array<Load, 4>& candidates, double period,
-                   double bandwidth) {
+double stable_part(const Loop& loop) {
   constexpr double kStep = 0.8408964152537145;  // 2^(−1/4)
   constexpr int kSteps = 80;                    // down to a millionth
+  Loop scaled = loop;
   double part = 1;
   for (int i = 0; i < kSteps; ++i) {
     part *= kStep;
-    const WheelLoopGains scaled{part * gains.kp, part * gains.ki, part * gains.kd, gains.model_inertia};
-    if (!unstable_load(scaled, candidates, period, bandwidth)) return part;
+    scaled.gains.kp = part * loop.gains.kp;
+    scaled.gains.ki = part * loop.gains.ki;
+    scaled.gains.kd = part * loop.gains.kd;
+    if (scaled.unstable_load() == nullptr) return part;
   }
   return 0;
 }
 
-std::string unstable_message(const DriveControllerParameters& parameters, const std::string& joint, const Load& load,
-                             double radius, double part, double period) {
-  // Half of what is just stable: a gain margin of two.
+std::string unstable_message(const Loop& loop, const std::string& joint, const Load& load) {
+  const WheelLoopGains& gains = loop.gains;
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller: pid_kp " << parameters.pid_kp << ", pid_ki " << parameters.pid_ki << ", pid_kd "
-       << parameters.pid_kd << ", tracking_bandwidth " << parameters.tracking_bandwidth << " Hz at "
-       << std::lround(1 / period) << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name
-       << " (" << load.inertia << " kg·m²): spectral radius " << radius << ", must be < 1. ";
+  text << "diff_drive_controller: pid_kp " << gains.kp << ", pid_ki " << gains.ki << ", pid_kd " << gains.kd
+       << ", tracking_bandwidth " << loop.bandwidth << " Hz at " << std::lround(1 / loop.period)
+       << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " (" << load.inertia
+       << " kg·m²): spectral radius " << loop.radius(load) << ", must be < 1. ";
+  // Half of what is just stable: a gain margin of two.
+  const double part = 0.5 * stable_part(loop);
   if (part > 0) {
-    text << "Use at most pid_kp " << 0.5 * part * parameters.pid_kp << ", pid_ki " << 0.5 * part * parameters.pid_ki
-         << ", pid_kd " << 0.5 * part * parameters.pid_kd << ", or a higher rate.";
+    text << "Use at most pid_kp " << part * gains.kp << ", pid_ki " << part * gains.ki << ", pid_kd " << part * gains.kd
+         << ", or leave pid_kp and pid_ki out: then they are derived from the robot.";
   } else {
-    text << "No smaller gains of this proportion are stable: lower pid_ki or pid_kd against pid_kp, or use a higher "
-            "rate.";
+    text
+        << "No smaller gains of this proportion are stable: lower pid_ki or pid_kd against pid_kp, or leave pid_kp and "
+           "pid_ki out: then they are derived from the robot.";
   }
+  return text.str();
+}
+
+std::string powerless_message(const JointModel& joint, const RobotModel& robot) {
+  std::ostringstream text;
+  text << "joint '" << joint.name << "': effort limit " << joint.effort_limit
+       << " N·m, must be > 0: the wheel could not be driven. Set <limit effort=…> in " << robot.source
+       << ", or robot.wheel_effort_limit.";
   return text.str();
 }
 
 }  // namespace
 
-WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, const WheelModel& wheel) noexcept {
-  return {parameters.pid_kp, parameters.pid_ki, parameters.pid_kd, kModelInertiaFactor * wheel.inertia};
-}
-
 std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& robot,
                                           double period) {
   std::vector<std::string> problems;
-  for (const WheelModel* wheel : {&robot.left, &robot.right}) {
-    const JointModel& joint = robot.joints[wheel->joint];
-    if (!(joint.effort_limit > 0)) {
-      std::ostringstream text;
-      text << "joint '" << joint.name << "': effort limit " << joint.effort_limit
-           << " N·m, must be > 0: the wheel could not be driven. Set <limit effort=…> in " << robot.source << ".";
-      problems.push_back(text.str());
-    }
-    const std::array<Load, 4> candidates = loads(robot, *wheel);
-    if (wheel == &robot.right && candidates == loads(robot, robot.left)) continue;  // said of the left one
-    const WheelLoopGains gains = wheel_loop_gains(parameters, *wheel);
-    const double bandwidth = parameters.tracking_bandwidth;
-    if (const Load* load = unstable_load(gains, candidates, period, bandwidth)) {
-      const double radius = wheel_loop_spectral_radius(gains, load->inertia, period, bandwidth);
-      problems.push_back(unstable_message(parameters, joint.name, *load, radius,
-                                          stable_part(gains, candidates, period, bandwidth), period));
-    }
+  std::vector<Loop> judged;
+  const double bandwidth = tracking_bandwidth(parameters, period);
+  for (const WheelModel& wheel : robot.wheels) {
+    const JointModel& joint = robot.joints[wheel.joint];
+    if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, robot));
+    const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, wheel)};
+    if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
+    judged.push_back(loop);
+    if (const Load* load = loop.unstable_load()) problems.push_back(unstable_message(loop, joint.name, *load));
   }
   return problems;
 }

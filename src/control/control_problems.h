@@ -4,13 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "control/drive_controller.h"
-#include "control/wheel_loop.h"
+#include "control/drive_controller_parameters.h"
+#include "robot/robot_model.h"
 
 namespace robot_control {
-
-/// The gains as the controller uses them for this wheel: model_inertia = kModelInertiaFactor·wheel.inertia.
-WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, const WheelModel& wheel) noexcept;
 
 /// One message per problem, with value, rule and remedy; empty: none. Each wheel must have a spectral radius < 1
 /// lifted, turning, straight and straight with the robot's mass doubled, and a torque limit above 0.

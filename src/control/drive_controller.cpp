@@ -1,17 +1,21 @@
 #include "control/drive_controller.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "control/control_problems.h"
+#include "control/wheel_loop_gains.h"
 
 namespace robot_control {
 
 namespace {
 
-WheelLoop make_loop(const DriveControllerParameters& parameters, const RobotModel& robot, const WheelModel& wheel,
-                    double period) {
-  return {wheel_loop_gains(parameters, wheel), parameters.tracking_bandwidth, robot.joints[wheel.joint].effort_limit,
-          period};
+std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& robot, double period) {
+  std::vector<WheelLoop> loops;
+  for (const WheelModel& wheel : robot.wheels) {
+    loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),
+                       robot.joints[wheel.joint].effort_limit, period);
+  }
+  return loops;
 }
 
 bool is_zero(const PlanarTwist& twist) noexcept {
@@ -33,23 +37,19 @@ constexpr std::uint64_t kBrakeReasons = kReasonNoPermit | kReasonPermitBrake | k
 DriveController::DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period)
     : period_(period),
       joint_count_(robot.joints.size()),
-      left_joint_(robot.left.joint),
-      right_joint_(robot.right.joint),
       kinematics_(robot),
       feed_forward_(robot),
       watch_(parameters.cmd_vel_timeout, period),
       limiter_({parameters.max_linear_speed, parameters.max_angular_speed, parameters.max_linear_acceleration,
                 parameters.max_angular_acceleration}),
       standstill_(period),
-      left_(make_loop(parameters, robot, robot.left, period)),
-      right_(make_loop(parameters, robot, robot.right, period)) {}
+      loops_(make_loops(parameters, robot, period)) {}
 
 void DriveController::reset(std::uint64_t request_count) noexcept {
   watch_.reset(request_count);
   limiter_.seed({});
   standstill_.reset();
-  left_.reset();
-  right_.reset();
+  for (WheelLoop& loop : loops_) loop.reset();
   last_cycle_.reset();
   last_angle_.reset();
   periods_ = 1;
@@ -60,23 +60,25 @@ void DriveController::reset(std::uint64_t request_count) noexcept {
 bool DriveController::usable(const SensorFrame& sensors) const noexcept {
   if (!(sensors.valid & kValidJoints) || sensors.joint_count != joint_count_) return false;
   if (last_cycle_ && sensors.head.cycle <= *last_cycle_) return false;
-  const auto finite = [&](std::size_t joint) {
-    const JointSample& sample = sensors.joints[joint];
-    return std::isfinite(sample.position) && std::isfinite(sample.velocity) && std::isfinite(sample.effort);
-  };
-  return finite(left_joint_) && finite(right_joint_);
+  return std::all_of(sensors.joints.begin(), sensors.joints.begin() + static_cast<std::ptrdiff_t>(loops_.size()),
+                     [](const JointSample& sample) {
+                       return std::isfinite(sample.position) && std::isfinite(sample.velocity) &&
+                              std::isfinite(sample.effort);
+                     });
 }
 
-bool DriveController::track(const WheelPair& angle, const SensorFrame& sensors) noexcept {
+bool DriveController::track(const WheelValues& angle, const SensorFrame& sensors) noexcept {
   const double reach = kFastestWheel * periods_ * period_;
-  if (last_angle_ &&
-      (std::abs(angle.left - last_angle_->left) > reach || std::abs(angle.right - last_angle_->right) > reach)) {
-    return false;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    if (last_angle_ && std::abs(angle[i] - (*last_angle_)[i]) > reach) return false;
   }
-  left_.measure(sensors.joints[left_joint_], periods_, followed_);
-  right_.measure(sensors.joints[right_joint_], periods_, followed_);
-  // Absurd but finite numbers overflow the tracking loops; they would never recover by themselves.
-  return std::isfinite(left_.velocity()) && std::isfinite(right_.velocity());
+  bool good = true;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    loops_[i].measure(sensors.joints[i], periods_, followed_);
+    // Absurd but finite numbers overflow the tracking loops; they would never recover by themselves.
+    good = good && std::isfinite(loops_[i].velocity());
+  }
+  return good;
 }
 
 bool DriveController::measure(const SensorFrame& sensors) noexcept {
@@ -84,15 +86,15 @@ bool DriveController::measure(const SensorFrame& sensors) noexcept {
   periods_ = last_cycle_ ? static_cast<double>(sensors.head.cycle - *last_cycle_) : 1.0;
   last_cycle_ = sensors.head.cycle;
   followed_ = driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kCommandLife);
-  const WheelPair angle{sensors.joints[left_joint_].position, sensors.joints[right_joint_].position};
+  WheelValues angle{};
+  for (std::size_t i = 0; i < loops_.size(); ++i) angle[i] = sensors.joints[i].position;
   standstill_.step(angle, sensors.head.cycle);
   if (track(angle, sensors)) {
     last_angle_ = angle;
     return true;
   }
   last_angle_.reset();
-  left_.lose_track();
-  right_.lose_track();
+  for (WheelLoop& loop : loops_) loop.lose_track();
   return false;
 }
 
@@ -111,17 +113,18 @@ std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint6
 }
 
 bool DriveController::slow() const noexcept {
-  return std::abs(left_.velocity()) < kStandstillSpeed && std::abs(right_.velocity()) < kStandstillSpeed;
+  return std::all_of(loops_.begin(), loops_.end(),
+                     [](const WheelLoop& loop) { return std::abs(loop.velocity()) < kStandstillSpeed; });
 }
 
 void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
-  const WheelPair measured{left_.velocity(), right_.velocity()};
+  WheelValues measured{};
+  for (std::size_t i = 0; i < loops_.size(); ++i) measured[i] = loops_[i].velocity();
   limiter_.seed(kinematics_.twist(measured));
-  left_.resume();
-  right_.resume();
-  if (standstill_.standing() || slow()) {
-    left_.carry(sensors.joints[left_joint_].effort);
-    right_.carry(sensors.joints[right_joint_].effort);
+  const bool carries = standstill_.standing() || slow();
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    loops_[i].resume();
+    if (carries) loops_[i].carry(sensors.joints[i].effort);
   }
 }
 
@@ -140,14 +143,14 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
     out.reasons |= limiter_.reasons();
   }
   const PlanarTwist& limited = limiter_.value();
-  const WheelPair velocity = kinematics_.joint_speeds(limited);
-  const WheelPair acceleration = kinematics_.joint_speeds(limiter_.acceleration());
-  const WheelPair feed_forward = followed_ ? feed_forward_.efforts(limited, limiter_.acceleration()) : WheelPair{};
-  const double left = left_.step({velocity.left, acceleration.left, feed_forward.left}, periods_);
-  const double right = right_.step({velocity.right, acceleration.right, feed_forward.right}, periods_);
-  if (left_.saturated() || right_.saturated()) out.reasons |= kReasonSaturated;
-  out.joints[left_joint_] = effort_command(velocity.left, left);
-  out.joints[right_joint_] = effort_command(velocity.right, right);
+  const WheelValues velocity = kinematics_.joint_speeds(limited);
+  const WheelValues acceleration = kinematics_.joint_speeds(limiter_.acceleration());
+  const WheelValues feed_forward = followed_ ? feed_forward_.efforts(limited, limiter_.acceleration()) : WheelValues{};
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_);
+    out.joints[i] = effort_command(velocity[i], effort);
+    if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
+  }
   out.twist_limited = spatial(limited);
 }
 
@@ -167,8 +170,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
     PlanarTwist wish{out.twist_requested.linear[0], out.twist_requested.angular[2]};
     if (out.reasons & kReasonPermitRamp) wish = {};
     drive(wish, sensors, out);
-    out.velocity_measured[left_joint_] = left_.velocity();
-    out.velocity_measured[right_joint_] = right_.velocity();
+    for (std::size_t i = 0; i < loops_.size(); ++i) out.velocity_measured[i] = loops_[i].velocity();
   } else {
     out.reasons |= kReasonBadSensors;
     driving_ = false;

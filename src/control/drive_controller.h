@@ -5,8 +5,8 @@
 ///   - there is no live permit, it orders the brake, or its ramp is over;
 ///   - the sensors are not valid, not finite, for another number of joints, their cycle does not advance, or a wheel
 ///     angle jumped faster than kFastestWheel (the loops then start anew from the next sample);
-///   - the robot holds: zero wish, zero limited twist and both wheels standing (standstill.h); straight after a brake
-///     both wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
+///   - the robot holds: zero wish, zero limited twist and all wheels standing (standstill.h); straight after a brake
+///     all wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
 ///     wish ≠ 0 ends it.
 /// Under a ramp permit the wish is zero and the limits apply. Joints that are not wheels are always braked.
 ///
@@ -21,8 +21,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "control/command_watch.h"
+#include "control/drive_controller_parameters.h"
 #include "control/feed_forward.h"
 #include "control/kinematics.h"
 #include "control/speed_limiter.h"
@@ -37,19 +39,6 @@
 
 namespace robot_control {
 
-/// The gains are derived in wheel_loop.h.
-struct DriveControllerParameters {
-  double max_linear_speed = 1.0;          ///< m/s
-  double max_angular_speed = 2.0;         ///< rad/s
-  double max_linear_acceleration = 1.0;   ///< m/s²
-  double max_angular_acceleration = 4.0;  ///< rad/s²
-  double cmd_vel_timeout = 1.25;          ///< s; 0 = never
-  double pid_kp = 2.0;                    ///< N·m·s/rad
-  double pid_ki = 20.0;                   ///< N·m/rad
-  double pid_kd = 0.0;                    ///< N·m·s²/rad
-  double tracking_bandwidth = 20.0;       ///< Hz, of the wheel speed's tracking loop
-};
-
 /// Everything that one cycle depends on. Null: not available in this cycle.
 struct ControlInput {
   const SensorFrame* sensors = nullptr;  ///< never null
@@ -63,6 +52,7 @@ inline constexpr double kFastestWheel = 1000;
 
 class DriveController {
  public:
+  /// `robot` as read_robot gives it: at least a wheel on either side, wheels[i].joint == i. `period` s.
   DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
 
   /// A new run: forgets requests (`request_count` is the inbox's count now) and every state.
@@ -74,7 +64,7 @@ class DriveController {
  private:
   bool measure(const SensorFrame& sensors) noexcept;
   bool usable(const SensorFrame& sensors) const noexcept;
-  bool track(const WheelPair& angle, const SensorFrame& sensors) noexcept;
+  bool track(const WheelValues& angle, const SensorFrame& sensors) noexcept;
   std::uint64_t permit_reasons(const Permit* permit, std::uint64_t cycle) const noexcept;
   std::uint64_t state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept;
   bool slow() const noexcept;
@@ -83,17 +73,14 @@ class DriveController {
 
   double period_;
   std::uint64_t joint_count_;
-  std::size_t left_joint_;
-  std::size_t right_joint_;
   DriveKinematics kinematics_;
   FeedForward feed_forward_;
   CommandWatch watch_;
   SpeedLimiter limiter_;
   Standstill standstill_;
-  WheelLoop left_;
-  WheelLoop right_;
+  std::vector<WheelLoop> loops_;             ///< one per wheel; its index is the joint's
   std::optional<std::uint64_t> last_cycle_;  ///< of the last usable sample
-  std::optional<WheelPair> last_angle_;      ///< rad, of the sample before; none: the loops start anew
+  std::optional<WheelValues> last_angle_;    ///< rad, of the sample before; none: the loops start anew
   double periods_ = 1;                       ///< between the last two usable samples
   bool driving_ = false;                     ///< the last command was not the brake
   bool followed_ = false;                    ///< the torque before this sample was this controller's

@@ -1,34 +1,59 @@
 #include "control/feed_forward.h"
 
+#include <algorithm>
+
 namespace robot_control {
 
+namespace {
+
+/// h of the header.
+double wheels_beside(const RobotModel& robot, const WheelModel& wheel) noexcept {
+  return static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side));
+}
+
+double middle_of_wheels(const RobotModel& robot) noexcept {
+  double sum = 0;
+  for (const WheelModel& wheel : robot.wheels) sum += wheel.centre_base[0];
+  return sum / static_cast<double>(robot.wheels.size());
+}
+
+}  // namespace
+
 double straight_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept {
-  return wheel.inertia + 0.5 * robot.mass * wheel.radius * wheel.radius;
+  return wheel.inertia + 0.5 * robot.mass * wheel.radius * wheel.radius / wheels_beside(robot, wheel);
 }
 
 double turning_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept {
-  const double lever = wheel.radius / robot.wheel_base;
-  return wheel.inertia + 2 * robot.yaw_inertia * lever * lever;
+  const double levers = wheel.radius * wheel.radius / (robot.wheel_base * robot.effective_wheel_base());
+  return wheel.inertia + 2 * robot.yaw_inertia * levers / wheels_beside(robot, wheel);
 }
 
 FeedForward::FeedForward(const RobotModel& robot)
     : mass_(robot.mass),
       yaw_inertia_(robot.yaw_inertia),
-      centre_ahead_(robot.centre_of_gravity_base[0] - 0.5 * (robot.left.centre_base[0] + robot.right.centre_base[0])),
+      centre_ahead_(robot.centre_of_gravity_base[0] - middle_of_wheels(robot)),
       wheel_base_(robot.wheel_base),
-      effort_per_force_{robot.left.sign * robot.left.radius, robot.right.sign * robot.right.radius},
-      effort_per_acceleration_{robot.left.sign * robot.left.inertia / robot.left.radius,
-                               robot.right.sign * robot.right.inertia / robot.right.radius} {}
+      half_base_(0.5 * robot.effective_wheel_base()),
+      wheels_(robot.wheels.size()) {
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    const WheelModel& wheel = robot.wheels[i];
+    side_[i] = wheel.side == Side::kLeft ? -1 : 1;
+    effort_per_force_[i] = wheel.sign * wheel.radius / wheels_beside(robot, wheel);
+    effort_per_acceleration_[i] = wheel.sign * wheel.inertia / wheel.radius;
+  }
+}
 
-WheelPair FeedForward::efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept {
+WheelValues FeedForward::efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept {
   const double force = mass_ * (acceleration.linear - centre_ahead_ * twist.angular * twist.angular);
   const double moment = yaw_inertia_ * acceleration.angular + mass_ * centre_ahead_ * twist.linear * twist.angular;
   const double difference = moment / wheel_base_;
-  const double rim_difference = 0.5 * wheel_base_ * acceleration.angular;
-  return {effort_per_force_.left * (0.5 * force - difference) +
-              effort_per_acceleration_.left * (acceleration.linear - rim_difference),
-          effort_per_force_.right * (0.5 * force + difference) +
-              effort_per_acceleration_.right * (acceleration.linear + rim_difference)};
+  const double rim_difference = half_base_ * acceleration.angular;
+  WheelValues efforts{};
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    efforts[i] = effort_per_force_[i] * (0.5 * force + side_[i] * difference) +
+                 effort_per_acceleration_[i] * (acceleration.linear + side_[i] * rim_difference);
+  }
+  return efforts;
 }
 
 }  // namespace robot_control

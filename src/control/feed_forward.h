@@ -1,20 +1,23 @@
 #pragma once
-/// The torque that a planned motion needs: Newton and Euler for a body on two driven wheels.
+/// The torque that a planned motion needs: Newton and Euler for a body on driven wheels, h on either side.
 ///
-/// Body of mass m (all links), yaw inertia I about the vertical through the middle of the axle (the point that
-/// v and ω belong to), centre of gravity x_c ahead of the axle. Force F along x and moment M about z from the wheels:
+/// Body of mass m (all links), yaw inertia I about the vertical through the middle of the wheels (the point that
+/// v and ω belong to), centre of gravity x_c ahead of it. Force F along x and moment M about z from the wheels, shared
+/// evenly by those of a side; b is the geometric wheel base, for it is the lever of the forces:
 ///
-///   F = m·(v̇ − x_c·ω²)        F_left  = F/2 − M/b
-///   M = I·ω̇ + m·x_c·v·ω       F_right = F/2 + M/b
+///   F = m·(v̇ − x_c·ω²)        F_left  = (F/2 − M/b)/h
+///   M = I·ω̇ + m·x_c·v·ω       F_right = (F/2 + M/b)/h
 ///
-/// A wheel of radius r and axle inertia J passes F_wheel to the ground and spins up with its rim's acceleration a:
+/// A wheel of radius r and axle inertia J passes F_wheel to the ground and spins up with its rim's acceleration a,
+/// which kinematics.h has from the effective wheel base b_eff:
 ///
 ///   τ = r·F_wheel + J·a/r     (times the joint's sign)
 ///
 /// So a wheel sees, per rad/s² of its own, the inertia
-///   straight: J + m·r²/2      turning: J + 2·I·r²/b²      lifted: J
-/// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m: 0.065, 0.045 and 0.005 kg·m².
-/// Friction and slopes are left to the integrator: RobotModel does not know them.
+///   straight: J + m·r²/(2·h)      turning: J + 2·I·r²/(h·b·b_eff)      lifted: J
+/// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m, h = 1: 0.065, 0.045 and 0.005 kg·m².
+/// Friction, slopes and the scrubbing of wheels behind each other are left to the integrator: RobotModel does not know
+/// them.
 
 #include "control/planar_twist.h"
 #include "robot/robot_model.h"
@@ -29,16 +32,19 @@ class FeedForward {
  public:
   explicit FeedForward(const RobotModel& robot);
 
-  /// N·m per joint for moving at `twist` with `acceleration` (m/s², rad/s²).
-  WheelPair efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;
+  /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²).
+  WheelValues efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;
 
  private:
   double mass_;
   double yaw_inertia_;
   double centre_ahead_;  ///< m, x_c
   double wheel_base_;
-  WheelPair effort_per_force_;         ///< m: sign·r
-  WheelPair effort_per_acceleration_;  ///< N·m·s²/m: sign·J/r
+  double half_base_;  ///< m, half of the effective wheel base
+  std::size_t wheels_;
+  WheelValues side_{};                     ///< −1 left, +1 right
+  WheelValues effort_per_force_{};         ///< m: sign·r/h, of the force of a side
+  WheelValues effort_per_acceleration_{};  ///< N·m·s²/m: sign·J/r
 };
 
 }  // namespace robot_control

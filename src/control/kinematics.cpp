@@ -8,6 +8,10 @@ namespace robot_control {
 
 namespace {
 
+double& of_side(SidePair& pair, Side side) noexcept {
+  return side == Side::kLeft ? pair.left : pair.right;
+}
+
 double rim_limit(const RobotModel& robot, const WheelModel& wheel) {
   const double limit = robot.joints[wheel.joint].velocity_limit;
   return limit > 0 ? limit * wheel.radius : std::numeric_limits<double>::infinity();
@@ -16,27 +20,42 @@ double rim_limit(const RobotModel& robot, const WheelModel& wheel) {
 }  // namespace
 
 DriveKinematics::DriveKinematics(const RobotModel& robot)
-    : half_base_(0.5 * robot.wheel_base),
-      joint_per_rim_{robot.left.sign / robot.left.radius, robot.right.sign / robot.right.radius},
-      rim_limit_{rim_limit(robot, robot.left), rim_limit(robot, robot.right)} {}
+    : wheels_(robot.wheels.size()),
+      half_base_(0.5 * robot.effective_wheel_base()),
+      rim_limit_{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()} {
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    const WheelModel& wheel = robot.wheels[i];
+    side_[i] = wheel.side;
+    joint_per_rim_[i] = wheel.sign / wheel.radius;
+    of_side(count_, wheel.side) += 1;
+    double& limit = of_side(rim_limit_, wheel.side);
+    limit = std::min(limit, rim_limit(robot, wheel));
+  }
+}
 
-WheelPair DriveKinematics::rim_speeds(const PlanarTwist& twist) const noexcept {
+SidePair DriveKinematics::rim_speeds(const PlanarTwist& twist) const noexcept {
   return {twist.linear - half_base_ * twist.angular, twist.linear + half_base_ * twist.angular};
 }
 
-WheelPair DriveKinematics::joint_speeds(const PlanarTwist& twist) const noexcept {
-  const WheelPair rim = rim_speeds(twist);
-  return {rim.left * joint_per_rim_.left, rim.right * joint_per_rim_.right};
+WheelValues DriveKinematics::joint_speeds(const PlanarTwist& twist) const noexcept {
+  const SidePair rim = rim_speeds(twist);
+  WheelValues speeds{};
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    speeds[i] = (side_[i] == Side::kLeft ? rim.left : rim.right) * joint_per_rim_[i];
+  }
+  return speeds;
 }
 
-PlanarTwist DriveKinematics::twist(const WheelPair& joint_speeds) const noexcept {
-  const double left = joint_speeds.left / joint_per_rim_.left;
-  const double right = joint_speeds.right / joint_per_rim_.right;
+PlanarTwist DriveKinematics::twist(const WheelValues& joint_speeds) const noexcept {
+  SidePair sum;
+  for (std::size_t i = 0; i < wheels_; ++i) of_side(sum, side_[i]) += joint_speeds[i] / joint_per_rim_[i];
+  const double left = sum.left / count_.left;
+  const double right = sum.right / count_.right;
   return {0.5 * (left + right), 0.5 * (right - left) / half_base_};
 }
 
 double DriveKinematics::wheel_speed_scale(const PlanarTwist& twist) const noexcept {
-  const WheelPair rim = rim_speeds(twist);
+  const SidePair rim = rim_speeds(twist);
   double scale = 1;
   if (std::abs(rim.left) > rim_limit_.left) scale = rim_limit_.left / std::abs(rim.left);
   if (std::abs(rim.right) > rim_limit_.right) scale = std::min(scale, rim_limit_.right / std::abs(rim.right));

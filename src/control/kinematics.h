@@ -1,11 +1,13 @@
 #pragma once
-/// Twist of the robot ↔ speeds of its two wheels, both rolling without slip.
+/// Twist of the robot ↔ speeds of its wheels; those of one side turn alike, as if one belt ran over them.
 ///
-///   v_left = v − ω·b/2      v = (v_left + v_right)/2      q̇ = sign·v_wheel/radius
+///   v_left = v − ω·b/2      v = (v_left + v_right)/2      q̇ᵢ = signᵢ·v_side/radiusᵢ
 ///   v_right = v + ω·b/2     ω = (v_right − v_left)/b
 ///
-/// v, ω: linear and angular speed of the point between the wheels; b: wheel_base. With v = 0.5 m/s, ω = 0.2 rad/s
-/// and b = 0.5 m the rims run at 0.45 and 0.55 m/s. Each wheel has its own radius and sign (RobotModel).
+/// v, ω: linear and angular speed of the point between the wheels; b: the effective wheel base (RobotModel), that is
+/// the geometric one for one wheel a side, which rolls without slip. Measured, v_side is the mean over the rims of a
+/// side. With v = 0.5 m/s, ω = 0.2 rad/s and b = 0.5 m the rims run at 0.45 and 0.55 m/s. Each wheel has its own radius
+/// and sign.
 
 #include "control/planar_twist.h"
 #include "robot/robot_model.h"
@@ -14,25 +16,29 @@ namespace robot_control {
 
 class DriveKinematics {
  public:
+  /// At least one wheel on either side, at most kMaxWheels.
   explicit DriveKinematics(const RobotModel& robot);
 
-  /// m/s of each rim over the ground, forward positive.
-  WheelPair rim_speeds(const PlanarTwist& twist) const noexcept;
+  /// m/s of the rims over the ground, forward positive.
+  SidePair rim_speeds(const PlanarTwist& twist) const noexcept;
 
-  /// rad/s (or rad/s² for an acceleration) of each joint, in the joint's own sign.
-  WheelPair joint_speeds(const PlanarTwist& twist) const noexcept;
+  /// rad/s (or rad/s² for an acceleration) of each wheel's joint, in the joint's own sign.
+  WheelValues joint_speeds(const PlanarTwist& twist) const noexcept;
 
   /// The inverse of `joint_speeds`.
-  PlanarTwist twist(const WheelPair& joint_speeds) const noexcept;
+  PlanarTwist twist(const WheelValues& joint_speeds) const noexcept;
 
   /// The largest s ≤ 1 for which no wheel runs faster than its joint's velocity limit at s·twist. Scaling both
   /// axes by it keeps the curvature ω/v. A velocity limit of 0 means none.
   double wheel_speed_scale(const PlanarTwist& twist) const noexcept;
 
  private:
+  std::size_t wheels_;
   double half_base_;
-  WheelPair joint_per_rim_;  ///< rad/m: sign/radius
-  WheelPair rim_limit_;      ///< m/s
+  std::array<Side, kMaxWheels> side_{};
+  WheelValues joint_per_rim_{};  ///< rad/m: sign/radius
+  SidePair count_;               ///< wheels of each side
+  SidePair rim_limit_;           ///< m/s, of each side's slowest wheel
 };
 
 }  // namespace robot_control

@@ -1,5 +1,9 @@
 #pragma once
-/// The two numbers that a differential drive can follow, and a value per wheel.
+/// The two numbers that a differential drive can follow, a value per side and a value per wheel.
+
+#include <array>
+
+#include "robot/robot_model.h"
 
 namespace robot_control {
 
@@ -8,9 +12,12 @@ struct PlanarTwist {
   double angular = 0;  ///< rad/s, about z of base
 };
 
-struct WheelPair {
+struct SidePair {
   double left = 0;
   double right = 0;
 };
+
+/// In the order of RobotModel::wheels, which is that of the joints; 0 beyond the last wheel.
+using WheelValues = std::array<double, kMaxWheels>;
 
 }  // namespace robot_control

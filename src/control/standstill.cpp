@@ -11,10 +11,10 @@ void Standstill::reset() noexcept {
   anchored_ = standing_ = false;
 }
 
-void Standstill::step(const WheelPair& angles, std::uint64_t cycle) noexcept {
+void Standstill::step(const WheelValues& angles, std::uint64_t cycle) noexcept {
   constexpr double kWindow = kStandstillSpeed * kStandstillTime;
-  const bool inside =
-      anchored_ && std::abs(angles.left - anchor_.left) < kWindow && std::abs(angles.right - anchor_.right) < kWindow;
+  bool inside = anchored_;
+  for (std::size_t i = 0; i < angles.size(); ++i) inside = inside && std::abs(angles[i] - anchor_[i]) < kWindow;
   if (!inside) {
     anchor_ = angles;
     since_ = cycle;

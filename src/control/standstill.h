@@ -1,5 +1,5 @@
 #pragma once
-/// Do both wheels stand? Each has moved less than kStandstillSpeed·kStandstillTime for kStandstillTime.
+/// Do all wheels stand? Each has moved less than kStandstillSpeed·kStandstillTime for kStandstillTime.
 ///
 /// Judged on angles, not on speeds: one encoder count at the edge (0.0015 rad of 4096) jumps the speed of any filter
 /// above the threshold, but not the angle out of the window of 0.005 rad.
@@ -21,14 +21,14 @@ class Standstill {
   /// Forgets the past: the robot may be moving.
   void reset() noexcept;
 
-  /// rad of both joints, `cycle` of the sample.
-  void step(const WheelPair& angles, std::uint64_t cycle) noexcept;
+  /// rad of every wheel's joint, `cycle` of the sample.
+  void step(const WheelValues& angles, std::uint64_t cycle) noexcept;
 
   bool standing() const noexcept { return standing_; }
 
  private:
   std::uint64_t cycles_needed_;
-  WheelPair anchor_;
+  WheelValues anchor_{};
   std::uint64_t since_ = 0;
   bool anchored_ = false;
   bool standing_ = false;

@@ -20,7 +20,8 @@
 /// |integral| ≤ effort_limit. Bumpless: `carry` gives the integrator the load that the brake was holding, so the first
 /// torque after a brake is the torque before it and a robot on a slope does not sag.
 ///
-/// Default gains for 12 kg, 1 kHz, 20 Hz (wheel inertia J: lifted 0.005, turning 0.045, straight 0.065 kg·m²):
+/// Gains for 12 kg, 1 kHz, 20 Hz, as wheel_loop_gains.h derives them for that robot (wheel inertia J: lifted 0.005,
+/// turning 0.045, straight 0.065 kg·m²):
 ///   model_inertia = 2·J_lifted = 0.01. Told only the encoder angle (model_inertia = ∞) the lifted wheel is stable up
 ///     to kp = 0.88. Told the torque, kp may reach kp·dt/model_inertia = 1, that is 10 N·m·s/rad, for *every* inertia
 ///     from 0.005 kg·m² up. Less than 2·J_lifted lowers that limit, more leaves the lifted wheel undamped.
@@ -30,7 +31,7 @@
 ///   kd = 0: the tracking loop's acceleration adds lag, not damping.
 /// Spectral radius (wheel_loop_stability.h) and gain margin, all gains scaled together:
 ///   lifted 0.990, turning 0.987, straight 0.990, payload doubled 0.995 (the slow integrator); margin 4.9 or more
-///   at 500 Hz 2.3; at 250 Hz the lifted wheel is unstable (1.16): control_problems.h names smaller gains
+///   the same gains at 500 Hz 2.3; at 250 Hz the lifted wheel is unstable (1.16)
 ///   the article's kp 20, ki 0.1, kd 0.5: 7.2 lifted or loaded; without the tracking loop's knowledge of the torque
 ///     1.35 and 1.06: unstable as torque gains either way.
 /// 0 → 1 → 0 m/s at 1 m/s² on the rigid plant of the tests: exact without friction and encoder; with 4096 counts and

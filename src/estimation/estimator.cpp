@@ -25,9 +25,12 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
     require(value >= 0 && std::isfinite(value), what, value);
   };
   positive(period, "period must be > 0 s");
-  positive(robot.wheel_base, "wheel_base must be > 0 m");
-  positive(robot.left.radius, "radius of the left wheel must be > 0 m");
-  positive(robot.right.radius, "radius of the right wheel must be > 0 m");
+  positive(robot.effective_wheel_base(), "wheel_base and its multiplier must be > 0 m");
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    const auto wheels = std::ranges::count(robot.wheels, side, &WheelModel::side);
+    require(wheels > 0, "there must be a wheel on either side", static_cast<double>(wheels));
+  }
+  for (const WheelModel& wheel : robot.wheels) positive(wheel.radius, "radius of a wheel must be > 0 m");
   no_less(parameters.wheel_slip_noise, "wheel_slip_noise must be >= 0 m/√m");
   no_less(parameters.gyro_noise, "gyro_noise must be >= 0 rad/s/√Hz");
   positive(parameters.standstill_speed, "standstill_speed must be > 0 rad/s");
@@ -74,7 +77,7 @@ bool continuable(const StateFrame& last) noexcept {
 
 YawFusionParameters fusion_parameters(const EstimatorParameters& parameters, const RobotModel& robot) {
   return {.wheel_slip_noise = parameters.wheel_slip_noise,
-          .wheel_base = robot.wheel_base,
+          .wheel_base = robot.effective_wheel_base(),
           .gyro_noise = parameters.gyro_noise,
           .gyro_turn_noise = parameters.gyro_turn_noise,
           .rate_floor = parameters.standstill_speed};
@@ -84,7 +87,7 @@ StandstillLimits standstill_limits(const EstimatorParameters& parameters, const 
   const double cycles = std::max(1.0, std::ceil(parameters.standstill_time / period - 1e-9));
   return {.cycles = static_cast<std::uint64_t>(cycles),
           .tolerance = parameters.standstill_speed * parameters.standstill_time *
-                       std::min(robot.left.radius, robot.right.radius),
+                       std::ranges::min(robot.wheels, {}, &WheelModel::radius).radius,
           .acceleration = parameters.standstill_acceleration};
 }
 

@@ -40,7 +40,8 @@ class Estimator {
   static constexpr double kRestartPosition = 0.05;   ///< m, standard deviation added by a restart
   static constexpr double kRestartYaw = 0.05;        ///< rad
 
-  /// `period`: s, > 0. Throws std::invalid_argument: a parameter or a measure of the robot out of range.
+  /// `period`: s, > 0. Throws std::invalid_argument: a parameter or a measure of the robot out of range, a
+  /// side without a wheel.
   Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period);
 
   /// A new run: the first sample is the offset of the encoders, the pose starts at zero.

@@ -1,10 +1,11 @@
 #pragma once
-/// From wheel travel to the motion of base_link, for two driven wheels on one axle line.
+/// From the wheels' travel to the motion of base_link; wheels behind each other turn the robot about their middle.
 ///
 ///   distance = (right + left) / 2        turn = (right − left) / wheel_base
 ///   forward  = distance + turn · axle_y  left = −turn · axle_x
 ///
-/// (axle_x, axle_y) is the middle of the axle in base axes: rigid-body motion of a point beside the axle.
+/// wheel_base is the effective one (RobotModel); left and right are the means of a side. (axle_x, axle_y) is the middle
+/// of the wheels in base axes: rigid-body motion of a point beside it.
 
 #include "estimation/arc.h"
 #include "robot/robot_model.h"
@@ -12,14 +13,16 @@
 namespace robot_control {
 
 struct WheelGeometry {
-  double wheel_base = 1;  ///< m
+  double wheel_base = 1;  ///< m, effective
   double axle_x = 0;      ///< m
   double axle_y = 0;      ///< m
 
-  explicit WheelGeometry(const RobotModel& robot) noexcept
-      : wheel_base(robot.wheel_base),
-        axle_x((robot.left.centre_base[0] + robot.right.centre_base[0]) / 2),
-        axle_y((robot.left.centre_base[1] + robot.right.centre_base[1]) / 2) {}
+  explicit WheelGeometry(const RobotModel& robot) noexcept : wheel_base(robot.effective_wheel_base()) {
+    for (const WheelModel& wheel : robot.wheels) {
+      axle_x += wheel.centre_base[0] / static_cast<double>(robot.wheels.size());
+      axle_y += wheel.centre_base[1] / static_cast<double>(robot.wheels.size());
+    }
+  }
 
   double turn(double left, double right) const noexcept { return (right - left) / wheel_base; }
 

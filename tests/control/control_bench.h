@@ -54,7 +54,7 @@ class ControlBench {
         cycle > 0 && with_permit && permit.action != PermitAction::kBrake && last.joints[0].mode == JointMode::kEffort;
     sensors.gate.verdict = passed ? GateVerdict::kPassed : GateVerdict::kBrake;
     if (passed) {
-      plant.drive({last.joints[robot.left.joint].effort, last.joints[robot.right.joint].effort}, period);
+      plant.drive({last.joints[0].effort, last.joints[1].effort}, period);
     } else {
       plant.brake(period);
     }
@@ -68,12 +68,10 @@ class ControlBench {
 
  private:
   void sample() {
-    const WheelPair angle = plant.measured_angle();
+    const SidePair angle = plant.measured_angle();
     sensors.head.cycle = state.head.cycle = permit.head.cycle = cycle;
-    sensors.joints[robot.left.joint] = {
-        .position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left};
-    sensors.joints[robot.right.joint] = {
-        .position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right};
+    sensors.joints[0] = {.position = angle.left, .velocity = plant.speed.left, .effort = plant.effort.left};
+    sensors.joints[1] = {.position = angle.right, .velocity = plant.speed.right, .effort = plant.effort.right};
     spoil(sensors);
   }
 };

@@ -16,9 +16,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-TEST(ControlProblems, FindsNoneInTheDefaultsFrom500HzTo2kHz) {
-  for (const double rate : {500.0, 1000.0, 2000.0}) {
+TEST(ControlProblems, FindsNoneInTheDefaultsAtAnyRate) {
+  for (const double rate : {100.0, 200.0, 333.0, 500.0, 1000.0, 2000.0}) {
     EXPECT_THAT(control_problems({}, make_test_robot(), 1 / rate), IsEmpty()) << rate;
+    EXPECT_THAT(control_problems({}, make_skid_steer(), 1 / rate), IsEmpty()) << rate;
   }
 }
 
@@ -32,8 +33,10 @@ TEST(ControlProblems, RefusesTheArticlesGainsAndNamesValueRuleAndRemedy) {
       AllOf(SizeIs(1), Each(AllOf(HasSubstr("pid_kp 20"), HasSubstr("must be < 1"), HasSubstr("Use at most")))));
 }
 
-TEST(ControlProblems, RefusesTheDefaultsAt100HzAndItsRemedyIsAccepted) {
+TEST(ControlProblems, RefusesTheGainsOf1kHzAt100HzAndItsRemedyIsAccepted) {
   DriveControllerParameters parameters;
+  parameters.pid_kp = 2;
+  parameters.pid_ki = 20;
   const std::vector<std::string> problems = control_problems(parameters, make_test_robot(), 1e-2);
   ASSERT_THAT(problems, SizeIs(1)) << "equal wheels are one problem";
   const auto advised = [&](const std::string& name) {
@@ -49,7 +52,8 @@ TEST(ControlProblems, RefusesAWheelWithoutTorque) {
   RobotModel robot = make_test_robot();
   robot.joints[1].effort_limit = 0;
   EXPECT_THAT(control_problems({}, robot, 1e-3),
-              testing::ElementsAre(AllOf(HasSubstr("right_wheel_joint"), HasSubstr("effort limit"))));
+              testing::ElementsAre(
+                  AllOf(HasSubstr("right_wheel_joint"), HasSubstr("effort limit"), HasSubstr("wheel_effort_limit"))));
 }
 
 }  // namespace

@@ -265,11 +265,49 @@ TEST_F(DriveControllerTest, DrivesBackwardsAsItDrivesForwards) {
 
 TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
   RobotModel mirrored = make_test_robot();
-  mirrored.right.sign = -1;
+  mirrored.wheels[1].sign = -1;
   bench = ControlBench(mirrored);
   start();
   EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6);
   EXPECT_NEAR(bench.command.joints[1].velocity, -5.5, 1e-12);
+}
+
+// Sensors that do as commanded: the plans of 0.5 m/s, 0.2 rad/s on all four wheels, load shared.
+TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyThatFails) {
+  const RobotModel robot = make_skid_steer();
+  DriveController controller({}, robot, 1e-3);
+  controller.reset(0);
+  SensorFrame sensors;
+  sensors.valid = kValidJoints;
+  sensors.joint_count = 4;
+  Permit permit;
+  permit.action = PermitAction::kDrive;
+  VelocityCommand request;
+  request.twist = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
+  CommandFrame out;
+  WheelValues plan{};
+  WheelValues last{};
+  for (std::uint64_t k = 0; k < 1000; ++k) {
+    request.count = k < 10 ? 0 : 1;
+    sensors.head.cycle = permit.head.cycle = k;
+    sensors.gate.verdict = k == 0 ? GateVerdict::kBrake : GateVerdict::kPassed;
+    for (std::size_t i = 0; i < 4; ++i) {
+      sensors.joints[i] = {.position = sensors.joints[i].position + 0.5e-3 * (last[i] + plan[i]), .velocity = plan[i]};
+    }
+    controller.step({&sensors, nullptr, &permit, request}, out);
+    last = plan;
+    for (std::size_t i = 0; i < 4; ++i) plan[i] = out.joints[i].velocity;
+  }
+  EXPECT_NEAR(out.twist_limited.angular[2], 0.2, 1e-12);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(out.joints[i].mode, JointMode::kEffort);
+    EXPECT_NEAR(out.joints[i].velocity, i < 2 ? -4.18 : 5.82, 1e-12);
+  }
+  sensors.joints[3].position = std::nan("");
+  ++sensors.head.cycle;
+  controller.step({&sensors, nullptr, &permit, request}, out);
+  EXPECT_TRUE(out.reasons & kReasonBadSensors);
+  for (const JointCommand& joint : out.joints) EXPECT_EQ(joint.mode, JointMode::kBrake);
 }
 
 TEST_F(DriveControllerTest, BrakesTheJointsThatAreNotWheels) {

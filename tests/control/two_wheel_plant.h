@@ -28,24 +28,24 @@ class TwoWheelPlant {
   double counts = 0;            ///< per turn of the encoders; 0: exact angles
   bool lifted_left = false;
   PlanarTwist twist;    ///< true
-  WheelPair angle;      ///< rad, true
-  WheelPair speed;      ///< rad/s, true
-  WheelPair effort;     ///< N·m of the last step
+  SidePair angle;       ///< rad, true
+  SidePair speed;       ///< rad/s, true
+  SidePair effort;      ///< N·m of the last step
   double distance = 0;  ///< m
 
-  WheelPair measured_angle() const { return {quantised(angle.left), quantised(angle.right)}; }
+  SidePair measured_angle() const { return {quantised(angle.left), quantised(angle.right)}; }
 
-  void drive(const WheelPair& torque, double dt) {
-    const double r = robot_.left.radius;
+  void drive(const SidePair& torque, double dt) {
+    const double r = robot_.wheels[0].radius;
     const double b = robot_.wheel_base;
     const double m = robot_.mass;
-    const double j = robot_.left.inertia;
-    const double x = robot_.centre_of_gravity_base[0] - robot_.left.centre_base[0];
+    const double j = robot_.wheels[0].inertia;
+    const double x = robot_.centre_of_gravity_base[0] - robot_.wheels[0].centre_base[0];
     effort = torque;
-    const WheelPair net{robot_.left.sign * torque.left - viscous_friction * robot_.left.sign * speed.left,
-                        robot_.right.sign * torque.right - viscous_friction * robot_.right.sign * speed.right};
+    const SidePair net{robot_.wheels[0].sign * torque.left - viscous_friction * robot_.wheels[0].sign * speed.left,
+                       robot_.wheels[1].sign * torque.right - viscous_friction * robot_.wheels[1].sign * speed.right};
     if (lifted_left) {
-      const double acceleration = robot_.left.sign * net.left / j;
+      const double acceleration = robot_.wheels[0].sign * net.left / j;
       angle.left += speed.left * dt + 0.5 * acceleration * dt * dt;
       speed.left += acceleration * dt;
       return;
@@ -61,12 +61,12 @@ class TwoWheelPlant {
 
   /// The driver's brake law, idealised: damping, and below kBrakeHolds it stands and carries the slope.
   void brake(double dt) {
-    const double limit = robot_.joints[robot_.left.joint].effort_limit;
+    const double limit = robot_.joints[robot_.wheels[0].joint].effort_limit;
     if (std::abs(speed.left) < kBrakeHolds && std::abs(speed.right) < kBrakeHolds) {
-      const double load = 0.5 * robot_.mass * kGravity * std::sin(slope) * robot_.left.radius;
+      const double load = 0.5 * robot_.mass * kGravity * std::sin(slope) * robot_.wheels[0].radius;
       twist = {};
       speed = {};
-      effort = {robot_.left.sign * load, robot_.right.sign * load};
+      effort = {robot_.wheels[0].sign * load, robot_.wheels[1].sign * load};
       return;
     }
     const auto damped = [&](double w) { return std::fmax(-limit, std::fmin(limit, -kBrakeDamping * w)); };
@@ -88,8 +88,8 @@ class TwoWheelPlant {
       q += scale * (rim(twist, side) * dt + 0.5 * rim(acceleration, side) * dt * dt);
       w = scale * (rim(twist, side) + rim(acceleration, side) * dt);
     };
-    advance(angle.left, speed.left, robot_.left, -1);
-    advance(angle.right, speed.right, robot_.right, +1);
+    advance(angle.left, speed.left, robot_.wheels[0], -1);
+    advance(angle.right, speed.right, robot_.wheels[1], +1);
     distance += twist.linear * dt + 0.5 * acceleration.linear * dt * dt;
     twist = {twist.linear + acceleration.linear * dt, twist.angular + acceleration.angular * dt};
   }

@@ -81,7 +81,7 @@ TEST_F(EstimatorPoseTest, FirstEncoderReadingIsTheOffset) {
 // An axle 0.2 m behind base_link: spinning moves base_link on a circle of that radius.
 TEST_F(EstimatorPoseTest, ABaseBesideTheAxleMovesOnItsOwnCircle) {
   RobotModel model = two_wheeler();
-  model.left.centre_base[0] = model.right.centre_base[0] = -0.2;
+  model.wheels[0].centre_base[0] = model.wheels[1].centre_base[0] = -0.2;
   Estimator estimator(EstimatorParameters{}, model, kPeriod);
   PlanarRobot robot(model);
   robot.frame().imu.angular_velocity = {0, 0, 0.5};
@@ -93,6 +93,23 @@ TEST_F(EstimatorPoseTest, ABaseBesideTheAxleMovesOnItsOwnCircle) {
   EXPECT_NEAR(state_.pose_odom.position[0], -0.2 + 0.2 * std::cos(1.0), kRounding);
   EXPECT_NEAR(state_.pose_odom.position[1], 0.2 * std::sin(1.0), kRounding);
   EXPECT_NEAR(state_.twist_base.linear[1], 0.5 * 0.2, 1e-9);
+}
+
+// The middle of the axles is 0.1 m ahead of base_link; v there moves base_link by (v, −0.1 ω).
+TEST_F(EstimatorPoseTest, FourWheelsTurnAboutTheirMiddleByTheEffectiveWheelBase) {
+  const RobotModel model = four_wheeler();
+  Estimator estimator(EstimatorParameters{}, model, kPeriod);
+  PlanarRobot robot(model);
+  robot.frame().imu.angular_velocity = {0, 0, 0.5};
+  estimator.step(robot.frame(), state_);
+  for (int i = 0; i < 2000; ++i) {
+    robot.go(0.2, 0.5);
+    estimator.step(robot.frame(), state_);
+  }
+  EXPECT_NEAR(yaw_of(state_.pose_odom), 1.0, kRounding);
+  EXPECT_NEAR(state_.pose_odom.position[0], robot.x + 0.1 - 0.1 * std::cos(1.0), kRounding);
+  EXPECT_NEAR(state_.pose_odom.position[1], robot.y - 0.1 * std::sin(1.0), kRounding);
+  EXPECT_NEAR(state_.confidence[kGyro], 1, 1e-9) << "wheels and gyro agree";
 }
 
 // Rolled by 180°, the IMU's z looks down.

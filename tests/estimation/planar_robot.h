@@ -16,9 +16,28 @@ inline RobotModel two_wheeler() {
   RobotModel robot;
   robot.name = "two_wheeler";
   robot.joints = {{"left", "left_link", 5.0, 30.0}, {"right", "right_link", 5.0, 30.0}};
-  robot.left = {.joint = 0, .centre_base = {0, 0.25, 0.1}, .radius = 0.1, .width = 0.03, .sign = 1, .inertia = 0.005};
-  robot.right = {.joint = 1, .centre_base = {0, -0.25, 0.1}, .radius = 0.1, .width = 0.03, .sign = 1, .inertia = 0.005};
+  robot.wheels = {WheelModel{.joint = 0, .centre_base = {0, 0.25, 0.1}, .radius = 0.1, .width = 0.03, .inertia = 0.005},
+                  WheelModel{.joint = 1,
+                             .centre_base = {0, -0.25, 0.1},
+                             .radius = 0.1,
+                             .width = 0.03,
+                             .inertia = 0.005,
+                             .side = Side::kRight}};
   robot.wheel_base = 0.5;
+  return robot;
+}
+
+/// Axles 0.4 m apart, the front one 0.3 m ahead of base_link; left joints are mirrored; effective wheel base 0.82 m.
+inline RobotModel four_wheeler() {
+  RobotModel robot = two_wheeler();
+  robot.joints.assign(4, {.name = "wheel", .child_link = "link"});  // no limits known
+  robot.wheels = {robot.wheels[0], robot.wheels[0], robot.wheels[1], robot.wheels[1]};
+  for (std::size_t i = 0; i < 4; ++i) {
+    robot.wheels[i].joint = i;
+    robot.wheels[i].centre_base[0] = i % 2 == 0 ? 0.3 : -0.1;
+    robot.wheels[i].sign = i < 2 ? -1 : 1;
+  }
+  robot.wheel_base_multiplier = 1.64;
   return robot;
 }
 
@@ -31,7 +50,7 @@ class PlanarRobot {
   explicit PlanarRobot(const RobotModel& model = two_wheeler()) : model_(model) {
     frame_.head.run = 7;
     frame_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
-    frame_.joint_count = 2;
+    frame_.joint_count = model.joints.size();
     frame_.imu.linear_acceleration = {0, 0, 9.80665};
   }
 
@@ -51,8 +70,10 @@ class PlanarRobot {
     }
     yaw += angular * dt;
     distance += std::abs(linear) * dt;
-    turn_wheel(model_.left, linear - angular * model_.wheel_base / 2, dt);
-    turn_wheel(model_.right, linear + angular * model_.wheel_base / 2, dt);
+    const double difference = angular * model_.effective_wheel_base() / 2;
+    for (const WheelModel& wheel : model_.wheels) {
+      turn_wheel(wheel, wheel.side == Side::kLeft ? linear - difference : linear + difference, dt);
+    }
     frame_.imu.angular_velocity = {0, 0, angular + bias};
     frame_.head.cycle += cycles;
   }

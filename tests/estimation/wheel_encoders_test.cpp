@@ -41,12 +41,45 @@ TEST_F(WheelEncodersTest, TurnsAnglesIntoTravel) {
 }
 
 TEST_F(WheelEncodersTest, TurnsAMirroredWheelsAnglesAround) {
-  robot_.right.sign = -1;
+  robot_.wheels[1].sign = -1;
   WheelEncoders mirrored(robot_);
   mirrored.step(sensors_, 0);
   set(12.51, -3.01);
   mirrored.step(sensors_, kPeriod);
   EXPECT_NEAR(mirrored.right(), 0.001, 1e-15);
+}
+
+// 0.1 m radius: +0.01 and +0.03 rad of mirrored left joints, 0.02 and 0.06 rad right.
+TEST(WheelEncodersOfFourWheels, AreTheMeanOfEachSide) {
+  const RobotModel robot = four_wheeler();
+  WheelEncoders encoders(robot);
+  SensorFrame sensors;
+  sensors.valid = kValidJoints;
+  sensors.joint_count = 4;
+  ASSERT_EQ(encoders.step(sensors, 0), EncoderReading::kOffset);
+  constexpr double kAngles[] = {-0.01, -0.03, 0.02, 0.06};
+  for (std::size_t i = 0; i < 4; ++i) sensors.joints[i] = {.position = kAngles[i], .velocity = 10 * kAngles[i]};
+  ASSERT_EQ(encoders.step(sensors, kPeriod), EncoderReading::kTravel);
+  EXPECT_NEAR(encoders.left(), 0.002, 1e-15);
+  EXPECT_NEAR(encoders.right(), 0.004, 1e-15);
+  EXPECT_NEAR(encoders.left_speed(sensors), 0.02, 1e-15);
+  EXPECT_NEAR(encoders.right_speed(sensors), 0.04, 1e-15);
+  sensors.joints[1].position = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(encoders.step(sensors, kPeriod), EncoderReading::kRejected) << "one wheel rejects all";
+}
+
+// Without a limit a wheel is believed up to 1000 rad/s: 1.1 rad in a cycle, slack included.
+TEST(WheelEncodersOfFourWheels, NeedNoVelocityLimit) {
+  const RobotModel robot = four_wheeler();
+  WheelEncoders encoders(robot);
+  SensorFrame sensors;
+  sensors.valid = kValidJoints;
+  sensors.joint_count = 4;
+  encoders.step(sensors, 0);
+  sensors.joints[0].position = 1.09;
+  EXPECT_EQ(encoders.step(sensors, kPeriod), EncoderReading::kTravel);
+  sensors.joints[0].position += 1.11;
+  EXPECT_EQ(encoders.step(sensors, kPeriod), EncoderReading::kRejected);
 }
 
 TEST_F(WheelEncodersTest, BringsTheTravelOfAGapWithTheNextGoodReading) {

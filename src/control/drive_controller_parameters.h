@@ -1,0 +1,21 @@
+#pragma once
+/// What a user sets of the drive controller.
+
+#include <optional>
+
+namespace robot_control {
+
+/// Gains that are left out are derived from the robot, wheel by wheel: wheel_loop_gains.h.
+struct DriveControllerParameters {
+  double max_linear_speed = 1.0;             ///< m/s
+  double max_angular_speed = 2.0;            ///< rad/s
+  double max_linear_acceleration = 1.0;      ///< m/s²
+  double max_angular_acceleration = 4.0;     ///< rad/s²
+  double cmd_vel_timeout = 1.25;             ///< s; 0 = never
+  std::optional<double> pid_kp;              ///< N·m·s/rad
+  std::optional<double> pid_ki;              ///< N·m/rad
+  double pid_kd = 0.0;                       ///< N·m·s²/rad
+  std::optional<double> tracking_bandwidth;  ///< Hz, of the wheel speeds' tracking loops
+};
+
+}  // namespace robot_control
