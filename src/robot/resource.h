@@ -15,8 +15,8 @@ namespace robot_control {
 ///   /PATH                    as it stands
 ///   PATH                     below the folder of the URDF, when description.source is a file
 ///
-/// A package is looked for in this order; the first hit counts and is remembered for as long as the search path is
-/// the same:
+/// A package is looked for in this order and the first hit counts. What a folder of the search path holds is
+/// remembered until the process ends.
 ///   1. ROS_PACKAGE_PATH as rospack crawls it: a folder with a package.xml or manifest.xml is a package and is not
 ///      searched further, nor are hidden folders, those with CATKIN_IGNORE or rospack_nosubdirs, or more than
 ///      kPackageDepth levels; a package's name is that in package.xml, else its folder's;

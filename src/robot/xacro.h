@@ -5,8 +5,8 @@
 /// robot_control/expand_xacro.py, which lets rospkg answer `$(find PACKAGE)`: PyPI's xacro asks ROS 2's index. Its
 /// default arguments hold; another choice is made by expanding the file by hand.
 ///
-/// Python is ROBOT_CONTROL_XACRO_PYTHON, else the one of the environment that scripts/setup made, else
-/// /usr/bin/python3.
+/// Python is what the environment calls ROBOT_CONTROL_XACRO_PYTHON, else that of build/xacro, which scripts/setup
+/// makes, else /usr/bin/python3.
 
 #include <string>
 
@@ -14,7 +14,7 @@ namespace robot_control {
 
 inline constexpr int kXacroSeconds = 30;  ///< after which it is ended
 
-/// Throws RobotError: xacro is absent, refuses the file (in its own words), or takes longer than kXacroSeconds.
+/// Throws RobotError: xacro is absent, refuses the file (in its own words), or is silent for longer than kXacroSeconds.
 std::string expand_xacro(const std::string& path);
 
 }  // namespace robot_control

@@ -1,0 +1,144 @@
+#include <libqhull_r/qhull_ra.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <tuple>
+
+#include "robot/mesh.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kThin = 1e-6;  // of the largest extent: single precision, in which STL is written, resolves 10⁻⁷
+
+using Indices = std::vector<std::size_t>;
+
+/// The points in their principal axes about their mean, in units of the largest extent, and how many of the axes count.
+struct Cloud {
+  Eigen::Matrix3Xd points;
+  int dimension = 0;
+};
+
+Cloud principal(const Points& points) {
+  Cloud cloud;
+  cloud.points.resize(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) cloud.points.col(static_cast<Eigen::Index>(i)) = points[i];
+  const Eigen::Vector3d low = cloud.points.rowwise().minCoeff();
+  const double largest = (cloud.points.rowwise().maxCoeff() - low).maxCoeff();
+  if (!(largest > 0)) return cloud;
+  cloud.points = (cloud.points.colwise() - low) / largest;
+  cloud.points.colwise() -= cloud.points.rowwise().mean().eval();
+  const Eigen::Matrix3d spread = cloud.points * cloud.points.transpose();
+  const Eigen::Matrix3d axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().rowwise().reverse();
+  cloud.points = axes.transpose() * cloud.points;
+  const Eigen::Vector3d extent = cloud.points.rowwise().maxCoeff() - cloud.points.rowwise().minCoeff();
+  while (cloud.dimension < 3 && extent[cloud.dimension] > kThin) ++cloud.dimension;
+  return cloud;
+}
+
+Indices ends(const Cloud& cloud) {
+  Eigen::Index low = 0;
+  Eigen::Index high = 0;
+  cloud.points.row(0).minCoeff(&low);
+  cloud.points.row(0).maxCoeff(&high);
+  return {static_cast<std::size_t>(low), static_cast<std::size_t>(high)};
+}
+
+/// Qhull with what it owns. It reports errors to a file, which nobody reads.
+class Qhull {
+ public:
+  Qhull() : silence_(std::fopen("/dev/null", "w")) { qh_zero(&qh_, silence_); }
+  ~Qhull() {
+    qh_freeqhull(&qh_, !qh_ALL);
+    int current = 0;
+    int total = 0;
+    qh_memfreeshort(&qh_, &current, &total);
+    if (silence_ != nullptr) std::fclose(silence_);
+  }
+  Qhull(const Qhull&) = delete;
+  Qhull& operator=(const Qhull&) = delete;
+
+  /// Empty when Qhull gives up.
+  Indices corners(const Cloud& cloud, const char* options) {
+    if (silence_ == nullptr) return {};
+    Eigen::MatrixXd coordinates = cloud.points.topRows(cloud.dimension);
+    std::string command = options;
+    const int count = static_cast<int>(coordinates.cols());
+    const bool failed =
+        qh_new_qhull(&qh_, cloud.dimension, count, coordinates.data(), 0, command.data(), nullptr, silence_) != 0;
+    Indices result;
+    if (!failed) {
+      for (vertexT* vertex = qh_.vertex_list; vertex != nullptr && vertex->next != nullptr; vertex = vertex->next) {
+        const int id = qh_pointid(&qh_, vertex->point);
+        if (id >= 0 && id < count) result.push_back(static_cast<std::size_t>(id));
+      }
+    }
+    return result;
+  }
+
+ private:
+  std::FILE* silence_;
+  qhT qh_{};
+};
+
+Indices corners_of(const Cloud& cloud) {
+  if (cloud.dimension == 0) return {0};
+  if (cloud.dimension == 1) return ends(cloud);
+  Indices corners = Qhull().corners(cloud, "qhull Qt");
+  if (corners.empty()) corners = Qhull().corners(cloud, "qhull QJ");
+  if (corners.empty()) {
+    for (Eigen::Index i = 0; i < cloud.points.cols(); ++i) corners.push_back(static_cast<std::size_t>(i));
+  }
+  return corners;
+}
+
+void order(Points& points) {
+  const auto before = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z());
+  };
+  std::sort(points.begin(), points.end(), before);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+Points thinned(const Points& corners) {
+  std::vector<double> distance(corners.size(), std::numeric_limits<double>::infinity());
+  Points kept;
+  const auto keep = [&](std::size_t chosen) {
+    kept.push_back(corners[chosen]);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      distance[i] = std::min(distance[i], (corners[i] - corners[chosen]).squaredNorm());
+    }
+  };
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto [low, high] =
+        std::minmax_element(corners.begin(), corners.end(),
+                            [axis](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[axis] < b[axis]; });
+    keep(static_cast<std::size_t>(low - corners.begin()));
+    keep(static_cast<std::size_t>(high - corners.begin()));
+  }
+  while (kept.size() < kMostHullCorners) {
+    keep(static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
+  }
+  return kept;
+}
+
+}  // namespace
+
+Points hull_corners(const Points& points) {
+  if (points.empty()) return {};
+  Points corners;
+  for (const std::size_t index : corners_of(principal(points))) corners.push_back(points[index]);
+  order(corners);
+  if (corners.size() > kMostHullCorners) {
+    corners = thinned(corners);
+    order(corners);
+  }
+  return corners;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,75 @@
+#include "robot/xacro.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "robot/program.h"
+#include "robot/urdf_document.h"
+
+namespace robot_control {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kNotInstalled = 69;  // scripts/robot_control/expand_xacro.py
+constexpr const char* kByHand = "or expand the file by hand: xacro FILE > robot.urdf";
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+std::string python() {
+  if (const std::string chosen = environment("ROBOT_CONTROL_XACRO_PYTHON"); !chosen.empty()) return chosen;
+  std::error_code error;
+  const std::string ours = ROBOT_CONTROL_PROJECT "/build/xacro/bin/python3";
+  return fs::exists(ours, error) ? ours : "/usr/bin/python3";
+}
+
+/// The package robot_control as sourced, else that of the sources.
+std::string python_path() {
+  const std::string sourced = environment("PYTHONPATH");
+  return "PYTHONPATH=" + (sourced.empty() ? "" : sourced + ":") + ROBOT_CONTROL_PROJECT "/scripts";
+}
+
+/// A message of several lines as one.
+std::string on_one_line(std::string text) {
+  text.erase(text.find_last_not_of(" \n") + 1);
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at)) text.replace(at, 1, "; ");
+  return text;
+}
+
+}  // namespace
+
+std::string expand_xacro(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) refuse(path, "xacro", "there is no such file", "Give the path of a file");
+  const std::string interpreter = python();
+  const ProgramResult result =
+      run_program({interpreter, "-P", "-m", "robot_control.expand_xacro", fs::absolute(path).string()},
+                  {python_path(), "PYTHONUTF8=1", "PYTHONDONTWRITEBYTECODE=1"}, kXacroSeconds);
+  switch (result.end) {
+    case ProgramResult::End::kNotStarted:
+      refuse(path, "xacro", interpreter + " cannot be started",
+             "Set ROBOT_CONTROL_XACRO_PYTHON to a Python that has xacro, " + std::string(kByHand));
+    case ProgramResult::End::kEnded:
+      refuse(path, "xacro", "it wrote nothing for " + std::to_string(kXacroSeconds) + " s, or without end",
+             "Look for a circle of includes or macros, " + std::string(kByHand));
+    case ProgramResult::End::kKilled:
+      refuse(path, "xacro", "it was killed by signal " + std::to_string(result.code),
+             "Start it again, " + std::string(kByHand));
+    case ProgramResult::End::kExited:
+      break;
+  }
+  if (result.code == kNotInstalled) {
+    refuse(path, "xacro", interpreter + " has no module xacro",
+           "Run scripts/setup or `pip install xacro`, " + std::string(kByHand));
+  }
+  if (result.code != 0) {
+    refuse(path, "xacro", on_one_line(result.errors), "Mend the file, or set ROS_PACKAGE_PATH so that $(find …) works");
+  }
+  return result.output;
+}
+
+}  // namespace robot_control
