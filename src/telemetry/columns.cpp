@@ -1,5 +1,6 @@
 #include "telemetry/columns.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -49,6 +50,11 @@ double yaw_of(const Quaternion& q) {
   return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
 }
 
+/// Between the vertical of the start pose and the base's.
+double tilt_of(const Quaternion& q) {
+  return 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
+}
+
 using D = DriverTrace;
 using E = EstimatorTrace;
 using C = ControllerTrace;
@@ -66,6 +72,7 @@ void add_truth(Columns& to) {
   to.push_back(column<D>("truth_x", "m", [](const D& d, J) { return d.truth.pose_world.position[0]; }));
   to.push_back(column<D>("truth_y", "m", [](const D& d, J) { return d.truth.pose_world.position[1]; }));
   to.push_back(column<D>("truth_yaw", "rad", [](const D& d, J) { return yaw_of(d.truth.pose_world.orientation); }));
+  to.push_back(column<D>("truth_tilt", "rad", [](const D& d, J) { return tilt_of(d.truth.pose_world.orientation); }));
   to.push_back(column<D>("truth_linear", "m/s", [](const D& d, J) { return d.truth.twist_base.linear[0]; }));
   to.push_back(column<D>("truth_angular", "rad/s", [](const D& d, J) { return d.truth.twist_base.angular[2]; }));
 }

@@ -55,6 +55,7 @@ TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
                                                "truth_x",
                                                "truth_y",
                                                "truth_yaw",
+                                               "truth_tilt",
                                                "truth_linear",
                                                "truth_angular",
                                                "estimate_x",
