@@ -11,7 +11,7 @@ std::string at_line(const std::string& source, const YAML::Mark& mark) {
   return mark.is_null() ? source : source + ":" + std::to_string(mark.line + 1);
 }
 
-Entry entry_of(const YAML::Node& node) {
+Entry plain_entry_of(const YAML::Node& node) {
   Entry entry;
   if (node.IsScalar()) {
     entry.text = node.Scalar();
@@ -20,6 +20,15 @@ Entry entry_of(const YAML::Node& node) {
     entry.kind = Entry::Kind::kList;
   } else if (node.IsMap()) {
     entry.kind = Entry::Kind::kMap;
+  }
+  return entry;
+}
+
+// One level: no parameter is a list of lists, and YAML's aliases can nest a list in itself.
+Entry entry_of(const YAML::Node& node) {
+  Entry entry = plain_entry_of(node);
+  if (node.IsSequence()) {
+    for (const YAML::Node& item : node) entry.items.push_back(plain_entry_of(item));
   }
   return entry;
 }

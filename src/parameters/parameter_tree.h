@@ -15,6 +15,7 @@ struct Entry {
   enum class Kind { kPlain, kQuoted, kNothing, kList, kMap };
   Kind kind = Kind::kNothing;
   std::string text;              ///< scalars only
+  std::vector<Entry> items;      ///< lists only; kind and text of each
   std::string origin;            ///< "robot_params.yaml:12", or the overlay's own
   std::filesystem::path folder;  ///< what a relative path in it is relative to
   bool overlay = false;

@@ -61,7 +61,7 @@ class TreeReader {
     for (const auto& [path, entry] : tree_.entries) {
       const bool told_with_its_block = !entry.overlay && !blocks.contains(path.substr(0, path.find('.')));
       if (paths.contains(path) || told_with_its_block) continue;
-      problems_.add({printable(path), printable(entry.text), "unknown key", entry.origin, suggest_key(path)});
+      problems_.add({printable(path), as_written(entry), "unknown key", entry.origin, suggest_key(path)});
     }
   }
 
@@ -81,7 +81,7 @@ class TreeReader {
     if (!sound_.contains(path)) return;
     const Entry& entry = tree_.entries.at(path);
     const auto refuse = [&](const std::string& rule, const std::string& remedy) {
-      problems_.add({path, printable(entry.text), rule, entry.origin, remedy});
+      problems_.add({path, as_written(entry), rule, entry.origin, remedy});
     };
     const LoopParameters& loop = parameters_.loop;
     const Field field = key.field(parameters_);
@@ -109,9 +109,10 @@ class TreeReader {
     ProblemList none;
     read_value(tree_.entries.at(path_of(block, key)), other, key, key.field(one), none);
     read_value(tree_.entries.at(other), other, key, key.field(two), none);
-    if (*std::get<std::optional<double>*>(key.field(one)) == *std::get<std::optional<double>*>(key.field(two))) return;
+    const auto equals_other = [&](auto* value) { return *value == *std::get<decltype(value)>(key.field(two)); };
+    if (std::visit(equals_other, key.field(one))) return;
     const Entry& entry = tree_.entries.at(other);
-    refuse("is another name of " + other + " = " + printable(entry.text) + " [" + entry.origin + "] and differs",
+    refuse("is another name of " + other + " = " + as_written(entry) + " [" + entry.origin + "] and differs",
            "give one of them");
   }
 

@@ -48,7 +48,7 @@ struct ReportParameters {
   double odom_rate = 50;           ///< Hz
   bool publish_tf = true;
   std::string odom_frame = "odom";
-  std::string base_frame = "base_link";
+  std::string base_frame;    ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
   double command_rate = 50;  ///< Hz, joint_commands, joint_targets and cmd_vel_out
   double imu_rate = 100;     ///< Hz
   double truth_rate = 50;    ///< Hz
@@ -73,14 +73,14 @@ struct Parameters {
 /// One value laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate".
 struct Overlay {
   std::string path;
-  std::string text;  ///< a scalar; an empty text is the empty string
+  std::string text;  ///< a scalar or a list in brackets; an empty text is the empty string
   std::string origin;
 };
 
 /// Throws ParameterError. The file consists of the blocks `robot`, `mujoco_plant`, `state_estimator`,
 /// `diff_drive_controller`, `safety_monitor`, `telemetry`; every key must be there, in the file or in an overlay,
-/// except `robot.wheel_base` (or its other name `wheel_separation`) and `robot.wheel_radius`, which the URDF
-/// knows. With an empty `yaml_path` the overlays are everything there is.
+/// except what the URDF knows (`robot.wheel_base`, …) or what is derived from it (`pid_kp`, …): the optional ones of
+/// describe_parameters. With an empty `yaml_path` the overlays are everything there is.
 ///
 /// Relative paths of input files (`urdf`, `scene`, `command_script`) count from the folder of the YAML file, in
 /// an overlay from the current folder; they come out absolute.

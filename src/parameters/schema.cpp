@@ -21,13 +21,29 @@ using P = Parameters;
 // seed and cycles: any value that a YAML integer, a Python int and a ROS parameter can all carry.
 constexpr double kAnyCount = 9007199254740992.0;  // 2^53
 
+using Robot = RobotParameters;
 constexpr auto kRobot = std::to_array<Key>({
     {"urdf", in<&P::urdf>, {}, 0, 0, kPath},
-    {"left_wheel_joint", in<&P::robot, &RobotParameters::left_wheel_joint>},
-    {"right_wheel_joint", in<&P::robot, &RobotParameters::right_wheel_joint>},
-    {"wheel_base", in<&P::robot, &RobotParameters::wheel_base>, "m", 0.01, 10, kOptional},
-    {"wheel_separation", in<&P::robot, &RobotParameters::wheel_base>, "m", 0.01, 10, kOptional, "wheel_base"},
-    {"wheel_radius", in<&P::robot, &RobotParameters::wheel_radius>, "m", 0.005, 2, kOptional},
+    {"left_wheel_joints", in<&P::robot, &Robot::left_wheel_joints>, {}, 0, 0, kOptional},
+    {"left_wheel_joint", in<&P::robot, &Robot::left_wheel_joints>, {}, 0, 0, kOptional, "left_wheel_joints"},
+    {"right_wheel_joints", in<&P::robot, &Robot::right_wheel_joints>, {}, 0, 0, kOptional},
+    {"right_wheel_joint", in<&P::robot, &Robot::right_wheel_joints>, {}, 0, 0, kOptional, "right_wheel_joints"},
+    {"wheel_base", in<&P::robot, &Robot::wheel_base>, "m", 0.01, 10, kOptional},
+    {"wheel_separation", in<&P::robot, &Robot::wheel_base>, "m", 0.01, 10, kOptional, "wheel_base"},
+    {"wheel_base_multiplier", in<&P::robot, &Robot::wheel_base_multiplier>, {}, 0.2, 20, kOptional},
+    {"wheel_separation_multiplier",
+     in<&P::robot, &Robot::wheel_base_multiplier>,
+     {},
+     0.2,
+     20,
+     kOptional,
+     "wheel_base_multiplier"},
+    {"wheel_radius", in<&P::robot, &Robot::wheel_radius>, "m", 0.005, 2, kOptional},
+    {"wheel_effort_limit", in<&P::robot, &Robot::wheel_effort_limit>, "N·m", 0.001, 10000, kOptional},
+    {"wheel_velocity_limit", in<&P::robot, &Robot::wheel_velocity_limit>, "rad/s", 0.01, 1000, kOptional},
+    {"mass", in<&P::robot, &Robot::mass>, "kg", 0.01, 100000, kOptional},
+    {"centre_of_gravity", in<&P::robot, &Robot::centre_of_gravity>, "m", -10, 10, kOptional},
+    {"imu_link", in<&P::robot, &Robot::imu_link>, {}, 0, 0, kMayBeEmpty},
     {"rate", in<&P::loop, &LoopParameters::rate>, "Hz", 100, 2000},
     {"clock", in<&P::loop, &LoopParameters::clock>},
     {"realtime", in<&P::loop, &LoopParameters::realtime>},
@@ -38,14 +54,45 @@ constexpr auto kRobot = std::to_array<Key>({
     {"wait_for_telemetry", in<&P::loop, &LoopParameters::wait_for_telemetry>},
 });
 
+using Plant = MujocoPlantParameters;
 constexpr auto kMujocoPlant = std::to_array<Key>({
-    {"scene", in<&P::plant, &MujocoPlantParameters::scene>, {}, 0, 0, kPath},
-    {"seed", in<&P::plant, &MujocoPlantParameters::seed>, {}, 0, kAnyCount},
-    {"cycles", in<&P::plant, &MujocoPlantParameters::cycles>, "cycles", 0, kAnyCount, kZeroIsOff},
-    {"brake_effort", in<&P::plant, &MujocoPlantParameters::brake_effort>, "N·m", 0.001, 10000},
-    {"brake_damping", in<&P::plant, &MujocoPlantParameters::brake_damping>, "N·m·s/rad", 0, 10000},
-    {"brake_stiffness", in<&P::plant, &MujocoPlantParameters::brake_stiffness>, "N·m/rad", 0, 1.0e6},
-    {"brake_hold_speed", in<&P::plant, &MujocoPlantParameters::brake_hold_speed>, "rad/s", 0, 10},
+    {"scene", in<&P::plant, &Plant::scene>, {}, 0, 0, kPath},
+    {"seed", in<&P::plant, &Plant::seed>, {}, 0, kAnyCount},
+    {"cycles", in<&P::plant, &Plant::cycles>, "cycles", 0, kAnyCount, kZeroIsOff},
+    {"tyre", in<&P::plant, &Plant::tyre>},
+    {"ground_friction", in<&P::plant, &Plant::ground_friction>, {}, 0, 10, kOptional},
+    {"slope", in<&P::plant, &Plant::slope>, "rad", -1, 1},
+    {"brake_effort", in<&P::plant, &Plant::brake_effort>, "N·m", 0.001, 10000, kOptional},
+    {"brake_damping", in<&P::plant, &Plant::brake_damping>, "N·m·s/rad", 0, 10000, kOptional},
+    {"brake_stiffness", in<&P::plant, &Plant::brake_stiffness>, "N·m/rad", 0, 1.0e6, kOptional},
+    {"brake_hold_speed", in<&P::plant, &Plant::brake_hold_speed>, "rad/s", 0, 10, kOptional},
+    {"left_radius_error", in<&P::plant, &Plant::left_radius_error>, {}, -0.5, 0.5},
+    {"right_radius_error", in<&P::plant, &Plant::right_radius_error>, {}, -0.5, 0.5},
+    {"wheel_base_error", in<&P::plant, &Plant::wheel_base_error>, {}, -0.5, 0.5},
+    {"payload", in<&P::plant, &Plant::payload>, "kg", 0, 10000},
+    {"payload_x", in<&P::plant, &Plant::payload_x>, "m", -10, 10},
+    {"payload_y", in<&P::plant, &Plant::payload_y>, "m", -10, 10},
+    {"payload_z", in<&P::plant, &Plant::payload_z>, "m", -10, 10},
+    {"gear_ratio", in<&P::plant, &Plant::gear_ratio>, {}, 0.001, 10000},
+    {"rotor_inertia", in<&P::plant, &Plant::rotor_inertia>, "kg·m²", 0, 100},
+    {"no_load_speed", in<&P::plant, &Plant::no_load_speed>, "rad/s", 0, 100000, kZeroIsOff},
+    {"motor_friction", in<&P::plant, &Plant::motor_friction>, "N·m", 0, 1000},
+    {"motor_damping", in<&P::plant, &Plant::motor_damping>, "N·m·s/rad", 0, 1000},
+    {"actuator_delay", in<&P::plant, &Plant::actuator_delay>, "cycles", 0, 100},
+    {"sensor_errors", in<&P::plant, &Plant::sensor_errors>},
+    {"encoder_resolution", in<&P::plant, &Plant::encoder_resolution>, "counts", 0, 1.0e9, kZeroIsOff},
+    {"gyro_noise", in<&P::plant, &Plant::gyro_noise>, "rad/s/√Hz", 0, 1},
+    {"gyro_bias", in<&P::plant, &Plant::gyro_bias>, "rad/s", 0, 10},
+    {"gyro_bias_walk", in<&P::plant, &Plant::gyro_bias_walk>, "rad/s/√s", 0, 1},
+    {"accelerometer_noise", in<&P::plant, &Plant::accelerometer_noise>, "m/s²/√Hz", 0, 10},
+    {"accelerometer_bias", in<&P::plant, &Plant::accelerometer_bias>, "m/s²", 0, 10},
+    {"accelerometer_bias_walk", in<&P::plant, &Plant::accelerometer_bias_walk>, "m/s²/√s", 0, 10},
+    {"sensor_delay", in<&P::plant, &Plant::sensor_delay>, "cycles", 0, 100},
+    {"push_x", in<&P::plant, &Plant::push_x>, "N", -100000, 100000},
+    {"push_y", in<&P::plant, &Plant::push_y>, "N", -100000, 100000},
+    {"push_z", in<&P::plant, &Plant::push_z>, "N", -100000, 100000},
+    {"push_start", in<&P::plant, &Plant::push_start>, "s", 0, 1.0e6},
+    {"push_duration", in<&P::plant, &Plant::push_duration>, "s", 0, 1.0e6, kZeroIsOff},
     {"imu_rate", in<&P::report, &ReportParameters::imu_rate>, "Hz", 0.1, 2000, kPublishRate},
     {"truth_rate", in<&P::report, &ReportParameters::truth_rate>, "Hz", 0.1, 2000, kPublishRate},
 });
@@ -64,7 +111,7 @@ constexpr auto kStateEstimator = std::to_array<Key>({
     {"odom_rate", in<&P::report, &ReportParameters::odom_rate>, "Hz", 0.1, 2000, kPublishRate},
     {"publish_tf", in<&P::report, &ReportParameters::publish_tf>},
     {"odom_frame", in<&P::report, &ReportParameters::odom_frame>},
-    {"base_frame", in<&P::report, &ReportParameters::base_frame>},
+    {"base_frame", in<&P::report, &ReportParameters::base_frame>, {}, 0, 0, kMayBeEmpty},
 });
 
 using Drive = DriveControllerParameters;
@@ -74,10 +121,10 @@ constexpr auto kDiffDriveController = std::to_array<Key>({
     {"max_linear_acceleration", in<&P::controller, &Drive::max_linear_acceleration>, "m/s²", 0.001, 100},
     {"max_angular_acceleration", in<&P::controller, &Drive::max_angular_acceleration>, "rad/s²", 0.001, 1000},
     {"cmd_vel_timeout", in<&P::controller, &Drive::cmd_vel_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
-    {"pid_kp", in<&P::controller, &Drive::pid_kp>, "N·m·s/rad", 0, 10000},
-    {"pid_ki", in<&P::controller, &Drive::pid_ki>, "N·m/rad", 0, 1.0e6},
+    {"pid_kp", in<&P::controller, &Drive::pid_kp>, "N·m·s/rad", 0, 10000, kOptional},
+    {"pid_ki", in<&P::controller, &Drive::pid_ki>, "N·m/rad", 0, 1.0e6, kOptional},
     {"pid_kd", in<&P::controller, &Drive::pid_kd>, "N·m·s²/rad", 0, 1000},
-    {"tracking_bandwidth", in<&P::controller, &Drive::tracking_bandwidth>, "Hz", 0.1, 500},
+    {"tracking_bandwidth", in<&P::controller, &Drive::tracking_bandwidth>, "Hz", 0.1, 500, kOptional},
     {"command_rate", in<&P::report, &ReportParameters::command_rate>, "Hz", 0.1, 2000, kPublishRate},
 });
 
@@ -111,6 +158,11 @@ constexpr auto kRealtimeWords = std::to_array<Word>({
     {"required", static_cast<int>(RealtimePolicy::kRequired)},
     {"preferred", static_cast<int>(RealtimePolicy::kPreferred)},
     {"off", static_cast<int>(RealtimePolicy::kOff)},
+});
+
+constexpr auto kTyreWords = std::to_array<Word>({
+    {"brush", static_cast<int>(TyreModel::kBrush)},
+    {"native", static_cast<int>(TyreModel::kNative)},
 });
 
 std::string range_of(const Key& key, std::string_view noun) {
@@ -148,25 +200,30 @@ std::string rule_of(const Key& key) {
     for (const Word& allowed : words_of(field)) rule += std::string(allowed.text) + ", ";
     return rule.substr(0, rule.size() - 2);
   };
-  return std::visit(Cases{
-                        [&](double* to) { return number(to); },
-                        [&](std::optional<double>* to) { return number(to); },
-                        [&](std::int64_t* to) { return whole(to); },
-                        [&](std::uint64_t* to) { return whole(to); },
-                        [&](bool*) { return std::string("true or false"); },
-                        [&](std::string*) {
-                          const std::string noun = (key.traits & kPath) != 0 ? "a path" : "a text";
-                          return (key.traits & kMayBeEmpty) != 0 ? noun + ", \"\" = none" : noun + ", not empty";
-                        },
-                        [&](ClockMode* to) { return word(to); },
-                        [&](RealtimePolicy* to) { return word(to); },
-                    },
-                    field);
+  return std::visit(
+      Cases{
+          [&](double* to) { return number(to); },
+          [&](std::optional<double>* to) { return number(to); },
+          [&](std::optional<Vector3>*) { return range_of(key, "a list of three numbers, each"); },
+          [&](std::int64_t* to) { return whole(to); },
+          [&](std::uint64_t* to) { return whole(to); },
+          [&](bool*) { return std::string("true or false"); },
+          [&](std::string*) {
+            const std::string noun = (key.traits & kPath) != 0 ? "a path" : "a text";
+            return (key.traits & kMayBeEmpty) != 0 ? noun + ", \"\" = none" : noun + ", not empty";
+          },
+          [&](std::vector<std::string>*) { return std::string("a name or a list of names, [] = found in the URDF"); },
+          [&](ClockMode* to) { return word(to); },
+          [&](RealtimePolicy* to) { return word(to); },
+          [&](TyreModel* to) { return word(to); },
+      },
+      field);
 }
 
 std::span<const Word> words_of(const Field& field) {
   if (std::holds_alternative<ClockMode*>(field)) return kClockWords;
   if (std::holds_alternative<RealtimePolicy*>(field)) return kRealtimeWords;
+  if (std::holds_alternative<TyreModel*>(field)) return kTyreWords;
   return {};
 }
 

@@ -7,14 +7,15 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "parameters/parameters.h"
 
 namespace robot_control {
 
 /// Where a value goes; the type of the pointer is the type of the parameter.
-using Field = std::variant<double*, std::optional<double>*, std::int64_t*, std::uint64_t*, bool*, std::string*,
-                           ClockMode*, RealtimePolicy*>;
+using Field = std::variant<double*, std::optional<double>*, std::optional<Vector3>*, std::int64_t*, std::uint64_t*,
+                           bool*, std::string*, std::vector<std::string>*, ClockMode*, RealtimePolicy*, TyreModel*>;
 
 /// What a key allows beyond its range; bits of Key::traits.
 enum KeyTrait : unsigned {
@@ -30,7 +31,7 @@ struct Key {
   std::string_view name;
   Field (*field)(Parameters&);
   std::string_view unit = {};
-  double min = 0;  ///< numbers only
+  double min = 0;  ///< numbers only; of a vector, each of its three
   double max = 0;
   unsigned traits = 0;
   std::string_view other_name_of = {};  ///< the key of this block whose value this one is, too

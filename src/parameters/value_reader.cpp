@@ -48,6 +48,33 @@ class Reader {
     return true;
   }
 
+  bool operator()(std::optional<Vector3>* to) {
+    constexpr std::size_t kComponents = 3;
+    if (entry_.kind != Entry::Kind::kList || entry_.items.size() != kComponents) {
+      return refuse("must be " + rule_of(key_));
+    }
+    Vector3 value{};
+    for (std::size_t i = 0; i < kComponents; ++i) {
+      if (!number(entry_.items[i], value[i])) return false;
+    }
+    *to = value;
+    return true;
+  }
+
+  bool operator()(std::vector<std::string>* to) {
+    // A single name stands for a list of one.
+    const std::vector<Entry> items = entry_.kind == Entry::Kind::kList ? entry_.items : std::vector{entry_};
+    std::vector<std::string> names;
+    for (const Entry& item : items) {
+      const bool text = item.kind == Entry::Kind::kPlain || item.kind == Entry::Kind::kQuoted;
+      const bool name = text && !item.text.empty() && item.text.find('\0') == std::string::npos;
+      if (!name) return refuse("must be " + rule_of(key_));
+      names.push_back(item.text);
+    }
+    *to = std::move(names);
+    return true;
+  }
+
   bool operator()(bool* to) {
     constexpr auto kYes = std::to_array<std::string_view>({"true", "yes", "on"});
     constexpr auto kNo = std::to_array<std::string_view>({"false", "no", "off"});
@@ -70,26 +97,27 @@ class Reader {
 
   bool operator()(ClockMode* to) { return word(*to); }
   bool operator()(RealtimePolicy* to) { return word(*to); }
+  bool operator()(TyreModel* to) { return word(*to); }
 
  private:
   bool plain() const { return entry_.kind == Entry::Kind::kPlain; }
 
   bool refuse(const std::string& rule) {
-    std::string value = printable(entry_.text);
-    if (entry_.kind == Entry::Kind::kQuoted) value = "\"" + value + "\"";
-    if (entry_.kind == Entry::Kind::kNothing) value = "(nothing)";
-    if (entry_.kind == Entry::Kind::kList) value = "(a list)";
-    if (entry_.kind == Entry::Kind::kMap) value = "(a block)";
-    problems_.add({path_, value, rule, entry_.origin, ""});
+    problems_.add({path_, as_written(entry_), rule, entry_.origin, ""});
     return false;
   }
 
   template <class Number>
   bool number(Number& to) {
-    if (!plain()) return refuse("must be " + rule_of(key_));
-    if (not_finite(entry_.text)) return refuse("must be finite, " + rule_of(key_));
+    return number(entry_, to);
+  }
+
+  template <class Number>
+  bool number(const Entry& entry, Number& to) {
+    if (entry.kind != Entry::Kind::kPlain) return refuse("must be " + rule_of(key_));
+    if (not_finite(entry.text)) return refuse("must be finite, " + rule_of(key_));
     Number value = 0;
-    if (parse(entry_.text, value) != std::errc()) return refuse("must be " + rule_of(key_));
+    if (parse(entry.text, value) != std::errc()) return refuse("must be " + rule_of(key_));
     const auto real = static_cast<double>(value);
     const bool off = (key_.traits & kZeroIsOff) != 0 && value == Number{0};
     if (!off && !(real >= key_.min && real <= key_.max)) return refuse("must be " + rule_of(key_));
@@ -117,6 +145,28 @@ class Reader {
 };
 
 }  // namespace
+
+std::string as_written(const Entry& entry) {
+  switch (entry.kind) {
+    case Entry::Kind::kPlain:
+      return printable(entry.text);
+    case Entry::Kind::kQuoted:
+      return std::string("\"").append(printable(entry.text)).append("\"");
+    case Entry::Kind::kNothing:
+      return "(nothing)";
+    case Entry::Kind::kMap:
+      return "(a block)";
+    case Entry::Kind::kList:
+      break;
+  }
+  constexpr std::size_t kShown = 8;
+  std::string text = "[";
+  for (std::size_t i = 0; i < entry.items.size() && i < kShown; ++i) {
+    const Entry& item = entry.items[i];
+    text.append(i == 0 ? "" : ", ").append(item.kind == Entry::Kind::kList ? "[…]" : as_written(item));
+  }
+  return text.append(entry.items.size() > kShown ? ", …]" : "]");
+}
 
 bool read_value(const Entry& entry, const std::string& path, const Key& key, const Field& field,
                 ProblemList& problems) {

@@ -11,4 +11,7 @@ namespace robot_control {
 /// Numbers are plain YAML numbers: a quoted "500" is a text.
 bool read_value(const Entry& entry, const std::string& path, const Key& key, const Field& field, ProblemList& problems);
 
+/// For messages: "500", "[a, b]", "(a block)".
+std::string as_written(const Entry& entry);
+
 }  // namespace robot_control

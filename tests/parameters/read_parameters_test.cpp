@@ -13,8 +13,11 @@
 namespace robot_control {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::Optional;
 
 /// Healthy: a copy of the shipped file. Each test breaks one thing.
 class ReadParameters : public ::testing::Test {
@@ -80,7 +83,7 @@ TEST_F(ReadParameters, ReportsEveryProblemAtOnce) {
   file.set("publish_tf", "  publish_tf: 3");
   file.set("max_linear_speed", "  max_linear_speed: .inf");
   file.set("max_angular_speed", "  max_angular_speed: -2");
-  file.set("pid_kp", "  pid_kp: [2.0]");
+  file.set("pid_kd", "  pid_kd: [2.0]");
   file.set("ramp_time", "  ramp_time: 2.0\n  rampe_time: 2.0");
   file.set("loss_cycles", "  loss_cycles: 20.5");
   file.append("mujoco_plnat:\n  seed: 0\n");
@@ -90,12 +93,12 @@ TEST_F(ReadParameters, ReportsEveryProblemAtOnce) {
   EXPECT_THAT(message, HasSubstr("robot.core: missing [" + file.path() + "]; add it: a whole number of -1 … 1023"));
   EXPECT_THAT(message, HasSubstr("robot.clock = sundial: must be one of wall, lockstep " + at("  clock:")));
   EXPECT_THAT(message, HasSubstr("mujoco_plant.seed = -1: must be a whole number of 0 …"));
-  EXPECT_THAT(message, HasSubstr("state_estimator.gyro_noise = .nan: must be finite, a number of"));
+  EXPECT_THAT(message, HasSubstr("mujoco_plant.gyro_noise = .nan: must be finite, a number of"));
   EXPECT_THAT(message, HasSubstr("state_estimator.odom_frame = (nothing): must be a text, not empty"));
   EXPECT_THAT(message, HasSubstr("state_estimator.publish_tf = 3: must be true or false"));
   EXPECT_THAT(message, HasSubstr("diff_drive_controller.max_linear_speed = .inf: must be finite"));
   EXPECT_THAT(message, HasSubstr("diff_drive_controller.max_angular_speed = -2: must be a number of 0.001 … 50 rad/s"));
-  EXPECT_THAT(message, HasSubstr("diff_drive_controller.pid_kp = (a list): must be a number"));
+  EXPECT_THAT(message, HasSubstr("diff_drive_controller.pid_kd = [2.0]: must be a number"));
   EXPECT_THAT(message, HasSubstr("safety_monitor.rampe_time = 2.0: unknown key " + at("  rampe_time:") +
                                  "; did you mean ramp_time?"));
   EXPECT_THAT(message, HasSubstr("safety_monitor.loss_cycles = 20.5: must be a whole number of 5 … 10000 cycles"));
@@ -107,12 +110,13 @@ TEST_F(ReadParameters, ReportsEveryProblemAtOnce) {
 }
 
 TEST_F(ReadParameters, RefusesTheAbsenceOfAnyKeyThatIsNotOptional) {
+  std::map<std::string, int> seen;  // blocks share some names
   for (const Block& block : schema()) {
     for (const Key& key : block.keys) {
       if ((key.traits & kOptional) != 0) continue;
       ParameterFile without;
-      const bool second = block.name == "safety_monitor" && key.name == "standstill_speed";
-      without.set(std::string(key.name), "", second ? 2 : 1);
+      const std::string name(key.name);
+      without.set(name, "", ++seen[name]);
       const std::string message = without.refusal();
       EXPECT_THAT(message, HasSubstr(path_of(block, key) + ": missing"));
       EXPECT_EQ(problems_in(message), 1u) << message;
@@ -126,15 +130,16 @@ TEST_F(ReadParameters, AnOverlayMayBringWhatTheFileLacks) {
 }
 
 TEST_F(ReadParameters, OverlaysAloneAreEnough) {
+  std::set<std::string> optional;
+  for (const ParameterDescription& description : describe_parameters()) {
+    if (description.optional) optional.insert(description.path);
+  }
   std::vector<Overlay> all;
   for (const std::string& path : parameter_paths()) {
-    if (path == "robot.wheel_base" || path == "robot.wheel_separation" || path == "robot.wheel_radius") continue;
-    all.push_back({path, "", "dict"});
+    if (!optional.contains(path)) all.push_back({path, "", "dict"});
   }
   // Values as a Python dict would bring them.
   const std::map<std::string, std::string> values{{"robot.urdf", "a.urdf"},
-                                                  {"robot.left_wheel_joint", "l"},
-                                                  {"robot.right_wheel_joint", "r"},
                                                   {"robot.rate", "200"},
                                                   {"robot.clock", "lockstep"},
                                                   {"robot.realtime", "false"},
@@ -142,18 +147,22 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
                                                   {"robot.wait_for_nodes", "True"},
                                                   {"robot.wait_for_telemetry", "False"},
                                                   {"mujoco_plant.scene", "b.xml"},
+                                                  {"mujoco_plant.tyre", "native"},
+                                                  {"mujoco_plant.gear_ratio", "1"},
+                                                  {"mujoco_plant.sensor_errors", "false"},
                                                   {"state_estimator.publish_tf", "no"},
                                                   {"state_estimator.odom_frame", "odom"},
                                                   {"state_estimator.base_frame", "base"}};
   for (Overlay& overlay : all) {
     const auto value = values.find(overlay.path);
-    const bool text =
-        overlay.path == "robot.bus" || overlay.path == "robot.command_script" || overlay.path == "telemetry.directory";
+    const bool text = overlay.path == "robot.bus" || overlay.path == "robot.command_script" ||
+                      overlay.path == "robot.imu_link" || overlay.path == "telemetry.directory";
     if (value != values.end()) {
       overlay.text = value->second;
     } else if (!text) {
-      const bool small = overlay.path.starts_with("state_estimator.");
-      overlay.text = small ? "1" : "10";  // within the range of all the others
+      const bool small = overlay.path.starts_with("state_estimator.") || overlay.path.ends_with("_rate");
+      const bool none = overlay.path.starts_with("mujoco_plant.") && !small;
+      overlay.text = none ? "0" : small ? "1" : "10";  // within the range of all the others
     }
   }
   const Parameters parameters = read_parameters("", all);
@@ -273,6 +282,66 @@ TEST_F(ReadParameters, LeavesTheWheelsToTheUrdf) {
   EXPECT_FALSE(parameters.robot.wheel_radius);
 }
 
+TEST_F(ReadParameters, ReadsWheelJointsAsAListOrAsOneName) {
+  file.set("rate", "  rate: 1000\n  left_wheel_joints: [front, \"rear\"]\n  right_wheel_joint: other");
+  const Parameters parameters = read_parameters(file.path());
+  EXPECT_THAT(parameters.robot.left_wheel_joints, ElementsAre("front", "rear"));
+  EXPECT_THAT(parameters.robot.right_wheel_joints, ElementsAre("other"));
+  EXPECT_THAT(read_parameters(file.path(), {{"robot.left_wheel_joints", "[]", "dict"}}).robot.left_wheel_joints,
+              IsEmpty());
+}
+
+TEST_F(ReadParameters, RefusesWhatIsNoListOfNames) {
+  for (const char* text : {"[a, \"\"]", "[[a]]", "{a: b}", "[a, ~]", ""}) {
+    EXPECT_THAT(file.refusal({{"robot.left_wheel_joints", text, "dict"}}),
+                HasSubstr("must be a name or a list of names, [] = found in the URDF"))
+        << text;
+  }
+}
+
+TEST_F(ReadParameters, RefusesTwoListsThatDiffer) {
+  file.set("rate", "  rate: 1000\n  left_wheel_joints: [a, b]\n  left_wheel_joint: a");
+  EXPECT_THAT(file.refusal(),
+              HasSubstr("robot.left_wheel_joint = a: is another name of robot.left_wheel_joints = [a, b]"));
+}
+
+TEST_F(ReadParameters, ReadsAVectorOfThreeNumbers) {
+  EXPECT_FALSE(read_parameters(file.path()).robot.centre_of_gravity);
+  file.set("rate", "  rate: 1000\n  centre_of_gravity: [0.1, -2e-2, 0]");
+  EXPECT_THAT(read_parameters(file.path()).robot.centre_of_gravity, Optional(Vector3{0.1, -0.02, 0}));
+}
+
+TEST_F(ReadParameters, RefusesWhatIsNoVectorOfThreeNumbers) {
+  EXPECT_THAT(file.refusal({{"robot.centre_of_gravity", "[1, [2], x]", "dict"}}),
+              HasSubstr("robot.centre_of_gravity = [1, […], x]: must be"));
+  for (const char* text :
+       {"[1, 2]", "[1, 2, 3, 4]", "1", "[1, 2, x]", "[1, 2, 10.5]", "[1, [2], 3]", "[1, 2, \"3\"]"}) {
+    EXPECT_THAT(file.refusal({{"robot.centre_of_gravity", text, "dict"}}),
+                HasSubstr("must be a list of three numbers, each of -10 … 10 m"))
+        << text;
+  }
+  EXPECT_THAT(file.refusal({{"robot.centre_of_gravity", "[1, .nan, 3]", "dict"}}), HasSubstr("must be finite"));
+}
+
+// A list that holds itself is good YAML.
+TEST_F(ReadParameters, RefusesAListWithinItself) {
+  EXPECT_THAT(file.refusal({{"robot.left_wheel_joints", "&a [*a]", "dict"}}), HasSubstr("must be"));
+}
+
+TEST_F(ReadParameters, ReadsTheWordsOfTheTyre) {
+  EXPECT_EQ(read_parameters(file.path()).plant.tyre, TyreModel::kBrush);
+  EXPECT_EQ(read_parameters(file.path(), {{"mujoco_plant.tyre", "native", "dict"}}).plant.tyre, TyreModel::kNative);
+  EXPECT_THAT(file.refusal({{"mujoco_plant.tyre", "square", "dict"}}), HasSubstr("must be one of brush, native"));
+}
+
+TEST_F(ReadParameters, LeavesGainsAndBrakesToTheRobot) {
+  const Parameters parameters = read_parameters(file.path());
+  EXPECT_FALSE(parameters.controller.pid_kp);
+  EXPECT_FALSE(parameters.controller.pid_ki);
+  EXPECT_FALSE(parameters.plant.brake_effort);
+  EXPECT_EQ(read_parameters(file.path(), {{"diff_drive_controller.pid_kp", "1.5", "dict"}}).controller.pid_kp, 1.5);
+}
+
 // Two periods of 1 ms.
 TEST_F(ReadParameters, RefusesATimeoutUnderTwoPeriods) {
   file.set("cmd_vel_timeout", "  cmd_vel_timeout: 0.0019");
@@ -351,7 +420,7 @@ TEST(Schema, EveryKeyHasAFieldOfItsOwn) {
   }
 }
 
-// These structs have no padding: if their members' sizes add up, none lacks a key.
+// Each member fills whole words of eight bytes: if they add up, none lacks a key.
 TEST(Schema, EveryMemberOfALawsParametersHasAKey) {
   Parameters parameters;
   const auto bytes_in = [&](const auto& group) {
@@ -362,7 +431,7 @@ TEST(Schema, EveryMemberOfALawsParametersHasAKey) {
         std::visit(
             [&](auto* value) {
               const auto* place = reinterpret_cast<const char*>(value);
-              if (place >= begin && place < begin + sizeof(group)) sizes[place] = sizeof(*value);
+              if (place >= begin && place < begin + sizeof(group)) sizes[place] = (sizeof(*value) + 7) / 8 * 8;
             },
             key.field(parameters));
       }
@@ -385,7 +454,8 @@ TEST(Schema, EveryNumberHasARange) {
       const Field field = key.field(parameters);
       const bool number = std::holds_alternative<double*>(field) || std::holds_alternative<std::int64_t*>(field) ||
                           std::holds_alternative<std::uint64_t*>(field) ||
-                          std::holds_alternative<std::optional<double>*>(field);
+                          std::holds_alternative<std::optional<double>*>(field) ||
+                          std::holds_alternative<std::optional<Vector3>*>(field);
       EXPECT_EQ(number, key.min < key.max) << path_of(block, key);
     }
   }
