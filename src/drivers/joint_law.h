@@ -5,14 +5,14 @@
 ///   kVelocity   τ = effort + damping · (velocity − q̇)
 ///   kImpedance  τ = effort + stiffness · (position − q) + damping · (velocity − q̇)
 ///
-/// clamped to the joint's effort limit. A joint without one is passive: τ = 0.
+/// clamped to the joint's effort limit.
 ///
-/// kBrake, bounded by B = min(brake_effort, effort limit):
+/// kBrake, bounded by B, the effort of a Brake (brake_limits.h):
 ///
 ///   slowing   τ = −d q̇
 ///   holding   τ = k (q* − q) − d q̇,   where the bound is reached, q* follows so that τ = ±B
 ///
-/// d = brake_damping, k = brake_stiffness. The brake holds from |q̇| ≤ brake_hold_speed on, or when a load has
+/// d its damping, k its stiffness. The brake holds from |q̇| ≤ its hold speed on, or when a load has
 /// kept the unsaturated speed from falling by a tenth within 50 steps (on a slope, damping alone would creep for
 /// ever). Holding begins with the torque that was applied last, q* = q + (τ₋ + d q̇)/k: the hand-over from a drive that
 /// held the robot on a slope, or from slowing, has no jolt and no sag. Once holding it stays so, as a dry brake
@@ -26,17 +26,18 @@
 ///   q̇' = q̇ − a q̇ − (b/h) q,  q' = q + h q̇'     a = d h / J,  b = k h² / J
 ///
 /// with characteristic polynomial z² − (2 − a − b) z + (1 − a), stable for 2a + b < 4. `check_brake` asks for
-/// 0 < a ≤ 0.5 and 0 < b ≤ 0.5, which leaves a factor of 2.7 to the limit. The defaults on a wheel of J = 0.005 kg·m²
-/// at h = 1 ms: a = 0.4, b = 0.06, damping ratio d / (2 √(k J)) = 0.8.
+/// 0 < a ≤ 0.5 and 0 < b ≤ 0.5, which leaves a factor of 2.7 to the limit. The defaults: a = 0.4, b = 0.06, damping
+/// ratio d / (2 √(k J)) = 0.8.
 
-#include "drivers/mujoco_plant_parameters.h"
+#include "drivers/brake_limits.h"
 #include "signals/joint.h"
 
 namespace robot_control {
 
 class JointLaw {
  public:
-  JointLaw(const MujocoPlantParameters& parameters, double effort_limit);
+  /// `effort_limit` in N·m or N, above 0.
+  JointLaw(const Brake& brake, double effort_limit);
 
   /// Forgets what was applied and held.
   void reset() noexcept;
@@ -50,7 +51,8 @@ class JointLaw {
   double brake(double position, double velocity) noexcept;
   bool speed_stays(double speed) noexcept;
 
-  double damping_, stiffness_, hold_speed_, brake_limit_, effort_limit_;
+  Brake brake_;
+  double effort_limit_;
   double applied_ = 0;    ///< τ of the last step
   double reference_ = 0;  ///< q*
   bool braking_ = false;
@@ -58,8 +60,5 @@ class JointLaw {
   int steps_since_mark_ = 0;
   double marked_speed_ = 0;
 };
-
-/// Throws DriverError naming joint, value and bound. `step` = h in seconds.
-void check_brake(const MujocoPlantParameters& parameters, const std::string& joint, double inertia, double step);
 
 }  // namespace robot_control

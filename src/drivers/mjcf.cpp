@@ -1,19 +1,17 @@
 #include "drivers/mjcf.h"
 
 #include <algorithm>
-#include <limits>
-#include <locale>
-#include <sstream>
 
-#include "hal/driver.h"
-#include "robot/wheel.h"
+#include "drivers/ground_points.h"
+#include "drivers/mjcf_shapes.h"
 
 namespace robot_control {
 namespace {
 
-const char* const kContact =
-    R"( contype="2" conaffinity="1" friction="0 0 0" solmix="1e6" solref=".004 1" solimp=".99 .999 .001 .5 2")"
-    R"( margin="0" gap="0" mass="0")";
+constexpr double kGravity = 9.81;    // m/s²
+constexpr double kUnknownReach = 1;  // m
+constexpr double kCasterInertiaPart = 0.02;
+constexpr double kSupports = 4;
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -35,140 +33,175 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-std::string pose(const Eigen::Isometry3d& frame) {
-  const Eigen::Vector3d p = frame.translation();
-  const Eigen::Quaterniond q(frame.linear());
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out.precision(17);
-  out << " pos=\"" << p.x() << ' ' << p.y() << ' ' << p.z() << "\" quat=\"" << q.w() << ' ' << q.x() << ' ' << q.y()
-      << ' ' << q.z() << '"';
-  return out.str();
+std::string attribute(const std::string& name, const std::string& value) {
+  return ' ' + name + "=\"" + value + '"';
+}
+
+std::string attribute(const std::string& name, double value) {
+  return attribute(name, mjcf_number(value));
+}
+
+Eigen::Vector3d eigen(const Vector3& v) {
+  return {v[0], v[1], v[2]};
 }
 
 class Writer {
  public:
-  Writer(const RigidBodies& robot, const RobotModel& model) : robot_(robot), model_(model) {
-    out_.imbue(std::locale::classic());
-    out_.precision(17);
-  }
+  Writer(const RobotModel& model, const MujocoPlantParameters& parameters)
+      : model_(model), robot_(*model.bodies), parameters_(parameters) {}
 
-  std::string write(const std::string& scene_file) {
-    out_ << "<mujoco model=\"" << escaped(robot_.name) << "\">\n<include file=\"" << escaped(scene_file)
-         << "\"/>\n<worldbody>\n";
-    write_body(0);
-    out_ << "</worldbody>\n<sensor>\n<gyro name=\"" << kMjcfGyro << "\" site=\"" << kMjcfImu
-         << "\" noise=\"0\" cutoff=\"0\"/>\n<accelerometer name=\"" << kMjcfAccelerometer << "\" site=\"" << kMjcfImu
-         << "\" noise=\"0\" cutoff=\"0\"/>\n</sensor>\n</mujoco>\n";
-    return out_.str();
+  std::string write(const MjcfPlace& place) {
+    std::string text = "<mujoco" + attribute("model", escaped(robot_.name)) + ">\n";
+    if (!place.scene_file.empty()) text += "<include" + attribute("file", escaped(place.scene_file)) + "/>\n";
+    Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+    base.translation() = Eigen::Vector3d(place.pose[0], place.pose[1], place.pose[2]);
+    base.linear() = Eigen::Quaterniond(place.pose[3], place.pose[4], place.pose[5], place.pose[6]).toRotationMatrix();
+    write_body(0, base);
+    text += "<asset>\n" + assets_ + "</asset>\n<worldbody>\n" + bodies_ + "</worldbody>\n";
+    text += "<equality>\n" + equalities_ + "</equality>\n<sensor>\n";
+    text += "<gyro" + attribute("name", kMjcfGyro) + attribute("site", kMjcfImu) + " noise=\"0\" cutoff=\"0\"/>\n";
+    text += "<accelerometer" + attribute("name", kMjcfAccelerometer) + attribute("site", kMjcfImu) +
+            " noise=\"0\" cutoff=\"0\"/>\n</sensor>\n</mujoco>\n";
+    return text;
   }
 
  private:
-  void write_body(std::size_t index) {
+  void write_body(std::size_t index, const Eigen::Isometry3d& in_parent) {
     const RigidBody& body = robot_.bodies[index];
-    const Eigen::Isometry3d in_parent =
-        index == 0 ? Eigen::Isometry3d::Identity() : robot_.bodies[body.parent].in_root.inverse() * body.in_root;
-    out_ << "<body name=\"" << escaped(body.name) << '"' << pose(in_parent) << ">\n";
-    write_joint(body.joint);
+    bodies_ += "<body" + attribute("name", escaped(body.name)) + mjcf_pose(in_parent) + ">\n";
+    if (index == 0) {
+      bodies_ += "<freejoint/>\n";
+    } else {
+      write_joint(body);
+    }
     write_inertia(body);
     if (index == 0) write_imu();
-    for (const Shape& shape : body.shapes) write_shape(body, shape);
+    write_shapes(body);
     for (std::size_t child = index + 1; child < robot_.bodies.size(); ++child) {
-      if (robot_.bodies[child].parent == index) write_body(child);
+      if (robot_.bodies[child].parent == index)
+        write_body(child, body.in_root.inverse() * robot_.bodies[child].in_root);
     }
-    out_ << "</body>\n";
+    bodies_ += "</body>\n";
   }
 
-  void write_joint(const BodyJoint& joint) {
-    if (joint.type == JointType::kRoot) {
-      out_ << "<freejoint/>\n";
-      return;
+  void write_joint(const RigidBody& body) {
+    const BodyJoint& joint = body.joint;
+    const WheelModel* rolling = rolling_body(model_, body);
+    const JointModel& model = *std::find_if(model_.joints.begin(), model_.joints.end(),
+                                            [&](const JointModel& other) { return other.name == joint.name; });
+    const bool wheel = model.role == JointRole::kWheel;
+    const bool slides = joint.type == JointType::kPrismatic;
+    const bool limited = !wheel && joint.type != JointType::kContinuous && joint.lower < joint.upper;
+    const double gear = parameters_.gear_ratio;
+    const double damping = joint.damping + (wheel ? gear * gear * parameters_.motor_damping : 0);
+    double friction = joint.friction + (wheel ? gear * parameters_.motor_friction : 0);
+    if (model.role == JointRole::kHeld) {
+      friction =
+          std::max(friction, joint.effort_limit > 0 ? joint.effort_limit : model_.mass * kGravity * kUnknownReach);
     }
-    const bool limited = joint.type != JointType::kContinuous && joint.lower < joint.upper;
-    // The range is in units that the scene chooses; compile_model writes the true one.
-    out_ << "<joint name=\"" << escaped(joint.name) << "\" type=\""
-         << (joint.type == JointType::kPrismatic ? "slide" : "hinge") << "\" pos=\"0 0 0\" axis=\"" << joint.axis.x()
-         << ' ' << joint.axis.y() << ' ' << joint.axis.z() << "\" limited=\"" << (limited ? "true" : "false")
-         << "\" range=\"-1 1\" ref=\"0\" springref=\"0\" stiffness=\"0\" armature=\"0\" margin=\"0\" damping=\""
-         << joint.damping << "\" frictionloss=\"" << joint.friction << "\"/>\n";
+    const double armature = wheel ? rolling->rotor_inertia : caster_inertia(body);
+    bodies_ +=
+        "<joint" + attribute("name", escaped(joint.name)) + attribute("type", slides ? "slide" : "hinge") +
+        " pos=\"0 0 0\"" + attribute("axis", mjcf_numbers(joint.axis)) +
+        attribute("limited", limited ? "true" : "false") +
+        attribute("range", slides && limited ? mjcf_number(joint.lower) + ' ' + mjcf_number(joint.upper) : "-1 1") +
+        attribute("springref", slides ? spring_reference(joint) : 0) + attribute("stiffness", joint.spring_stiffness) +
+        attribute("armature", armature) + attribute("damping", damping) + attribute("frictionloss", friction) +
+        " ref=\"0\" margin=\"0\" solreflimit=\".004 1\" solimplimit=\".9 .95 .001 .5 2\" solreffriction=\".004 1\""
+        " solimpfriction=\".9999 .9999 .001 .5 2\"/>\n";
+    if (joint.mimicked.empty()) return;
+    equalities_ +=
+        "<joint" + attribute("joint1", escaped(joint.name)) + attribute("joint2", escaped(joint.mimicked)) +
+        attribute("polycoef", mjcf_number(joint.mimic_offset) + ' ' + mjcf_number(joint.mimic_multiplier) + " 0 0 0") +
+        " active=\"true\" solref=\".004 1\" solimp=\".99 .999 .001 .5 2\"/>\n";
+  }
+
+  static double spring_reference(const BodyJoint& joint) {
+    return joint.spring_stiffness > 0 ? joint.spring_load / joint.spring_stiffness : 0;
+  }
+
+  // Of the wheel itself, or of the swivel that carries it.
+  double caster_inertia(const RigidBody& body) const {
+    double radius = 0;
+    for (const WheelModel& caster : model_.casters) {
+      const RigidBody& wheel = *robot_.moved_by(model_.joints[caster.joint].name);
+      const RigidBody& swivel = robot_.bodies[wheel.parent];
+      if (wheel.name == body.name || (swivel.name == body.name && swivel.joint.type != JointType::kPrismatic)) {
+        radius = std::max(radius, caster.radius);
+      }
+    }
+    return kCasterInertiaPart * model_.mass / kSupports * radius * radius;
   }
 
   void write_inertia(const RigidBody& body) {
-    const Eigen::Vector3d& c = body.centre_of_gravity;
     const Eigen::Matrix3d& i = body.inertia;
-    out_ << "<inertial pos=\"" << c.x() << ' ' << c.y() << ' ' << c.z() << "\" mass=\"" << body.mass
-         << "\" fullinertia=\"" << i(0, 0) << ' ' << i(1, 1) << ' ' << i(2, 2) << ' ' << i(0, 1) << ' ' << i(0, 2)
-         << ' ' << i(1, 2) << "\"/>\n";
+    bodies_ += "<inertial" + attribute("pos", mjcf_numbers(body.centre_of_gravity)) + attribute("mass", body.mass) +
+               attribute("fullinertia", mjcf_numbers(i.diagonal()) + ' ' + mjcf_numbers({i(0, 1), i(0, 2), i(1, 2)})) +
+               "/>\n";
   }
 
   void write_imu() {
-    const Vector3& p = model_.imu_in_base.position;
     const Quaternion& q = model_.imu_in_base.orientation;
-    out_ << "<site name=\"" << kMjcfImu << "\" type=\"sphere\" size=\"0.01\" pos=\"" << p[0] << ' ' << p[1] << ' '
-         << p[2] << "\" quat=\"" << q[3] << ' ' << q[0] << ' ' << q[1] << ' ' << q[2] << "\"/>\n";
+    Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+    frame.translation() = eigen(model_.imu_in_base.position);
+    frame.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
+    bodies_ += "<site" + attribute("name", kMjcfImu) + " type=\"sphere\" size=\"0.01\"" + mjcf_pose(frame) + "/>\n";
   }
 
-  void write_shape(const RigidBody& body, const Shape& shape) {
-    for (const WheelModel* wheel : {&model_.left, &model_.right}) {
-      if (model_.joints[wheel->joint].child_link == body.name && &shape == rolling_shape(body)) {
-        write_wheel(wheel == &model_.left ? 0 : 1, shape);
-        return;
+  void write_shapes(const RigidBody& body) {
+    if (const WheelModel* wheel = rolling_body(model_, body)) {
+      Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+      frame.translation() = body.in_root.inverse() * eigen(wheel->centre_base);
+      frame.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), body.joint.axis).toRotationMatrix();
+      bodies_ +=
+          mjcf_rolling_shape(mjcf_wheel_name(number_of(*wheel)), frame, wheel->radius, wheel->width, parameters_);
+      return;
+    }
+    for (const Shape& shape : body.shapes) {
+      std::string mesh;
+      if (shape.type == ShapeType::kMesh) {
+        mesh = "robot_control/mesh/" + std::to_string(meshes_++);
+        assets_ += mjcf_mesh(mesh, shape.points);
       }
-    }
-    const bool caster = shape.type == ShapeType::kSphere;
-    out_ << "<geom" << pose(shape.in_body) << kContact << " condim=\"" << (caster ? 1 : 3) << "\" priority=\""
-         << (caster ? 1 : 0) << '"';
-    switch (shape.type) {
-      case ShapeType::kSphere:
-        out_ << " type=\"sphere\" size=\"" << shape.radius << "\"/>\n";
-        break;
-      case ShapeType::kCylinder:
-        out_ << " type=\"cylinder\" size=\"" << shape.radius << ' ' << shape.length / 2 << "\"/>\n";
-        break;
-      case ShapeType::kBox:
-        out_ << " type=\"box\" size=\"" << shape.size.x() / 2 << ' ' << shape.size.y() / 2 << ' ' << shape.size.z() / 2
-             << "\"/>\n";
-        break;
-      case ShapeType::kMesh:
-        throw DriverError(robot_.source + ": <link name=\"" + shape.link +
-                          "\">: the simulator knows no collision meshes. Use boxes, cylinders and spheres.");
+      bodies_ += mjcf_sliding_shape(shape, mesh);
     }
   }
 
-  void write_wheel(std::size_t wheel, const Shape& shape) {
-    const double half_width = shape.type == ShapeType::kCylinder ? shape.length / 2 : shape.radius;
-    out_ << "<geom name=\"" << mjcf_wheel_name(wheel) << '"' << pose(shape.in_body) << kContact
-         << " condim=\"3\" priority=\"0\" type=\"ellipsoid\" size=\"" << shape.radius << ' ' << shape.radius << ' '
-         << half_width << "\"/>\n";
+  std::size_t number_of(const WheelModel& wheel) const {
+    if (model_.joints[wheel.joint].role == JointRole::kWheel) return wheel.joint;
+    return model_.wheels.size() + static_cast<std::size_t>(&wheel - model_.casters.data());
   }
 
-  const RigidBodies& robot_;
   const RobotModel& model_;
-  std::ostringstream out_;
+  const RigidBodies& robot_;
+  const MujocoPlantParameters& parameters_;
+  std::size_t meshes_ = 0;
+  std::string assets_, bodies_, equalities_;
 };
 
 }  // namespace
 
-std::string robot_mjcf(const RigidBodies& robot, const RobotModel& model, const std::string& scene_file) {
-  return Writer(robot, model).write(scene_file);
-}
-
-double standing_height(const RigidBodies& robot, const RobotModel& model) {
-  double lowest = std::numeric_limits<double>::max();
-  for (const RigidBody& body : robot.bodies) {
-    const bool wheel = body.name == model.joints[model.left.joint].child_link ||
-                       body.name == model.joints[model.right.joint].child_link;
-    const Shape* rolling = wheel ? rolling_shape(body) : nullptr;
-    for (const Shape& shape : body.shapes) {
-      if (&shape != rolling && shape.type != ShapeType::kSphere) continue;
-      lowest = std::min(lowest, (body.in_root * shape.in_body).translation().z() - shape.radius);
-    }
-  }
-  return -lowest;
-}
-
 std::string mjcf_wheel_name(std::size_t wheel) {
   return "robot_control/wheel/" + std::to_string(wheel);
+}
+
+std::string robot_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, const MjcfPlace& place) {
+  return Writer(robot, parameters).write(place);
+}
+
+void apply_angles(const RobotModel& robot, mjModel& model) {
+  for (std::size_t index = 1; index < robot.bodies->bodies.size(); ++index) {
+    const BodyJoint& joint = robot.bodies->bodies[index].joint;
+    const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
+    if (model.jnt_type[id] != mjJNT_HINGE) continue;
+    if (model.jnt_limited[id]) {
+      model.jnt_range[2 * id] = joint.lower;
+      model.jnt_range[2 * id + 1] = joint.upper;
+    }
+    if (joint.spring_stiffness > 0) {
+      model.qpos_spring[model.jnt_qposadr[id]] = joint.spring_load / joint.spring_stiffness;
+    }
+  }
 }
 
 }  // namespace robot_control

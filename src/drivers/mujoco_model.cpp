@@ -1,14 +1,20 @@
 #include "drivers/mujoco_model.h"
 
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <string>
+#include <fstream>
+#include <iterator>
 
+#include "drivers/ground_points.h"
 #include "drivers/mjcf.h"
 #include "drivers/mujoco_errors.h"
+#include "drivers/true_robot.h"
 #include "hal/driver.h"
-#include "robot/rigid_bodies.h"
 
 namespace robot_control {
 namespace {
@@ -37,7 +43,6 @@ class VirtualFiles {
 ModelPointer load(const std::string& path, const mjVFS* files, const std::string& blamed) {
   std::array<char, 1000> error{};
   ModelPointer model(mj_loadXML(path.c_str(), files, error.data(), static_cast<int>(error.size())));
-  mj_freeLastXML();
   if (!model) throw DriverError(blamed + ": MuJoCo does not compile it: " + error.data());
   return model;
 }
@@ -46,30 +51,52 @@ int find(const mjModel& model, mjtObj type, const std::string& name) {
   return mj_name2id(&model, type, name.c_str());
 }
 
-void check_start(const mjModel& scene, const std::string& path) {
-  if (find(scene, mjOBJ_SITE, kMjcfStart) >= 0) return;
-  throw DriverError(path +
-                    ": there is no site \"start\". Add <site name=\"start\" pos=\"…\"/> where the robot is set down.");
+MjcfPlace place_of(const mjModel& scene, const std::filesystem::path& path, double height) {
+  const int site = find(scene, mjOBJ_SITE, kMjcfStart);
+  if (site < 0) {
+    throw DriverError(
+        path.string() +
+        ": there is no site \"start\". Add <site name=\"start\" pos=\"…\"/> where the robot is set down.");
+  }
+  const MujocoData data(mj_makeData(&scene));
+  mj_kinematics(&scene, data.get());
+  const mjtNum* matrix = data->site_xmat + 9 * site;
+  MjcfPlace place;
+  place.scene_file = path.filename().string();
+  for (int axis = 0; axis < 3; ++axis) {
+    place.pose[static_cast<std::size_t>(axis)] = data->site_xpos[3 * site + axis] + height * matrix[3 * axis + 2];
+  }
+  mju_mat2Quat(place.pose.data() + 3, matrix);
+  return place;
 }
 
-void check_mass(const MujocoModel& robot, double mass, const std::string& path) {
+void check_mass(const MujocoModel& robot, const std::string& path) {
   const double simulated = robot.model->body_subtreemass[robot.base_body];
-  if (std::abs(simulated - mass) <= 1e-9 * mass) return;
+  if (std::abs(simulated - robot.robot.mass) <= 1e-9 * robot.robot.mass) return;
   throw DriverError(path + ": it makes the robot weigh " + std::to_string(simulated) + " kg instead of " +
-                    std::to_string(mass) +
+                    std::to_string(robot.robot.mass) +
                     " kg. Remove settotalmass, boundmass or inertiafromgeom from its <compiler>.");
 }
 
-void set_options(mjModel& model, double timestep) {
+// `start`: pose of the base at its start.
+void set_options(mjModel& model, double timestep, double slope, const std::array<double, 7>& start) {
   model.opt.timestep = timestep;
   model.opt.integrator = mjINT_EULER;
   model.opt.solver = mjSOL_NEWTON;
   model.opt.cone = mjCONE_ELLIPTIC;
   model.opt.impratio = 100;
+  if (slope == 0) return;
+  const mjtNum lateral[3] = {0, 1, 0};
+  mjtNum axis[3], turn[4];
+  mju_rotVecQuat(axis, lateral, start.data() + 3);
+  mju_axisAngle2Quat(turn, axis, slope);
+  const mjtNum level[3] = {model.opt.gravity[0], model.opt.gravity[1], model.opt.gravity[2]};
+  mju_rotVecQuat(model.opt.gravity, level, turn);
 }
 
-void find_addresses(const RigidBodies& bodies, const RobotModel& robot, MujocoModel& result) {
-  mjModel& model = *result.model;
+void find_addresses(MujocoModel& result) {
+  const mjModel& model = *result.model;
+  const RobotModel& robot = result.robot;
   result.base_body = find(model, mjOBJ_BODY, robot.base_link);
   const int base_joint = model.body_jntadr[result.base_body];
   result.base_position = model.jnt_qposadr[base_joint];
@@ -78,30 +105,18 @@ void find_addresses(const RigidBodies& bodies, const RobotModel& robot, MujocoMo
     const int id = find(model, mjOBJ_JOINT, joint.name);
     result.joint_position.push_back(model.jnt_qposadr[id]);
     result.joint_velocity.push_back(model.jnt_dofadr[id]);
-    const BodyJoint& described = bodies.moved_by(joint.name)->joint;
-    if (model.jnt_limited[id]) {
-      model.jnt_range[2 * id] = described.lower;
-      model.jnt_range[2 * id + 1] = described.upper;
-    }
   }
-  for (std::size_t wheel = 0; wheel < 2; ++wheel) {
-    result.wheel_shape[wheel] = find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel));
+  result.drive_wheels = robot.wheels.size();
+  for (std::size_t wheel = 0; wheel < robot.wheels.size() + robot.casters.size(); ++wheel) {
+    result.wheel_shape.push_back(find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel)));
   }
   result.gyro = model.sensor_adr[find(model, mjOBJ_SENSOR, kMjcfGyro)];
   result.accelerometer = model.sensor_adr[find(model, mjOBJ_SENSOR, kMjcfAccelerometer)];
 }
 
-std::array<double, 7> start_pose(const mjModel& model, double height) {
-  const MujocoData data(mj_makeData(&model));
-  mj_kinematics(&model, data.get());
-  const int site = find(model, mjOBJ_SITE, kMjcfStart);
-  const mjtNum* matrix = data->site_xmat + 9 * site;
-  std::array<double, 7> pose{};
-  for (int axis = 0; axis < 3; ++axis) {
-    pose[static_cast<std::size_t>(axis)] = data->site_xpos[3 * site + axis] + height * matrix[3 * axis + 2];
-  }
-  mju_mat2Quat(pose.data() + 3, matrix);
-  return pose;
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 }  // namespace
@@ -109,27 +124,44 @@ std::array<double, 7> start_pose(const mjModel& model, double height) {
 MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
-  check_start(*load(scene.string(), nullptr, scene.string()), scene.string());
+  MujocoModel result;
+  result.robot = true_robot(robot, parameters);
+  const MjcfPlace place =
+      place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
 
-  const RigidBodies bodies = read_rigid_bodies({robot.urdf, robot.source});
   const std::string name = scene.stem().string() + "+" + robot.base_link + ".xml";
   VirtualFiles files;
-  files.add(name, robot_mjcf(bodies, robot, scene.filename().string()));
-  MujocoModel result;
+  files.add(name, robot_mjcf(result.robot, parameters, place));
   // In the scene's directory, so that its own relative paths stay true.
   result.model = load((scene.parent_path() / name).string(), files.get(), robot.source + " in scene " + scene.string());
   result.substeps = static_cast<int>(std::ceil(period / kLongestStep - 1e-9));
-  set_options(*result.model, period / result.substeps);
-  find_addresses(bodies, robot, result);
-  check_mass(result, robot.mass, scene.string());
-  result.start = start_pose(*result.model, standing_height(bodies, robot));
+  set_options(*result.model, period / result.substeps, parameters.slope, place.pose);
+  apply_angles(result.robot, *result.model);
+  find_addresses(result);
+  check_mass(result, scene.string());
+  const mjtNum up[3] = {0, 0, 1};
+  mju_rotVecQuat(result.up.data(), up, place.pose.data() + 3);
   return result;
 }
 
 MujocoData set_down(const MujocoModel& robot) {
-  MujocoData data(mj_makeData(robot.model.get()));
-  std::copy(robot.start.begin(), robot.start.end(), data->qpos + robot.base_position);
-  return data;
+  return MujocoData(mj_makeData(robot.model.get()));
+}
+
+std::string exported_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
+  MujocoPlantParameters native = parameters;
+  native.tyre = TyreModel::kNative;
+  const MujocoModel compiled = compile_model(robot, native, period);
+  std::string path = (std::filesystem::temp_directory_path() / "robot_control_XXXXXX").string();
+  const int file = mkstemp(path.data());
+  if (file < 0) throw DriverError(path + ": cannot be created: " + std::strerror(errno));
+  close(file);
+  std::array<char, 1000> error{};
+  const bool saved = mj_saveLastXML(path.c_str(), compiled.model.get(), error.data(), error.size()) != 0;
+  const std::string text = read_file(path);
+  std::filesystem::remove(path);
+  if (!saved) throw DriverError(robot.source + ": MuJoCo does not write it: " + error.data());
+  return text;
 }
 
 }  // namespace robot_control

@@ -9,18 +9,21 @@
 namespace robot_control {
 namespace {
 
-constexpr double kRestSpeed = 1e-6;  // rad/s, m/s: 60 µm a minute
-constexpr int kRestSteps = 100;      // so long at rest, not just at a turning point
-constexpr int kSettleSteps = 20000;
+constexpr double kRestSpeed = 1e-5;       // m/s and rad/s, of the base: 0.3 mm in 30 s
+constexpr double kLastRestSpeed = 3e-5;   // 1 mm in 30 s
+constexpr double kJointRestSpeed = 1e-3;  // m/s and rad/s
+constexpr double kRestTime = 0.1;         // s, so long at rest, not just at a turning point
+constexpr double kSettleTime = 20;        // s
+constexpr double kFallen = 30 * M_PI / 180;
 
 }  // namespace
 
 MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
-    : model_(compile_model(robot, parameters, period)), scene_(parameters.scene) {
-  for (const WheelModel* wheel : {&robot.left, &robot.right}) {
-    check_brake(parameters, robot.joints[wheel->joint].name, wheel->inertia, model_.model->opt.timestep);
+    : model_(compile_model(robot, parameters, period)), wheels_(model_, parameters), parameters_(parameters) {
+  for (std::size_t wheel = 0; wheel < model_.robot.wheels.size(); ++wheel) {
+    laws_.emplace_back(brake_of(model_.robot, wheel, parameters, model_.model->opt.timestep),
+                       model_.robot.joints[wheel].effort_limit);
   }
-  for (const JointModel& joint : robot.joints) laws_.emplace_back(parameters, joint.effort_limit);
   brakes_.resize(robot.joints.size());
 }
 
@@ -30,6 +33,7 @@ void MujocoPlant::start() {
                       "). Start the process anew.");
   }
   data_ = set_down(model_);
+  wheels_.reset();
   for (JointLaw& law : laws_) law.reset();
   state_ = DriverState::kRunning;
   faults_ = 0;
@@ -38,35 +42,54 @@ void MujocoPlant::start() {
   joints_ = {};
   imu_ = {};
   truth_ = {};
+  settled_ = false;
   settle();
 }
 
 void MujocoPlant::settle() {
+  const std::string where = model_.robot.source + " in scene " + parameters_.scene + ": ";
+  const double step = model_.model->opt.timestep;
   mj_step1(model_.model.get(), data_.get());
+  wheels_.observe(*data_);
   std::copy_n(data_->qpos + model_.base_position, 7, origin_.begin());
-  int steps_at_rest = 0;
-  for (int step = 0; step < kSettleSteps && steps_at_rest < kRestSteps; step += model_.substeps) {
+  double rested = 0;
+  for (double time = 0; time < kSettleTime && rested < kRestTime; time += model_.substeps * step) {
     write(brakes_);
     if (state_ == DriverState::kFault) {
-      throw DriverError(scene_ + ": the simulation fails while the robot settles: " + fault_message());
+      throw DriverError(where + "the simulation fails while the robot settles: " + fault_message());
     }
-    steps_at_rest = at_rest() ? steps_at_rest + model_.substeps : 0;
+    if (fallen()) {
+      throw DriverError(where +
+                        "the robot falls over where it is set down. Look at its centre of gravity and at what "
+                        "it stands on, and at the ground around the site \"start\".");
+    }
+    rested = at_rest(kRestSpeed, kJointRestSpeed) ? rested + model_.substeps * step : 0;
   }
-  if (steps_at_rest < kRestSteps) {
-    throw DriverError(scene_ +
-                      ": with its brakes on the robot does not come to rest at the site \"start\". Put the site "
+  if (rested < kRestTime && !at_rest(kLastRestSpeed, kJointRestSpeed)) {
+    throw DriverError(where +
+                      "with its brakes on the robot does not come to rest at the site \"start\". Put the site "
                       "on a plane, z upwards from it, less steep than brakes and friction can hold.");
   }
   data_->time = 0;
   std::copy_n(data_->qpos + model_.base_position, 7, origin_.begin());
+  const double push[3] = {parameters_.push_x, parameters_.push_y, parameters_.push_z};
+  mju_rotVecQuat(push_.data(), push, origin_.data() + 3);
+  settled_ = true;
   collect();
 }
 
-bool MujocoPlant::at_rest() const noexcept {
-  const auto slow = [](double speed) { return std::abs(speed) < kRestSpeed; };
+bool MujocoPlant::at_rest(double base_speed, double joint_speed) const noexcept {
   const mjtNum* base = data_->qvel + model_.base_velocity;
-  return std::all_of(base, base + 6, slow) && std::all_of(model_.joint_velocity.begin(), model_.joint_velocity.end(),
-                                                          [&](int joint) { return slow(data_->qvel[joint]); });
+  return std::all_of(base, base + 6, [&](double speed) { return std::abs(speed) < base_speed; }) &&
+         std::all_of(model_.joint_velocity.begin(), model_.joint_velocity.end(),
+                     [&](int joint) { return std::abs(data_->qvel[joint]) < joint_speed; });
+}
+
+bool MujocoPlant::fallen() const noexcept {
+  const mjtNum upright[3] = {0, 0, 1};
+  mjtNum up[3];
+  mju_rotVecQuat(up, upright, data_->qpos + model_.base_position + 3);
+  return mju_dot3(up, model_.up.data()) < std::cos(kFallen);
 }
 
 void MujocoPlant::read(SensorFrame& sensors) noexcept {
@@ -74,7 +97,7 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.driver_state = state_;
   sensors.faults = faults_;
   sensors.valid = good ? kValidJoints | kValidGyro | kValidAccelerometer : 0;
-  sensors.joint_count = laws_.size();
+  sensors.joint_count = brakes_.size();
   sensors.joints = joints_;
   sensors.imu = imu_;
   sensors.contact_forces = {};
@@ -85,7 +108,7 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
 
 void MujocoPlant::write(std::span<const JointCommand> commands) noexcept {
   if (state_ != DriverState::kRunning) return;
-  if (stopped_ || commands.size() != laws_.size()) commands = brakes_;
+  if (stopped_ || commands.size() != brakes_.size()) commands = brakes_;
   effort_sum_ = {};
   normal_force_sum_ = {};
   acceleration_sum_ = {};
@@ -113,18 +136,21 @@ bool MujocoPlant::truth(TruthFrame& truth) noexcept {
 void MujocoPlant::substep(void* plant) {
   auto& self = *static_cast<MujocoPlant*>(plant);
   mj_step2(self.model_.model.get(), self.data_.get());
-  self.add_normal_forces();  // mj_step1 finds the contacts of the new state and leaves their forces behind
+  self.wheels_.weigh(*self.data_);  // mj_step1 finds the contacts of the new state and leaves their forces behind
   mj_step1(self.model_.model.get(), self.data_.get());
 }
 
 bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
-  for (std::size_t joint = 0; joint < laws_.size(); ++joint) {
-    const int dof = model_.joint_velocity[joint];
+  std::fill_n(data_->qfrc_applied, model_.model->nv, 0.0);
+  for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) {
+    const int dof = model_.joint_velocity[wheel];
     const double effort =
-        laws_[joint].step(commands[joint], data_->qpos[model_.joint_position[joint]], data_->qvel[dof]);
+        laws_[wheel].step(commands[wheel], data_->qpos[model_.joint_position[wheel]], data_->qvel[dof]);
     data_->qfrc_applied[dof] = effort;
-    effort_sum_[joint] += effort;
+    effort_sum_[wheel] += effort;
   }
+  wheels_.apply(*data_);
+  if (settled_ && parameters_.push_duration > 0) push();
   if (!run_guarded(&MujocoPlant::substep, this)) {
     fail(kFaultSimulationError, last_mujoco_message());
     return false;
@@ -134,27 +160,28 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     fail(kFaultSimulationDiverged, last_mujoco_message());
     return false;
   }
+  wheels_.observe(*data_);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     acceleration_sum_[axis] += data_->sensordata[static_cast<std::size_t>(model_.accelerometer) + axis];
   }
+  for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) normal_force_sum_[wheel] += wheels_.normal_force(wheel);
   return true;
 }
 
-void MujocoPlant::add_normal_forces() noexcept {
-  for (int i = 0; i < data_->ncon; ++i) {
-    const mjContact& contact = data_->contact[i];
-    for (std::size_t wheel = 0; wheel < 2; ++wheel) {
-      const int shape = model_.wheel_shape[wheel];
-      if (contact.geom1 != shape && contact.geom2 != shape) continue;
-      mjtNum force[6];
-      mj_contactForce(model_.model.get(), data_.get(), i, force);
-      normal_force_sum_[wheel] += force[0];
-    }
-  }
+// In a window that opens and closes in the middle of a step, as good as at its ends.
+void MujocoPlant::push() noexcept {
+  const double since = data_->time - parameters_.push_start + model_.model->opt.timestep / 2;
+  const bool acts = since >= 0 && since < parameters_.push_duration;
+  const int body = model_.base_body;
+  mjtNum* applied = data_->xfrc_applied + 6 * body;
+  mjtNum lever[3];
+  mju_sub3(lever, data_->xpos + 3 * body, data_->xipos + 3 * body);
+  mju_scl3(applied, push_.data(), acts ? 1 : 0);
+  mju_cross(applied + 3, lever, applied);
 }
 
 void MujocoPlant::collect() noexcept {
-  for (std::size_t joint = 0; joint < laws_.size(); ++joint) {
+  for (std::size_t joint = 0; joint < brakes_.size(); ++joint) {
     joints_[joint].position = data_->qpos[model_.joint_position[joint]];
     joints_[joint].velocity = data_->qvel[model_.joint_velocity[joint]];
     joints_[joint].effort = effort_sum_[joint] / model_.substeps;
@@ -184,33 +211,10 @@ void MujocoPlant::collect_truth() noexcept {
   std::copy_n(velocity + 3, 3, truth_.twist_base.angular.begin());
 
   truth_.joints = joints_;
-  for (std::size_t wheel = 0; wheel < 2; ++wheel) {
+  for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) {
     truth_.normal_force[wheel] = normal_force_sum_[wheel] / model_.substeps;
-    truth_.slip[wheel] = wheel_slip(model_.wheel_shape[wheel]);
+    truth_.slip[wheel] = wheels_.slip(wheel);
   }
-}
-
-double MujocoPlant::wheel_slip(int shape) const noexcept {
-  const auto velocity_at = [this](int geom, const mjtNum* point, mjtNum* result) {
-    mjtNum motion[6];
-    mj_objectVelocity(model_.model.get(), data_.get(), mjOBJ_GEOM, geom, motion, 0);
-    mjtNum lever[3];
-    mju_sub3(lever, point, data_->geom_xpos + 3 * geom);
-    mju_cross(result, motion, lever);
-    mju_addTo3(result, motion + 3);
-  };
-  double slip = 0;
-  for (int i = 0; i < data_->ncon; ++i) {
-    const mjContact& contact = data_->contact[i];
-    if (contact.geom1 != shape && contact.geom2 != shape) continue;
-    mjtNum first[3], second[3];
-    velocity_at(contact.geom1, contact.pos, first);
-    velocity_at(contact.geom2, contact.pos, second);
-    mju_subFrom3(first, second);
-    mju_addToScl3(first, contact.frame, -mju_dot3(first, contact.frame));
-    slip = std::max(slip, mju_norm3(first));
-  }
-  return slip;
 }
 
 bool MujocoPlant::finite() const noexcept {

@@ -3,22 +3,30 @@
 ///
 /// A period is n = ⌈period / 1 ms⌉ MuJoCo steps of period/n. `write` does for each of them
 ///
-///   joint law (q, q̇ → τ)  →  mj_step2 (accelerations, integration)  →  mj_step1 (kinematics of the new state)
+///   wheels: joint law (q, q̇ → τ), tyre friction  →  mj_step2 (accelerations, integration)
+///   →  mj_step1 (kinematics of the new state)
+///
+/// Joints that are no wheels take no commands (JointRole): passive ones move freely, held ones stand by friction.
 ///
 /// and collects what `read` and `truth` hand out, so that after `write` k everything describes t_k+1: positions,
 /// velocities and gyro at that instant; accelerometer, contact forces and efforts as means over [t_k, t_k+1), as
 /// SensorFrame promises.
 ///
-/// `start` sets the robot down on the site `start` of the scene and lets it settle with the brakes on; where it
-/// then rests is time zero and the origin of truth. Same model and commands, same bits, also after another `start`.
+/// `start` sets the robot down on the site `start` of the scene and lets it settle with the brakes on, at most for
+/// 20 s; where it then rests is time zero and the origin of truth. It rests when its base has moved slower than
+/// 10 µm/s and 10 µrad/s, its joints than 1 mrad/s (a swivel nobody loads takes long, and matters not), for 0.1 s;
+/// or at last when the base is slower than 30 µm/s and 30 µrad/s. A robot that tilts by more than 30° falls over, and
+/// is refused. Same model and commands, same bits, also after another `start`.
+///
+/// A push acts on the base's origin from push_start for push_duration after time zero.
 ///
 /// Faults: a warning of MuJoCo is kFaultSimulationDiverged, an error kFaultSimulationError, NaN or infinity in what
 /// would be handed out kFaultNotFinite. The simulation then stands; `read` and `truth` keep the last good values,
 /// with state kFault and nothing valid. `start` recovers from all but an error, which is for good.
 ///
-/// A known error of MuJoCo's contact: it drives the slip of a wheel to zero with the time constant T/2 of `solref`
-/// (T = 4 ms) but leaves out the turning of the contact's frame (J̇q̇). In a curve at v, ω the robot therefore moves
-/// sideways with v ω T/2, outwards: 0.2 mm/s at 0.5 m/s and 0.2 rad/s.
+/// With native friction there is a known error: MuJoCo drives the slip of a wheel to zero with the time constant T/2
+/// of `solref` (T = 4 ms) but leaves out the turning of the contact's frame (J̇q̇). In a curve at v, ω the robot
+/// therefore moves sideways with v ω T/2, outwards: 0.2 mm/s at 0.5 m/s and 0.2 rad/s.
 ///
 /// Sensors: encoders (exact), gyro and accelerometer at the IMU, exact. No battery, no contact sensors.
 
@@ -29,6 +37,7 @@
 #include "drivers/joint_law.h"
 #include "drivers/mujoco_model.h"
 #include "drivers/mujoco_plant_parameters.h"
+#include "drivers/wheel_contacts.h"
 #include "hal/driver.h"
 #include "robot/robot_model.h"
 
@@ -36,7 +45,7 @@ namespace robot_control {
 
 class MujocoPlant final : public Driver {
  public:
-  /// `period` in s. Throws DriverError: see compile_model and check_brake.
+  /// `period` in s. Throws DriverError: see compile_model and brake_of.
   MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
   void start() override;
@@ -57,20 +66,23 @@ class MujocoPlant final : public Driver {
   static void substep(void* plant);
   bool advance(std::span<const JointCommand> commands) noexcept;
   void settle();
-  bool at_rest() const noexcept;
-  void add_normal_forces() noexcept;
+  bool at_rest(double base_speed, double joint_speed) const noexcept;
+  bool fallen() const noexcept;
+  void push() noexcept;
   void collect() noexcept;
   void collect_truth() noexcept;
-  double wheel_slip(int shape) const noexcept;
   bool finite() const noexcept;
   void fail(std::uint64_t fault, const char* message) noexcept;
 
   MujocoModel model_;
   MujocoData data_;
-  std::string scene_;
-  std::vector<JointLaw> laws_;
+  WheelContacts wheels_;
+  MujocoPlantParameters parameters_;
+  std::vector<JointLaw> laws_;  ///< per drive wheel
   std::vector<JointCommand> brakes_;
   std::array<double, 7> origin_{};  ///< qpos of the base at time zero
+  std::array<double, 3> push_{};    ///< N, world axes
+  bool settled_ = false;
 
   DriverState state_ = DriverState::kStarting;
   std::uint64_t faults_ = 0;
@@ -79,7 +91,7 @@ class MujocoPlant final : public Driver {
 
   // sums over the steps of a period
   std::array<double, kMaxJoints> effort_sum_{};
-  std::array<double, 2> normal_force_sum_{};
+  std::array<double, kMaxWheels> normal_force_sum_{};
   std::array<double, 3> acceleration_sum_{};
 
   // of t_k, as handed out

@@ -1,0 +1,64 @@
+#include "drivers/brake_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/ground_points.h"
+#include "hal/driver.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kGravity = 9.81;  // m/s²
+constexpr double kPartOfLifting = 0.5;
+constexpr double kSlopeHeld = 10 * M_PI / 180;
+constexpr double kSettlingTilt = 3 * M_PI / 180;
+constexpr double kHoldSpeed = 0.03;  // m/s at the rim
+
+}  // namespace
+
+double lifting_deceleration(const RobotModel& robot) {
+  const double ground = -standing_height(robot);
+  const double centre = robot.centre_of_gravity_base[0];
+  const double height = robot.centre_of_gravity_base[2] - ground;
+  double front = 0, rear = 0;
+  for (const Eigen::Vector3d& point : ground_points(robot)) {
+    const double reach = point.x() - centre;
+    if (point.z() - ground > std::tan(kSettlingTilt) * std::abs(reach)) continue;
+    front = std::max(front, reach);
+    rear = std::max(rear, -reach);
+  }
+  return kGravity * std::min(front, rear) / std::max(height, 1e-6);
+}
+
+Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
+  const WheelModel& wheel = robot.wheels[index];
+  const JointModel& joint = robot.joints[wheel.joint];
+  double moved = robot.mass;
+  for (const WheelModel& other : robot.wheels) moved += other.inertia / (other.radius * other.radius);
+  const double force =
+      std::max(moved * kPartOfLifting * lifting_deceleration(robot), robot.mass * kGravity * std::sin(kSlopeHeld));
+  const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
+
+  Brake brake;
+  brake.effort = std::min(parameters.brake_effort.value_or(share), joint.effort_limit);
+  brake.damping = parameters.brake_damping.value_or(0.4 * wheel.inertia / step);
+  brake.stiffness = parameters.brake_stiffness.value_or(0.06 * wheel.inertia / (step * step));
+  brake.hold_speed = parameters.brake_hold_speed.value_or(kHoldSpeed / wheel.radius);
+  check_brake(brake, joint.name, wheel.inertia, step);
+  return brake;
+}
+
+void check_brake(const Brake& brake, const std::string& joint, double inertia, double step) {
+  const auto check = [&](const std::string& name, double value, double limit, const std::string& unit) {
+    if (value > 0 && value <= limit) return;
+    throw DriverError("mujoco_plant/" + name + " = " + std::to_string(value) + " " + unit + ": joint " + joint +
+                      " has an inertia of only " + std::to_string(inertia) + " kg·m², a time step of " +
+                      std::to_string(step * 1000) + " ms bears values above 0 up to " + std::to_string(limit) + " " +
+                      unit + ". Set such a value, or leave it out.");
+  };
+  check("brake_damping", brake.damping, 0.5 * inertia / step, "N·m·s/rad");
+  check("brake_stiffness", brake.stiffness, 0.5 * inertia / (step * step), "N·m/rad");
+}
+
+}  // namespace robot_control

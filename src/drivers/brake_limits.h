@@ -1,0 +1,42 @@
+#pragma once
+/// How hard a wheel brakes: what the user says, else what robot and time step bear.
+///
+///   effort      B = min(effort limit, max(a (m + Σ J/r²), m g sin 10°) r / n)      n drive wheels
+///   damping     d = 0.4 J/h
+///   stiffness   k = 0.06 J/h²
+///   hold speed  0.03 m/s / r
+///
+/// h time step, J the wheel's inertia about its axle, r its radius, m the robot's mass. a is half of the deceleration
+/// at which wheels lift: about a support at the horizontal distance d from the centre of gravity, which is at the
+/// height c, inertia m a c outweighs m g d from a = g d / c on. d is the distance to the foremost or rearmost
+/// support, whichever is less. Supports are the ground points (ground_points.h) that are on the ground, or come to
+/// it when the robot tilts by 3° about the centre of gravity's foot. The floor of 10° lets a top-heavy robot stand
+/// on slopes; more than the ground's friction carries is harmless, the wheel then slides.
+///
+/// d and k: see joint_law.h; a factor of four to its limits.
+
+#include <string>
+
+#include "drivers/mujoco_plant_parameters.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+struct Brake {
+  double effort = 0;      ///< N·m
+  double damping = 0;     ///< N·m·s/rad
+  double stiffness = 0;   ///< N·m/rad
+  double hold_speed = 0;  ///< rad/s
+};
+
+/// m/s², at which the first wheel lifts; g or more is as good as never.
+double lifting_deceleration(const RobotModel& robot);
+
+/// Of the true robot's `wheel`. Throws DriverError for given values that the wheel does not bear, naming value and
+/// bound. `step` = h in seconds.
+Brake brake_of(const RobotModel& robot, std::size_t wheel, const MujocoPlantParameters& parameters, double step);
+
+/// Throws DriverError unless 0 < d h / J ≤ 0.5 and 0 < k h² / J ≤ 0.5.
+void check_brake(const Brake& brake, const std::string& joint, double inertia, double step);
+
+}  // namespace robot_control
