@@ -23,8 +23,9 @@ namespace robot_control {
 
 class SafetyMonitor {
  public:
-  /// Throws std::invalid_argument: a period, speed or time out of range, loss_cycles 0.
-  SafetyMonitor(const SafetyParameters& parameters, double period);
+  /// `wheels`: how many joints, from the first on, move the robot. Throws std::invalid_argument: a period, speed or
+  /// time out of range, loss_cycles 0.
+  SafetyMonitor(const SafetyParameters& parameters, double period, std::size_t wheels);
 
   /// A new run: sightings and counts begin anew; latched causes stay. `operator_input` is the inbox now:
   /// resets and heartbeats in it are dropped, emergency stops that were not yet acted on are not.

@@ -7,7 +7,7 @@ namespace robot_control {
 
 void JointStandstill::step(const SensorFrame& sensors) noexcept {
   bool slow = (sensors.valid & kValidJoints) != 0;
-  const std::size_t count = std::min<std::size_t>(sensors.joint_count, kMaxJoints);
+  const std::size_t count = std::min<std::size_t>({sensors.joint_count, kMaxJoints, wheels_});
   for (std::size_t i = 0; i < count; ++i) {
     slow = slow && std::abs(sensors.joints[i].velocity) < standstill_speed_;  // false for NaN
   }

@@ -157,7 +157,7 @@ TEST_F(CausesTest, APausedDriverIsNotLost) {
 }
 
 TEST_F(CausesTest, ADriverThatWasNeverThereIsNotLost) {
-  SafetyMonitor monitor(parameters(), kPeriod);
+  SafetyMonitor monitor(parameters(), kPeriod, kWheels);
   monitor.driver_lost();
   monitor.step(input_, permit_);
   EXPECT_EQ(permit_.causes, 0u);
@@ -257,7 +257,7 @@ TEST_F(MonitorTest, AStandingRobotNeedsNoHeartbeat) {
 TEST_F(MonitorTest, HeartbeatTimeoutZeroAsksForNone) {
   SafetyParameters none = parameters();
   none.heartbeat_timeout = 0;
-  monitor_ = SafetyMonitor(none, kPeriod);
+  monitor_ = SafetyMonitor(none, kPeriod, kWheels);
   ask_for(0.5);
   steps(10 * kHeartbeat);
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
@@ -340,6 +340,13 @@ TEST_F(MonitorTest, ReadyPermitsAndBecomesDriveWithARequestOrAMotion) {
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
+TEST_F(CausesTest, ACasterThatTurnsIsNoMotion) {
+  ASSERT_EQ(permit_.state, SupervisorState::kReady);
+  sensors_.joints[kWheels].velocity = 10;
+  steps(JointStandstill::kStandingCycles);
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
 TEST_F(CausesTest, StepsWithoutAllocating) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   AllocationGuard guard;
@@ -359,7 +366,7 @@ TEST(SafetyMonitorConstruction, RefusesParametersOutOfRange) {
   const auto refused = [](auto change, double period) {
     SafetyParameters parameters;
     change(parameters);
-    EXPECT_THROW(SafetyMonitor(parameters, period), std::invalid_argument);
+    EXPECT_THROW(SafetyMonitor(parameters, period, 2), std::invalid_argument);
   };
   refused([](SafetyParameters&) {}, 0);
   refused([](SafetyParameters& p) { p.loss_cycles = 0; }, 1e-3);

@@ -11,6 +11,7 @@ namespace robot_control {
 class MonitorTest : public testing::Test {
  protected:
   static constexpr double kPeriod = 1e-3;
+  static constexpr std::size_t kWheels = 2;
   static constexpr std::uint64_t kLoss = 20;
   static constexpr std::uint64_t kHeartbeat = 50;
   static constexpr std::uint64_t kRamp = 100;
@@ -20,7 +21,7 @@ class MonitorTest : public testing::Test {
     sensors_.boot = 77;
     sensors_.driver_state = DriverState::kRunning;
     sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
-    sensors_.joint_count = command_.joint_count = 2;
+    sensors_.joint_count = command_.joint_count = kWheels + 1;  // and a caster
     input_.sensors = &sensors_;
     input_.command = &command_;
     input_.state_seen = true;
@@ -77,7 +78,7 @@ class MonitorTest : public testing::Test {
   SensorFrame sensors_;
   CommandFrame command_;
   MonitorInput input_;
-  SafetyMonitor monitor_{parameters(), kPeriod};
+  SafetyMonitor monitor_{parameters(), kPeriod, kWheels};
   Permit permit_;
   bool begun_ = false;
 };
