@@ -2,122 +2,54 @@
 
 #include <urdf_model/model.h>
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
 
+#include "robot/body_joint.h"
+#include "robot/gyration.h"
 #include "robot/kdl_tree.h"
+#include "robot/link_inertia.h"
+#include "robot/link_shapes.h"
+#include "robot/massless.h"
 #include "robot/urdf_document.h"
+#include "robot/wheel.h"
+#include "robot/wording.h"
 
 namespace robot_control {
 namespace {
 
-struct PointInertia {
-  double mass = 0;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-};
-
-std::string link_element(const std::string& name) {
-  return "<link name=\"" + name + "\">";
-}
-
-Eigen::Isometry3d eigen_pose(const urdf::Pose& pose) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  const auto& q = pose.rotation;
-  result.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
-  result.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
-  return result;
-}
-
-PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body, const std::string& source) {
-  PointInertia result;
-  if (!link.inertial) return result;
-  const urdf::Inertial& given = *link.inertial;
-  Eigen::Matrix3d tensor;
-  tensor << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz, given.izz;
-  if (!(given.mass >= 0)) {
-    refuse(source, link_element(link.name), "mass " + std::to_string(given.mass) + " kg", "A mass is not negative");
-  }
-  const Eigen::Vector3d principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvalues();
-  const double tolerance = 1e-9 * principal.cwiseAbs().maxCoeff();  // rounding of decimal numbers in the file
-  if (principal[0] < -tolerance || principal[0] + principal[1] < principal[2] - tolerance) {
-    refuse(source, link_element(link.name),
-           "<inertia>: principal moments " + std::to_string(principal[0]) + ", " + std::to_string(principal[1]) + ", " +
-               std::to_string(principal[2]) + " kg·m² belong to no body",
-           "They must not be negative, and the two smaller must sum to at least the largest");
-  }
-  const Eigen::Isometry3d frame = in_body * eigen_pose(given.origin);
-  result.mass = given.mass;
-  result.centre = frame.translation();
-  result.inertia = frame.linear() * tensor * frame.linear().transpose();
-  return result;
-}
-
-void add(RigidBody& body, const PointInertia& part) {
-  const double mass = body.mass + part.mass;
-  if (mass <= 0) return;
-  const auto shifted = [](const Eigen::Matrix3d& inertia, double m, const Eigen::Vector3d& d) -> Eigen::Matrix3d {
-    return inertia + m * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
-  };
-  const Eigen::Vector3d centre = (body.mass * body.centre_of_gravity + part.mass * part.centre) / mass;
-  body.inertia = shifted(body.inertia, body.mass, body.centre_of_gravity - centre) +
-                 shifted(part.inertia, part.mass, part.centre - centre);
-  body.centre_of_gravity = centre;
-  body.mass = mass;
-}
-
-Shape shape_of(const urdf::Collision& collision, const Eigen::Isometry3d& in_body, const std::string& link) {
-  Shape shape;
-  shape.in_body = in_body * eigen_pose(collision.origin);
-  shape.link = link;
-  switch (collision.geometry->type) {
-    case urdf::Geometry::SPHERE:
-      shape.type = ShapeType::kSphere;
-      shape.radius = static_cast<const urdf::Sphere&>(*collision.geometry).radius;
-      break;
-    case urdf::Geometry::CYLINDER: {
-      const auto& cylinder = static_cast<const urdf::Cylinder&>(*collision.geometry);
-      shape.type = ShapeType::kCylinder;
-      shape.radius = cylinder.radius;
-      shape.length = cylinder.length;
-      break;
-    }
-    case urdf::Geometry::BOX: {
-      const auto& dim = static_cast<const urdf::Box&>(*collision.geometry).dim;
-      shape.type = ShapeType::kBox;
-      shape.size = Eigen::Vector3d(dim.x, dim.y, dim.z);
-      break;
-    }
-    case urdf::Geometry::MESH:
-      shape.type = ShapeType::kMesh;
-      break;
-  }
-  return shape;
-}
-
-BodyJoint joint_of(const urdf::Joint& joint) {
-  BodyJoint result;
-  result.name = joint.name;
-  result.type = joint.type == urdf::Joint::CONTINUOUS ? JointType::kContinuous
-                : joint.type == urdf::Joint::REVOLUTE ? JointType::kRevolute
-                                                      : JointType::kPrismatic;
-  result.axis = Eigen::Vector3d(joint.axis.x, joint.axis.y, joint.axis.z).normalized();
-  if (joint.limits) {
-    result.effort_limit = joint.limits->effort;
-    result.velocity_limit = joint.limits->velocity;
-    result.lower = joint.limits->lower;
-    result.upper = joint.limits->upper;
-  }
-  if (joint.dynamics) {
-    result.damping = joint.dynamics->damping;
-    result.friction = joint.dynamics->friction;
-  }
-  return result;
-}
-
 class Lumper {
  public:
-  Lumper(const UrdfDocument& document, RigidBodies& result)
-      : document_(document), result_(result), frames_(links_at_zero(kdl_tree(document))) {}
+  Lumper(const UrdfDocument& document, const RobotDescription& description, const std::set<std::string>& welded)
+      : document_(document), description_(description), welded_(welded), frames_(links_at_zero(kdl_tree(document))) {
+    result_.name = document.model->getName();
+    result_.source = document.source;
+    result_.link_order = document.link_order;
+    result_.driven_joints.assign(document.driven.begin(), document.driven.end());
+    const auto& links = document.model->links_;
+    const auto has_collision = [](const auto& link) { return !link.second->collision_array.empty(); };
+    collides_ = std::any_of(links.begin(), links.end(), has_collision);
+    if (!collides_) note(RobotNote::Kind::kAssumed, "<robot>", "no <collision> anywhere: the <visual> shapes are used");
+  }
+
+  LumpedBodies lump() {
+    add_body(*document_.model->getRoot(), 0, {});
+    for (std::size_t body = 1; body < result_.bodies.size(); ++body) add_visual_wheel(body);
+    for (const std::string& name : document_.joint_order) {
+      const RigidBody* moved = result_.moved_by(name);
+      result_.joints[name] = moved != nullptr ? moved->joint.type : JointType::kFixed;
+      if (moved != nullptr) result_.moving_joints.push_back(name);
+    }
+    check_mimics();
+    return {std::move(result_), std::move(weighed_)};
+  }
+
+ private:
+  void note(RobotNote::Kind kind, const std::string& element, const std::string& text) {
+    result_.notes.push_back({kind, element, text});
+  }
 
   void add_body(const urdf::Link& link, std::size_t parent, const BodyJoint& joint) {
     RigidBody body;
@@ -126,35 +58,96 @@ class Lumper {
     body.joint = joint;
     body.in_root = frames_.at(link.name);
     result_.bodies.push_back(body);
+    weighed_.push_back(false);
     add_link(link, result_.bodies.size() - 1);
   }
 
- private:
   void add_link(const urdf::Link& link, std::size_t body) {
     const Eigen::Isometry3d in_body = result_.bodies[body].in_root.inverse() * frames_.at(link.name);
     result_.links[link.name] = {body, in_body};
-    add(result_.bodies[body], inertia_of(link, in_body, document_.source));
-    for (const auto& collision : link.collision_array) {
-      if (collision && collision->geometry) {
-        result_.bodies[body].shapes.push_back(shape_of(*collision, in_body, link.name));
-      }
-    }
+    add_mass(link, body, in_body);
+    add_shapes(link, collides_ ? ShapeSource::kCollision : ShapeSource::kVisual, body, in_body);
     for (const std::string& name : document_.joint_order) {
       const urdf::Joint& joint = *document_.model->getJoint(name);
       if (joint.parent_link_name != link.name) continue;
       const urdf::Link& child = *document_.model->getLink(joint.child_link_name);
-      if (joint.type == urdf::Joint::FIXED) {
+      if (joint.type == urdf::Joint::FIXED || welded_.contains(name)) {
         add_link(child, body);
       } else {
-        add_body(child, body, joint_of(joint));
+        BodyJoint moving = read_joint(joint, document_.source, result_.notes);
+        moving.driven = document_.driven.contains(name);
+        add_body(child, body, moving);
       }
     }
   }
 
+  void add_mass(const urdf::Link& link, std::size_t body, const Eigen::Isometry3d& in_body) {
+    RigidBody& target = result_.bodies[body];
+    weighed_[body] = weighed_[body] || link.inertial;
+    const PointInertia both = sum({target.mass, target.centre_of_gravity, target.inertia},
+                                  inertia_of(link, in_body, document_.source, result_.notes));
+    target.mass = both.mass;
+    target.centre_of_gravity = both.centre;
+    target.inertia = both.inertia;
+  }
+
+  void add_shapes(const urdf::Link& link, ShapeSource which, std::size_t body, const Eigen::Isometry3d& in_body) {
+    std::vector<Shape> shapes = shapes_of(link, which, in_body, description_, result_.notes);
+    note_gyration(link, shapes, result_.notes);
+    std::move(shapes.begin(), shapes.end(), std::back_inserter(result_.bodies[body].shapes));
+  }
+
+  void add_visual_wheel(std::size_t index) {
+    RigidBody& body = result_.bodies[index];
+    if (!body.shapes.empty() || !turns_upright(body)) return;
+    try {
+      for (const auto& [name, place] : result_.links) {
+        if (place.body == index) {
+          add_shapes(*document_.model->getLink(name), ShapeSource::kVisual, index, place.in_body);
+        }
+      }
+    } catch (const RobotError& error) {
+      note(RobotNote::Kind::kIgnored, link_element(body.name),
+           std::string("no <collision>, and its <visual> cannot serve: ") + error.what());
+      body.shapes.clear();
+    }
+    if (body.shapes.empty()) return;
+    if (measure_wheel(body).objection.empty()) {
+      note(RobotNote::Kind::kAssumed, link_element(body.name), "no <collision>: the wheel has its <visual> shape");
+    } else {
+      body.shapes.clear();
+    }
+  }
+
+  void check_mimics() {
+    for (RigidBody& body : result_.bodies) {
+      BodyJoint& joint = body.joint;
+      if (joint.mimicked.empty()) continue;
+      const RigidBody* leader = result_.moved_by(joint.mimicked);
+      if (leader != nullptr && leader->joint.mimicked.empty()) continue;
+      note(RobotNote::Kind::kIgnored, joint_element(joint.name),
+           "<mimic joint=\"" + joint.mimicked +
+               (leader == nullptr ? "\">: no joint of that name moves" : "\">: that joint is a follower itself"));
+      joint.mimicked.clear();
+    }
+  }
+
   const UrdfDocument& document_;
-  RigidBodies& result_;
+  const RobotDescription& description_;
+  const std::set<std::string>& welded_;
   std::map<std::string, Eigen::Isometry3d> frames_;
+  bool collides_ = true;
+  RigidBodies result_;
+  std::vector<bool> weighed_;
 };
+
+bool finite(const RigidBody& body) {
+  return std::isfinite(body.mass) && body.centre_of_gravity.allFinite() && body.inertia.allFinite() &&
+         body.in_root.matrix().allFinite() && std::all_of(body.shapes.begin(), body.shapes.end(), [](const Shape& s) {
+           return s.in_body.matrix().allFinite() &&
+                  std::all_of(s.points.begin(), s.points.end(), [](const auto& p) { return p.allFinite(); });
+         });
+}
 
 }  // namespace
 
@@ -165,25 +158,29 @@ const RigidBody* RigidBodies::moved_by(const std::string& joint) const {
   return nullptr;
 }
 
+double total_mass(const RigidBodies& robot) {
+  double mass = 0;
+  for (const RigidBody& body : robot.bodies) mass += body.mass;
+  return mass;
+}
+
 RigidBodies read_rigid_bodies(const RobotDescription& description) {
   const UrdfDocument document = parse_urdf(description);
-  RigidBodies result;
-  result.name = document.model->getName();
-  result.source = document.source;
-  Lumper(document, result).add_body(*document.model->getRoot(), 0, {});
-
-  for (const std::string& name : document.joint_order) {
-    const bool moves = result.moved_by(name) != nullptr;
-    result.joints[name] = moves ? result.moved_by(name)->joint.type : JointType::kFixed;
-    if (moves) result.moving_joints.push_back(name);
+  LumpedBodies lumped = Lumper(document, description, {}).lump();
+  const std::set<std::string> idle = idle_massless_joints(lumped);
+  if (!idle.empty()) lumped = Lumper(document, description, idle).lump();
+  for (const std::string& joint : idle) {
+    lumped.robot.notes.push_back({RobotNote::Kind::kAssumed, joint_element(joint),
+                                  "what it moves has no <inertial>, and nothing rolls on it: taken as fixed"});
   }
-  for (const RigidBody& body : result.bodies) {
-    if (body.mass <= 0) {
-      refuse(document.source, link_element(body.name), "it moves but has no mass, nor has anything fixed to it",
-             "Give it an <inertial> with <mass> and <inertia>");
+  lend_mass(lumped);
+  for (const RigidBody& body : lumped.robot.bodies) {
+    if (!finite(body)) {
+      refuse(document.source, link_element(body.name), "a number in it or on the way to it is not finite",
+             "Give numbers that a double can hold");
     }
   }
-  return result;
+  return std::move(lumped.robot);
 }
 
 }  // namespace robot_control

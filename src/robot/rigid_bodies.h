@@ -4,6 +4,13 @@
 ///   m = Σ mᵢ    c = Σ mᵢ cᵢ / m    I = Σ Rᵢ Iᵢ Rᵢᵀ + mᵢ (|dᵢ|² 1 − dᵢ dᵢᵀ),  dᵢ = cᵢ − c
 ///
 /// A body's frame is that of the link its joint moves (the root link's for body 0), at the zero pose.
+///
+/// A link without <inertial> has no mass. A moving body in which no link has any:
+///   it rolls, or something that rolls hangs on it: takes kMasslessShare of its parent body's mass, as a solid wheel
+///                                                  of its own shape or a ball of kBallRadius
+///   else                                           is welded to its parent; its joint counts as fixed
+/// Shapes are those of <collision>. Where the robot has none at all, and for a turning body without one that is round
+/// about its joint, those of <visual>. All of this is noted.
 
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -40,7 +47,7 @@ struct BodyJoint {
   double damping = 0;                               ///< N·m·s/rad or N·s/m
   double friction = 0;                              ///< N·m or N
   double spring_stiffness = 0;                    ///< N/m or N·m/rad; a suspension's, assumed: URDF has no word for it
-  double spring_load = 0;                         ///< N or N·m that the spring exerts at zero
+  double spring_load = 0;                         ///< N or N·m along q: force = load − stiffness · q
   std::string mimicked;                           ///< joint that this one follows; empty: none
   double mimic_multiplier = 1, mimic_offset = 0;  ///< q = multiplier · q_mimicked + offset
   bool driven = false;                            ///< transmission, ros2_control or drive plugin names it
@@ -70,13 +77,21 @@ struct RigidBodies {
   std::map<std::string, LinkPlace> links;
   std::vector<std::string> moving_joints;   ///< in the order of the file
   std::map<std::string, JointType> joints;  ///< all, fixed ones too
+  std::vector<std::string> link_order;      ///< in the order of the file
+  std::vector<std::string> driven_joints;   ///< of all kinds; BodyJoint::driven
+  std::vector<RobotNote> notes;             ///< what was assumed, repaired, ignored
 
   /// Null when no moving joint has this name.
   const RigidBody* moved_by(const std::string& joint) const;
 };
 
-/// Throws RobotError: what parse_urdf refuses, negative masses, inertias that no mass distribution has
-/// (I ≥ 0 and A + B ≥ C for the principal moments), moving bodies without mass.
+inline constexpr double kMasslessShare = 0.01;
+
+/// Throws RobotError: what parse_urdf, inertia_of, shapes_of and read_joint refuse; a moving body or a base whose mass
+/// is said to be zero.
 RigidBodies read_rigid_bodies(const RobotDescription& description);
+
+/// kg, all bodies
+double total_mass(const RigidBodies& robot);
 
 }  // namespace robot_control

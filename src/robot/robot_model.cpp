@@ -1,121 +1,174 @@
 #include "robot/robot_model.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
+#include "robot/drive_wheels.h"
+#include "robot/imu_place.h"
+#include "robot/joint_roles.h"
+#include "robot/model_hash.h"
+#include "robot/overrides.h"
 #include "robot/rigid_bodies.h"
+#include "robot/suspension.h"
 #include "robot/urdf_document.h"
-#include "robot/wheel.h"
+#include "robot/wheel_drive.h"
+#include "robot/wording.h"
+#include "robot/xacro.h"
 #include "signals/joint.h"
 
 namespace robot_control {
 namespace {
 
-// FNV-1a, 64 bit: http://www.isthe.com/chongo/tech/comp/fnv
-class Fnv1a {
- public:
-  void add(const std::string& text) {
-    for (const char c : text) add_byte(static_cast<unsigned char>(c));
-    add_byte(0);
-  }
-  void add(const std::optional<double>& value) {
-    add_byte(value.has_value());
-    const auto bits = std::bit_cast<std::uint64_t>(value.value_or(0.0));
-    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(bits >> shift));
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001B3ULL; }
-  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
-};
-
 Vector3 plain(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-double checked_override(const RigidBodies& robot, const std::string& name, double value) {
-  if (!std::isfinite(value) || value <= 0) {
-    refuse(robot.source, "robot/" + name, std::to_string(value) + " m", "Give a length above zero, or none");
+void read_geometry(const RigidBodies& robot, const RobotParameters& parameters, DriveTrain& train, RobotModel& model) {
+  for (RollingBody& wheel : train.wheels) {
+    wheel.wheel.radius =
+        overridden("wheel_radius", "m", parameters.wheel_radius, wheel.wheel.radius, robot, model.notes);
   }
-  return value;
+  model.wheel_base =
+      overridden("wheel_base", "m", parameters.wheel_base, wheel_base_of(train.wheels), robot, model.notes);
+  const double scrub = scrub_multiplier(train.wheels);
+  model.wheel_base_multiplier =
+      overridden("wheel_base_multiplier", "", parameters.wheel_base_multiplier, scrub, robot, model.notes);
+  if (train.wheels.size() > 2 && !parameters.wheel_base_multiplier) {
+    model.notes.push_back({RobotNote::Kind::kAssumed, "robot/wheel_base_multiplier",
+                           number(scrub) + ", from where the axles stand; measure it, and set it"});
+  }
 }
 
-void read_joints(const RigidBodies& robot, const RobotParameters& parameters, RobotModel& model) {
-  std::vector<std::string> order{parameters.left_wheel_joint, parameters.right_wheel_joint};
-  for (const std::string& name : robot.moving_joints) {
-    if (std::find(order.begin(), order.end(), name) == order.end()) order.push_back(name);
-  }
-  if (order.size() > kMaxJoints) {
-    refuse(robot.source, "<robot>", std::to_string(order.size()) + " moving joints",
+void add_joint(const RigidBody& body, JointRole role, RobotModel& model) {
+  const double effort = role == JointRole::kPassive ? 0 : body.joint.effort_limit;
+  model.joints.push_back({body.joint.name, body.name, effort, body.joint.velocity_limit, role});
+}
+
+void read_joints(const RigidBodies& robot, const RobotParameters& parameters, DriveTrain& train, RobotModel& model) {
+  if (robot.moving_joints.size() > kMaxJoints) {
+    refuse(robot.source, "<robot>", std::to_string(robot.moving_joints.size()) + " moving joints",
            "At most " + std::to_string(kMaxJoints) + " are supported; make those that never move type=\"fixed\"");
   }
-  for (const std::string& name : order) {
-    const RigidBody& body = *robot.moved_by(name);
-    model.joints.push_back({name, body.name, body.joint.effort_limit, body.joint.velocity_limit});
+  const std::vector<JointRole> roles = joint_roles(robot, train);
+  for (RollingBody& wheel : train.wheels) {
+    wheel.wheel.joint = model.joints.size();
+    add_joint(robot.bodies[wheel.body], JointRole::kWheel, model);
+    const DriveLimits limits = drive_limits(robot, train, wheel, parameters, model.notes);
+    model.joints.back().effort_limit = limits.effort;
+    model.joints.back().velocity_limit = limits.velocity;
+    model.wheels.push_back(wheel.wheel);
+  }
+  for (const std::string& name : robot.moving_joints) {
+    const auto body = static_cast<std::size_t>(robot.moved_by(name) - robot.bodies.data());
+    if (roles[body] == JointRole::kWheel) continue;
+    for (RollingBody& caster : train.casters) {
+      if (caster.body != body) continue;
+      caster.wheel.joint = model.joints.size();
+      model.casters.push_back(caster.wheel);
+    }
+    add_joint(robot.bodies[body], roles[body], model);
   }
 }
 
-void read_drive(const RigidBodies& robot, const RobotParameters& parameters, RobotModel& model) {
-  if (parameters.left_wheel_joint == parameters.right_wheel_joint) {
-    refuse(robot.source, "robot/left_wheel_joint", "\"" + parameters.left_wheel_joint + "\" is the right wheel as well",
-           "Name two joints");
-  }
-  model.left = measure_wheel(robot, parameters.left_wheel_joint);
-  model.right = measure_wheel(robot, parameters.right_wheel_joint);
-  model.left.joint = 0;
-  model.right.joint = 1;
-  const double base = model.left.centre_base[1] - model.right.centre_base[1];
-  if (base <= 0) {
-    refuse(robot.source, "robot/left_wheel_joint",
-           "wheel \"" + parameters.left_wheel_joint + "\" is not left of \"" + parameters.right_wheel_joint + "\"",
-           "Exchange the two names, or turn the robot: x is forward, y left");
-  }
-  if (std::abs(model.left.centre_base[0] - model.right.centre_base[0]) > kAxleTolerance * base) {
-    refuse(robot.source, "<joint name=\"" + parameters.left_wheel_joint + "\">", "the wheels do not stand on one axle",
-           "Give both wheel centres the same x");
-  }
-  model.wheel_base = base;
-  if (parameters.wheel_base) model.wheel_base = checked_override(robot, "wheel_base", *parameters.wheel_base);
-  if (parameters.wheel_radius) {
-    model.left.radius = model.right.radius = checked_override(robot, "wheel_radius", *parameters.wheel_radius);
-  }
-}
+struct MassSum {
+  double mass = 0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double yaw_inertia = 0;  ///< about the vertical through the centre
+};
 
-void read_masses(const RigidBodies& robot, RobotModel& model) {
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  const double axle_x = (model.left.centre_base[0] + model.right.centre_base[0]) / 2;
-  const double axle_y = (model.left.centre_base[1] + model.right.centre_base[1]) / 2;
+MassSum sum_of_masses(const RigidBodies& robot) {
+  MassSum sum;
   for (const RigidBody& body : robot.bodies) {
-    const Eigen::Vector3d centre = body.in_root * body.centre_of_gravity;
-    const Eigen::Vector3d up = body.in_root.linear().transpose() * Eigen::Vector3d::UnitZ();
-    model.mass += body.mass;
-    moment += body.mass * centre;
-    model.yaw_inertia +=
-        up.dot(body.inertia * up) + body.mass * (std::pow(centre.x() - axle_x, 2) + std::pow(centre.y() - axle_y, 2));
+    sum.mass += body.mass;
+    sum.centre += body.mass * (body.in_root * body.centre_of_gravity);
   }
-  model.centre_of_gravity_base = plain(moment / model.mass);
+  sum.centre /= sum.mass;
+  for (const RigidBody& body : robot.bodies) {
+    const Eigen::Vector3d up = body.in_root.linear().transpose() * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d lever = body.in_root * body.centre_of_gravity - sum.centre;
+    sum.yaw_inertia += up.dot(body.inertia * up) + body.mass * lever.head<2>().squaredNorm();
+  }
+  return sum;
 }
 
-void read_imu(const RigidBodies& robot, RobotModel& model) {
-  const auto imu = robot.links.find("imu_link");
-  if (imu == robot.links.end()) return;
-  if (imu->second.body != 0) {
-    refuse(robot.source, "<link name=\"imu_link\">", "it moves against " + robot.bodies[0].name,
-           "Fix the IMU to the chassis");
+Eigen::Vector3d believed_centre(const RigidBodies& robot, const RobotParameters& parameters,
+                                const Eigen::Vector3d& from_urdf, RobotModel& model) {
+  if (!parameters.centre_of_gravity) return from_urdf;
+  const Vector3& given = *parameters.centre_of_gravity;
+  const Eigen::Vector3d centre(given[0], given[1], given[2]);
+  const auto words = [](const Eigen::Vector3d& v) { return list({number(v.x()), number(v.y()), number(v.z())}); };
+  if (!centre.allFinite()) {
+    refuse(robot.source, "robot/centre_of_gravity", words(centre) + " m", "Give three finite numbers, or none");
   }
-  model.imu_link = imu->first;
-  const Eigen::Quaterniond rotation(imu->second.in_body.linear());
-  model.imu_in_base.position = plain(imu->second.in_body.translation());
+  if ((centre - from_urdf).norm() > kWorthNoting * model.wheel_base) {
+    model.notes.push_back({RobotNote::Kind::kOverridden, "robot/centre_of_gravity",
+                           words(centre) + " m holds, the URDF says " + words(from_urdf) + " m"});
+  }
+  return centre;
+}
+
+void read_masses(const RigidBodies& robot, const RobotParameters& parameters, RobotModel& model) {
+  const MassSum sum = sum_of_masses(robot);
+  model.mass = overridden("mass", "kg", parameters.mass, sum.mass, robot, model.notes);
+  const Eigen::Vector3d centre = believed_centre(robot, parameters, sum.centre, model);
+  model.centre_of_gravity_base = plain(centre);
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const WheelModel& wheel : model.wheels) {
+    middle += Eigen::Vector2d(wheel.centre_base[0], wheel.centre_base[1]) / static_cast<double>(model.wheels.size());
+  }
+  model.yaw_inertia = model.mass / sum.mass * sum.yaw_inertia + model.mass * (centre.head<2>() - middle).squaredNorm();
+}
+
+void read_imu(const RigidBodies& robot, const RobotParameters& parameters, RobotModel& model) {
+  model.imu_link = imu_link_of(robot, parameters.imu_link, model.notes);
+  if (model.imu_link.empty()) return;
+  const Eigen::Isometry3d& place = robot.links.at(model.imu_link).in_body;
+  const Eigen::Quaterniond rotation(place.linear());
+  model.imu_in_base.position = plain(place.translation());
   model.imu_in_base.orientation = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
+}
+
+void check_finite(const RobotModel& model) {
+  const auto all_finite = [](const WheelModel& w) {
+    return std::isfinite(w.radius) && std::isfinite(w.width) && std::isfinite(w.inertia) && w.inertia > 0;
+  };
+  const bool finite = std::isfinite(model.wheel_base) && std::isfinite(model.wheel_base_multiplier) &&
+                      std::isfinite(model.mass) && std::isfinite(model.yaw_inertia) &&
+                      std::all_of(model.wheels.begin(), model.wheels.end(), all_finite) &&
+                      std::all_of(model.casters.begin(), model.casters.end(), all_finite);
+  if (!finite) {
+    refuse(model.source, "<robot>", "masses, lengths or inertias that are beyond all numbers",
+           "Give numbers of a robot that fits on this earth, in kg and m");
+  }
+}
+
+/// Four wheels that lack the same are one note.
+std::vector<RobotNote> merged(const std::vector<RobotNote>& notes) {
+  std::vector<RobotNote> result;
+  for (const RobotNote& note : notes) {
+    const auto same = std::find_if(result.begin(), result.end(), [&](const RobotNote& other) {
+      return other.kind == note.kind && other.text == note.text;
+    });
+    if (same == result.end()) {
+      result.push_back(note);
+    } else if (same->element.find(note.element) == std::string::npos) {
+      same->element += ", " + note.element;
+    }
+  }
+  return result;
+}
+
+bool ends_with_xacro(const std::string& path) {
+  const std::string ending = ".xacro";
+  return path.size() >= ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 }  // namespace
 
 RobotDescription load_description(const std::string& path) {
+  if (ends_with_xacro(path)) return {expand_xacro(path), path};
   std::ifstream file(path);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf())) {
@@ -125,24 +178,25 @@ RobotDescription load_description(const std::string& path) {
 }
 
 RobotModel read_robot(const RobotDescription& description, const RobotParameters& parameters) {
-  const RigidBodies robot = read_rigid_bodies(description);
+  const auto bodies = std::make_shared<RigidBodies>(read_rigid_bodies(description));
   RobotModel model;
-  model.name = robot.name;
+  model.name = bodies->name;
   model.source = description.source;
   model.urdf = description.text;
-  model.base_link = robot.bodies[0].name;
-  read_drive(robot, parameters, model);
-  read_joints(robot, parameters, model);
-  read_masses(robot, model);
-  read_imu(robot, model);
+  model.hash = model_hash(description.text, parameters);
+  model.base_link = bodies->bodies[0].name;
+  model.notes = bodies->notes;
 
-  Fnv1a hash;
-  hash.add(description.text);
-  hash.add(parameters.left_wheel_joint);
-  hash.add(parameters.right_wheel_joint);
-  hash.add(parameters.wheel_base);
-  hash.add(parameters.wheel_radius);
-  model.hash = hash.value();
+  DriveTrain train = find_drive_train(*bodies, parameters, model.notes);
+  assume_rotors(*bodies, train, model.notes);
+  assume_springs(*bodies, train, model.notes);
+  read_geometry(*bodies, parameters, train, model);
+  read_joints(*bodies, parameters, train, model);
+  read_masses(*bodies, parameters, model);
+  read_imu(*bodies, parameters, model);
+  model.notes = merged(model.notes);
+  model.bodies = bodies;
+  check_finite(model);
   return model;
 }
 

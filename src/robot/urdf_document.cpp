@@ -6,6 +6,9 @@
 
 #include <mutex>
 
+#include "robot/urdf_markup.h"
+#include "robot/wording.h"
+
 namespace robot_control {
 namespace {
 
@@ -28,16 +31,41 @@ class CapturedConsole final : public console_bridge::OutputHandler {
   std::string errors_;
 };
 
-void check_markup(const RobotDescription& description, TiXmlDocument& xml) {
-  xml.Parse(description.text.c_str());
-  if (xml.Error()) {
-    const std::string line = xml.ErrorRow() > 0 ? " line " + std::to_string(xml.ErrorRow()) : "";
-    refuse(description.source + line, "XML", xml.ErrorDesc(), "Mend the markup");
+std::string printed(const TiXmlElement& element) {
+  TiXmlPrinter printer;
+  printer.SetStreamPrinting();
+  element.Accept(&printer);
+  return printer.Str();
+}
+
+urdf::ModelInterfaceSharedPtr parsed_by_urdfdom(const std::string& text, std::string& errors) {
+  // console_bridge has one output per process.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  CapturedConsole console;
+  urdf::ModelInterfaceSharedPtr model;
+  try {
+    model = urdf::parseURDF(text);
+    errors = console.errors();
+  } catch (const std::exception& error) {
+    errors = error.what();
   }
-  if (xml.FirstChildElement("robot") == nullptr) {
-    refuse(description.source, "<robot>", "there is no such element",
-           "Give a URDF, whose outermost element is <robot>");
+  return model;
+}
+
+std::vector<std::string> names_of(const TiXmlElement& robot, const char* kind) {
+  std::vector<std::string> names;
+  for (const TiXmlElement* element = robot.FirstChildElement(kind); element != nullptr;
+       element = element->NextSiblingElement(kind)) {
+    names.emplace_back(element->Attribute("name"));
   }
+  return names;
+}
+
+std::size_t links_below(const urdf::Link& link) {
+  std::size_t count = 1;
+  for (const auto& child : link.child_links) count += links_below(*child);
+  return count;
 }
 
 }  // namespace
@@ -50,20 +78,24 @@ void refuse(const std::string& source, const std::string& element, const std::st
 
 UrdfDocument parse_urdf(const RobotDescription& description) {
   TiXmlDocument xml;
-  check_markup(description, xml);
+  TiXmlElement& robot = parse_markup(description, xml);
+  UrdfDocument document;
+  document.source = description.source;
+  document.driven = driven_joints(robot);
+  mend_markup(robot);
 
-  // console_bridge has one output per process.
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  CapturedConsole console;
-  UrdfDocument document{description.source, urdf::parseURDF(description.text), {}};
-  if (!document.model || !console.errors().empty()) {
-    refuse(description.source, "<robot>", console.errors().empty() ? "urdfdom refuses it" : console.errors(),
+  std::string errors;
+  document.model = parsed_by_urdfdom(printed(robot), errors);
+  if (!document.model || !errors.empty()) {
+    refuse(description.source, "<robot>", errors.empty() ? "urdfdom refuses it" : errors,
            "See http://wiki.ros.org/urdf/XML");
   }
-  for (const TiXmlElement* joint = xml.FirstChildElement("robot")->FirstChildElement("joint"); joint != nullptr;
-       joint = joint->NextSiblingElement("joint")) {
-    document.joint_order.emplace_back(joint->Attribute("name"));
+  document.joint_order = names_of(robot, "joint");
+  document.link_order = names_of(robot, "link");
+  if (links_below(*document.model->getRoot()) != document.model->links_.size()) {
+    refuse(description.source, "<robot>",
+           "some links hang on each other in a ring, not on the root link \"" + document.model->getRoot()->name + "\"",
+           "Give each link one way up to the root: a URDF is a tree");
   }
   return document;
 }

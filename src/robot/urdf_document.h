@@ -3,6 +3,7 @@
 
 #include <urdf_world/types.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,12 @@ struct UrdfDocument {
   std::string source;                    ///< for messages
   urdf::ModelInterfaceSharedPtr model;   ///< never null
   std::vector<std::string> joint_order;  ///< names as they stand in the file (urdfdom sorts by name)
+  std::vector<std::string> link_order;   ///< likewise
+  std::set<std::string> driven;          ///< urdf_markup.h
 };
 
-/// Throws RobotError: not well-formed (with the line), no `<robot>`, or whatever urdfdom objects to, in its own
-/// words. What urdfdom would print on the console goes into the message.
+/// Throws RobotError: what parse_markup refuses, links that do not hang on the root, or whatever urdfdom objects to,
+/// in its own words. What urdfdom would print on the console goes into the message.
 UrdfDocument parse_urdf(const RobotDescription& description);
 
 /// "<source>: <element>: <what>. <remedy>."

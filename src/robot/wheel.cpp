@@ -1,93 +1,191 @@
 #include "robot/wheel.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "robot/urdf_document.h"
+#include "robot/wording.h"
 
 namespace robot_control {
 namespace {
 
-std::string list(const std::vector<std::string>& names) {
-  std::string result;
-  for (const std::string& name : names) result += (result.empty() ? "" : ", ") + name;
-  return result.empty() ? "none" : result;
-}
-
-const RigidBody& turning_body(const RigidBodies& robot, const std::string& joint) {
-  const std::string element = "<joint name=\"" + joint + "\">";
-  const auto found = robot.joints.find(joint);
-  if (found == robot.joints.end()) {
-    refuse(robot.source, element, "there is no such joint (moving joints: " + list(robot.moving_joints) + ")",
-           "Name the wheels' joints by robot/left_wheel_joint and robot/right_wheel_joint");
-  }
-  if (found->second == JointType::kFixed) {
-    refuse(robot.source, element, "it is fixed, a wheel has to turn", "Make it type=\"continuous\"");
-  }
-  if (found->second != JointType::kContinuous && found->second != JointType::kRevolute) {
-    refuse(robot.source, element, "it slides, a wheel has to turn", "Make it type=\"continuous\"");
-  }
-  return *robot.moved_by(joint);
-}
+constexpr int kDirections = 64;
+constexpr double kSameReach = 0.98;
+constexpr double kCorners = 0.9;
+constexpr double kRim = 0.97;
+constexpr double kLevel = 5 * M_PI / 180;
 
 double angle_between_lines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
+/// How far `shape` reaches along the unit vector `u` of the body's axes, from the body's origin.
+double support(const Shape& shape, const Eigen::Vector3d& u) {
+  const Eigen::Vector3d local = shape.in_body.linear().transpose() * u;
+  const double centre = shape.in_body.translation().dot(u);
+  switch (shape.type) {
+    case ShapeType::kSphere:
+      return centre + shape.radius;
+    case ShapeType::kCylinder:
+      return centre + shape.radius * local.head<2>().norm() + shape.length / 2 * std::abs(local.z());
+    case ShapeType::kBox:
+      return centre + shape.size.dot(local.cwiseAbs()) / 2;
+    case ShapeType::kMesh:
+      break;
+  }
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& point : shape.points) farthest = std::max(farthest, point.dot(local));
+  return centre + farthest;
+}
+
+struct Profile {
+  std::vector<double> heights;  ///< m, support in each direction across the axle
+  double reach = 0;             ///< m, of the farthest point from the axle
+  double first = 0, last = 0;   ///< m along the axle, of what touches the ground
+};
+
+bool around(const Shape& shape, const Eigen::Vector3d& axle) {
+  const bool upright =
+      shape.type == ShapeType::kSphere || (shape.type == ShapeType::kCylinder &&
+                                           angle_between_lines(shape.in_body.linear().col(2), axle) <= kAxleTolerance);
+  return upright && shape.in_body.translation().cross(axle).norm() <= kAxleTolerance * shape.radius;
+}
+
+void measure_rim(const Shape& shape, const Eigen::Vector3d& axle, Profile& profile) {
+  profile.reach = 0;
+  for (const Eigen::Vector3d& point : shape.points) {
+    profile.reach = std::max(profile.reach, (shape.in_body * point).cross(axle).norm());
+  }
+  profile.first = std::numeric_limits<double>::infinity();
+  profile.last = -profile.first;
+  for (const Eigen::Vector3d& point : shape.points) {
+    const Eigen::Vector3d in_body = shape.in_body * point;
+    if (in_body.cross(axle).norm() < kRim * profile.reach) continue;
+    profile.first = std::min(profile.first, in_body.dot(axle));
+    profile.last = std::max(profile.last, in_body.dot(axle));
+  }
+}
+
+Profile profile_of(const Shape& shape, const Eigen::Vector3d& axle) {
+  Profile profile;
+  const Eigen::Vector3d x = axle.unitOrthogonal();
+  const Eigen::Vector3d y = axle.cross(x);
+  for (int i = 0; i < kDirections; ++i) {
+    const double phi = 2 * M_PI * i / kDirections;
+    profile.heights.push_back(support(shape, std::cos(phi) * x + std::sin(phi) * y));
+  }
+  if (shape.type == ShapeType::kMesh) {
+    measure_rim(shape, axle, profile);
+    return profile;
+  }
+  profile.last = support(shape, axle);
+  profile.first = -support(shape, -axle);
+  profile.reach = *std::max_element(profile.heights.begin(), profile.heights.end());
+  if (around(shape, axle)) {
+    profile.reach = shape.radius;
+    const double middle = shape.in_body.translation().dot(axle);
+    const double half = shape.type == ShapeType::kCylinder ? shape.length / 2 : shape.radius;
+    profile.first = middle - half;
+    profile.last = middle + half;
+  }
+  return profile;
+}
+
+double roundness(const std::vector<const Profile*>& profiles) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    double height = -std::numeric_limits<double>::infinity();
+    for (const Profile* profile : profiles) height = std::max(height, profile->heights[i]);
+    least = std::min(least, height);
+    most = std::max(most, height);
+  }
+  return most > 0 ? least / most : 0;
+}
+
+/// Those that touch the ground; empty when they are not round.
+std::vector<const Profile*> tyre_of(const std::vector<Profile>& profiles, double reach) {
+  std::vector<const Profile*> tyre;
+  const Profile* round = nullptr;
+  for (const Profile& profile : profiles) {
+    if (profile.reach >= kSameReach * reach) tyre.push_back(&profile);
+    const bool farther = round == nullptr || profile.reach > round->reach;
+    if (farther && roundness({&profile}) >= kRoundness) round = &profile;
+  }
+  if (roundness(tyre) >= kRoundness) return tyre;
+  if (round != nullptr && round->reach >= kCorners * reach) return {round};
+  return {};
+}
+
+void measure_shapes(const RigidBody& body, RollingMeasure& measure) {
+  const Eigen::Vector3d& axle = body.joint.axis;
+  std::vector<Profile> profiles;
+  for (const Shape& shape : body.shapes) profiles.push_back(profile_of(shape, axle));
+  double reach = 0;
+  for (const Profile& profile : profiles) reach = std::max(reach, profile.reach);
+  const std::vector<const Profile*> tyre = tyre_of(profiles, reach);
+  if (!(reach > 0) || tyre.empty()) {
+    measure.objection =
+        "its shape does not lie round about the axle, from which it reaches as far as " + number(reach) + " m";
+    return;
+  }
+  reach = 0;
+  for (const Profile* profile : tyre) reach = std::max(reach, profile->reach);
+  double first = tyre.front()->first, last = tyre.front()->last;
+  for (const Profile* profile : tyre) {
+    first = std::min(first, profile->first);
+    last = std::max(last, profile->last);
+  }
+  measure.wheel.radius = reach;
+  measure.wheel.width = last - first;
+  measure.centre_in_body = axle * (first + last) / 2;
+}
+
 }  // namespace
 
 const Shape* rolling_shape(const RigidBody& body) {
-  const Shape* largest = nullptr;
+  const Shape* farthest = nullptr;
+  double reach = 0;
   for (const Shape& shape : body.shapes) {
-    if (shape.type != ShapeType::kCylinder && shape.type != ShapeType::kSphere) continue;
-    if (largest == nullptr || shape.radius > largest->radius) largest = &shape;
+    const double shape_reach = profile_of(shape, body.joint.axis).reach;
+    if (shape_reach <= reach) continue;
+    reach = shape_reach;
+    farthest = &shape;
   }
-  return largest;
+  return farthest;
 }
 
-WheelModel measure_wheel(const RigidBodies& robot, const std::string& joint) {
-  const RigidBody& body = turning_body(robot, joint);
-  const std::string joint_element = "<joint name=\"" + joint + "\">";
-  const std::string link_element = "<link name=\"" + body.name + "\">";
+bool turns_upright(const RigidBody& body) {
+  const bool turns = body.joint.type == JointType::kContinuous || body.joint.type == JointType::kRevolute;
+  return turns && std::abs((body.in_root.linear() * body.joint.axis).z()) < std::sin(kLevel);
+}
 
-  const Eigen::Vector3d axle = body.in_root.linear() * body.joint.axis;
-  const double tilt = angle_between_lines(axle, Eigen::Vector3d::UnitY());
-  if (tilt > kAxleTolerance) {
-    refuse(robot.source, joint_element,
-           "its axis is " + std::to_string(tilt * 180 / M_PI) + "° off the lateral (y) axis of " +
-               robot.bodies[0].name + ", 0.2° are allowed",
-           "Turn <axis> or the joint's <origin rpy>");
-  }
-  if (!(body.joint.effort_limit > 0) || !(body.joint.velocity_limit > 0)) {
-    refuse(robot.source, joint_element, "it has no effort or velocity limit",
-           "Add <limit effort=\"N·m\" velocity=\"rad/s\"/>, both above zero");
-  }
+double axle_tilt(const RollingMeasure& measure) {
+  return angle_between_lines(measure.axle_in_root, Eigen::Vector3d::UnitY());
+}
 
-  const Shape* shape = rolling_shape(body);
-  if (shape == nullptr) {
-    refuse(robot.source, link_element, "there is no collision cylinder or sphere to take the wheel's radius from",
-           "Add <collision><geometry><cylinder radius=\"m\" length=\"m\"/></geometry></collision>");
+RollingMeasure measure_wheel(const RigidBody& body) {
+  RollingMeasure measure;
+  const BodyJoint& joint = body.joint;
+  measure.axle_in_root = body.in_root.linear() * joint.axis;
+  if (joint.type == JointType::kRevolute && joint.lower < joint.upper) {
+    measure.objection = "it turns only from " + number(joint.lower) + " to " + number(joint.upper) + " rad";
+  } else if (joint.type != JointType::kContinuous && joint.type != JointType::kRevolute) {
+    measure.objection = "it slides, a wheel has to turn";
+  } else if (!turns_upright(body)) {
+    measure.objection = "its axis is not level";
+  } else if (body.shapes.empty()) {
+    measure.objection = "it has no shape to take a radius from";
   }
-  if (!(shape->radius > 0) || (shape->type == ShapeType::kCylinder && !(shape->length > 0))) {
-    refuse(robot.source, link_element, "its collision shape has no size", "Give radius and length above zero");
-  }
-  const Eigen::Vector3d centre = shape->in_body.translation();
-  const bool upright = shape->type == ShapeType::kSphere ||
-                       angle_between_lines(shape->in_body.linear().col(2), body.joint.axis) <= kAxleTolerance;
-  const double offset = centre.cross(body.joint.axis).norm();
-  if (!upright || offset > kAxleTolerance * shape->radius) {
-    refuse(robot.source, link_element, "its collision shape does not lie around the axle",
-           "Turn and move the <collision>'s <origin> so that the axle is the axis of the cylinder");
-  }
+  if (!measure.objection.empty()) return measure;
+  measure_shapes(body, measure);
 
-  const Eigen::Vector3d lever = body.centre_of_gravity.cross(body.joint.axis);
-  const Eigen::Vector3d centre_base = body.in_root * centre;
-  WheelModel wheel;
-  wheel.centre_base = {centre_base.x(), centre_base.y(), centre_base.z()};
-  wheel.radius = shape->radius;
-  wheel.width = shape->type == ShapeType::kCylinder ? shape->length : 2 * shape->radius;
-  wheel.sign = axle.y() > 0 ? 1 : -1;
-  wheel.inertia = body.joint.axis.dot(body.inertia * body.joint.axis) + body.mass * lever.squaredNorm();
-  return wheel;
+  const Eigen::Vector3d lever = body.centre_of_gravity.cross(joint.axis);
+  const Eigen::Vector3d centre_base = body.in_root * measure.centre_in_body;
+  measure.wheel.centre_base = {centre_base.x(), centre_base.y(), centre_base.z()};
+  measure.wheel.sign = measure.axle_in_root.y() > 0 ? 1 : -1;
+  measure.wheel.inertia = joint.axis.dot(body.inertia * joint.axis) + body.mass * lever.squaredNorm();
+  return measure;
 }
 
 }  // namespace robot_control

@@ -1,5 +1,14 @@
 #pragma once
-/// A wheel as its URDF describes it: a body on a lateral axle with a round collision shape.
+/// What rolls: a body that turns about a level axle and is round about it.
+///
+/// h(φ), the support function of all its shapes in the plane across the axle, from the axle: how far it reaches in
+/// direction φ. Round: min h ≥ kRoundness · max h (a polygon with 10 sides has 0.951, a hexagon 0.87; an eccentric
+/// wheel fails, too). Only the shapes that reach as far as the farthest (within 2 %) count: a rim, a motor or an axle
+/// beside the tyre says nothing of the radius. Where these are not round, the farthest shape that is round by itself
+/// counts, if nothing reaches beyond it by more than 10 %: a hub's box may have corners.
+///   radius  that of a cylinder or sphere around the axle, as it stands; else the distance of the farthest corner
+///   centre, width  from the ends of those shapes along the axle; of a mesh, of what lies within 3 % of its rim
+/// A sphere is as wide as it is high.
 
 #include <string>
 
@@ -9,16 +18,25 @@ namespace robot_control {
 
 /// An axle deviates from the lateral axis by less than this, and so does a shape from its axle: 0.2°.
 inline constexpr double kAxleTolerance = 0.2 * 3.14159265358979323846 / 180;
+inline constexpr double kRoundness = 0.95;
 
-/// Centre, radius, width: of the largest cylinder or sphere among the body's shapes (a sphere is as wide as it is
-/// high). sign: +1 where the axis points left. inertia: aᵀ I a + m |d⊥|², a the axle, d⊥ the centre of gravity's
-/// distance from it. `joint` is left to the caller.
-///
-/// Throws RobotError: no such joint, fixed or sliding, axle not lateral, no round shape, shape not around the axle,
-/// no effort or velocity limit.
-WheelModel measure_wheel(const RigidBodies& robot, const std::string& joint);
+struct RollingMeasure {
+  std::string objection;  ///< why it does not roll, with numbers; empty: it does
+  WheelModel wheel;       ///< `sign` +1 where the axle points left; `joint` and `side` are left to the caller
+  Eigen::Vector3d centre_in_body = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axle_in_root = Eigen::Vector3d::UnitY();
+};
 
-/// The shape of `body` that rolls; null when it has none.
+/// inertia: aᵀ I a + m |d⊥|², a the axle, d⊥ the centre of gravity's distance from it.
+RollingMeasure measure_wheel(const RigidBody& body);
+
+/// It turns about an axle that is level within 5°.
+bool turns_upright(const RigidBody& body);
+
+/// Between the axle and the lateral axis, whichever way both point; rad.
+double axle_tilt(const RollingMeasure& measure);
+
+/// The shape of `body` that reaches farthest from its axle; null when it has none.
 const Shape* rolling_shape(const RigidBody& body);
 
 }  // namespace robot_control

@@ -1,0 +1,203 @@
+#include "robot/drive_wheels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "robot/named_wheels.h"
+#include "robot/urdf_document.h"
+#include "robot/wheel.h"
+#include "robot/wheel_pairs.h"
+#include "robot/wording.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kUpright = 0.8;  // |z| of a swivel's axis: within 37° of the vertical
+
+double lowest_point(const WheelModel& wheel) {
+  return wheel.centre_base[2] - wheel.radius;
+}
+
+bool behind_swivel(const RigidBodies& robot, std::size_t body) {
+  for (std::size_t i = robot.bodies[body].parent; i != 0; i = robot.bodies[i].parent) {
+    const RigidBody& ancestor = robot.bodies[i];
+    const bool turns = ancestor.joint.type != JointType::kPrismatic;
+    if (turns && std::abs((ancestor.in_root.linear() * ancestor.joint.axis).z()) > kUpright) return true;
+  }
+  return false;
+}
+
+double suspension_travel(const RigidBodies& robot, std::size_t body) {
+  double travel = 0;
+  for (std::size_t i = robot.bodies[body].parent; i != 0; i = robot.bodies[i].parent) {
+    const BodyJoint& joint = robot.bodies[i].joint;
+    if (joint.type == JointType::kPrismatic) travel += std::max(std::abs(joint.lower), std::abs(joint.upper));
+  }
+  return travel;
+}
+
+bool looks_like_a_wheel(const RigidBodies& robot, const std::string& joint) {
+  return lower_case(joint).find("wheel") != std::string::npos ||
+         std::find(robot.driven_joints.begin(), robot.driven_joints.end(), joint) != robot.driven_joints.end();
+}
+
+class Search {
+ public:
+  explicit Search(const RigidBodies& robot) : robot_(robot) {
+    for (const auto& [name, type] : robot.joints) {
+      if (type == JointType::kFixed && looks_like_a_wheel(robot, name))
+        reject(name, "it is fixed, a wheel has to turn");
+    }
+    for (std::size_t i = 1; i < robot.bodies.size(); ++i) consider(i);
+    drop_those_above_the_floor();
+    drop_those_on_the_middle_line();
+  }
+
+  std::vector<RollingBody> drive_wheels() const {
+    if (candidates_.empty()) {
+      refuse(robot_.source, "<robot>", "no drive wheels found: " + (rejected_.empty() ? "no joint turns" : rejected_),
+             remedy());
+    }
+    std::vector<RollingBody> driven;
+    for (const RollingBody& candidate : candidates_) {
+      if (robot_.bodies[candidate.body].joint.driven) driven.push_back(candidate);
+    }
+    std::string objection;
+    for (std::vector<RollingBody> pairs : {driven, candidates_}) {
+      if (pairs.empty()) continue;
+      objection = sort_into_pairs(robot_, pairs);
+      if (objection.empty()) return pairs;
+    }
+    std::string text = "which wheels drive is not clear: " + objection + ". Candidates: ";
+    for (const RollingBody& candidate : candidates_) {
+      text += (&candidate == &candidates_.front() ? "" : "; ") + described(robot_, candidate);
+    }
+    if (!rejected_.empty()) text += ". Not: " + rejected_;
+    refuse(robot_.source, "<robot>", text, remedy());
+  }
+
+ private:
+  static std::string remedy() {
+    return "Name the wheels' joints by robot/left_wheel_joints: […] and robot/right_wheel_joints: […]; they must "
+           "turn about the lateral (y) axis and have a round <collision> shape";
+  }
+
+  void reject(const std::string& joint, const std::string& reason) {
+    rejected_ += (rejected_.empty() ? "" : "; ") + joint + ": " + reason;
+  }
+
+  void consider(std::size_t index) {
+    const RigidBody& body = robot_.bodies[index];
+    const std::string& joint = body.joint.name;
+    const bool named = looks_like_a_wheel(robot_, joint);
+    if (body.joint.type == JointType::kPrismatic && !named) return;
+    const RollingMeasure measure = measure_wheel(body);
+    const bool turns = body.joint.type != JointType::kPrismatic;
+    if (turns && axle_tilt(measure) > kAxleTolerance) {
+      return reject(joint, "its axis is " + number(axle_tilt(measure) * 180 / M_PI) + "° off the lateral (y) axis of " +
+                               robot_.bodies[0].name + ", 0.2° are allowed");
+    }
+    if (!measure.objection.empty()) return reject(joint, measure.objection);
+    if (behind_swivel(robot_, index)) return reject(joint, "it stands behind a swivel");
+    if (!body.joint.mimicked.empty()) return reject(joint, "it follows " + body.joint.mimicked);
+    candidates_.push_back({index, measure.wheel});
+  }
+
+  void drop_those_above_the_floor() {
+    double floor = std::numeric_limits<double>::infinity();
+    for (const RollingBody& candidate : candidates_) floor = std::min(floor, lowest_point(candidate.wheel));
+    std::erase_if(candidates_, [&](const RollingBody& candidate) {
+      const double gap = lowest_point(candidate.wheel) - floor;
+      if (gap <= kFloorTolerance + suspension_travel(robot_, candidate.body)) return false;
+      reject(robot_.bodies[candidate.body].joint.name, "it ends " + number(gap) + " m above the lowest wheel");
+      return true;
+    });
+  }
+
+  void drop_those_on_the_middle_line() {
+    if (candidates_.empty()) return;
+    double middle = 0;
+    if (candidates_.size() > 1) {
+      const auto by_y = [](const RollingBody& a, const RollingBody& b) {
+        return a.wheel.centre_base[1] < b.wheel.centre_base[1];
+      };
+      const auto [right, left] = std::minmax_element(candidates_.begin(), candidates_.end(), by_y);
+      middle = (right->wheel.centre_base[1] + left->wheel.centre_base[1]) / 2;
+    }
+    std::erase_if(candidates_, [&](const RollingBody& candidate) {
+      const double away = std::abs(candidate.wheel.centre_base[1] - middle);
+      if (away > std::max(kFloorTolerance, 0.1 * candidate.wheel.radius)) return false;
+      reject(robot_.bodies[candidate.body].joint.name, "it stands on the middle line");
+      return true;
+    });
+  }
+
+  const RigidBodies& robot_;
+  std::vector<RollingBody> candidates_;
+  std::string rejected_;
+};
+
+void note_lying_names(const RigidBodies& robot, const RollingBody& wheel, std::vector<RobotNote>& notes) {
+  const RigidBody& body = robot.bodies[wheel.body];
+  const std::string names = body.joint.name + " " + body.name;
+  const bool left = wheel.wheel.side == Side::kLeft;
+  if (left ? says_left(names) || !says_right(names) : says_right(names) || !says_left(names)) return;
+  notes.push_back({RobotNote::Kind::kSuspicious, joint_element(body.joint.name),
+                   std::string("its name says ") + (left ? "right" : "left") + ", but it is the " +
+                       (left ? "left" : "right") + " wheel: y is " + number(wheel.wheel.centre_base[1]) + " m"});
+}
+
+std::vector<RollingBody> find_casters(const RigidBodies& robot, const std::vector<RollingBody>& wheels) {
+  std::set<std::size_t> taken;
+  double floor = std::numeric_limits<double>::infinity();
+  for (const RollingBody& wheel : wheels) {
+    taken.insert(wheel.body);
+    floor = std::min(floor, lowest_point(wheel.wheel));
+  }
+  std::vector<RollingBody> casters;
+  for (std::size_t i = 1; i < robot.bodies.size(); ++i) {
+    if (taken.contains(i)) continue;
+    const RollingMeasure measure = measure_wheel(robot.bodies[i]);
+    if (!measure.objection.empty() || lowest_point(measure.wheel) - floor > kCasterTolerance) continue;
+    casters.push_back({i, measure.wheel});
+  }
+  return casters;
+}
+
+}  // namespace
+
+DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& parameters,
+                            std::vector<RobotNote>& notes) {
+  DriveTrain train;
+  const bool named = !parameters.left_wheel_joints.empty() || !parameters.right_wheel_joints.empty();
+  train.wheels = named ? named_wheels(robot, parameters) : Search(robot).drive_wheels();
+  if (train.wheels.size() > kMaxWheels) {
+    refuse(robot.source, "<robot>", std::to_string(train.wheels.size()) + " drive wheels",
+           "At most " + std::to_string(kMaxWheels) + " are supported; tracks are not");
+  }
+  for (const RollingBody& wheel : train.wheels) note_lying_names(robot, wheel, notes);
+  train.casters = find_casters(robot, train.wheels);
+  return train;
+}
+
+double wheel_base_of(const std::vector<RollingBody>& wheels) {
+  const std::size_t axles = wheels.size() / 2;
+  double sum = 0;
+  for (std::size_t i = 0; i < axles; ++i) {
+    sum += wheels[i].wheel.centre_base[1] - wheels[axles + i].wheel.centre_base[1];
+  }
+  return sum / static_cast<double>(axles);
+}
+
+double scrub_multiplier(const std::vector<RollingBody>& wheels) {
+  const auto count = static_cast<double>(wheels.size());
+  double mean = 0;
+  for (const RollingBody& wheel : wheels) mean += wheel.wheel.centre_base[0] / count;
+  double square = 0;
+  for (const RollingBody& wheel : wheels) square += std::pow(wheel.wheel.centre_base[0] - mean, 2) / count;
+  return wheels.size() == 2 ? 1 : 1 + 4 * square / std::pow(wheel_base_of(wheels), 2);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,50 @@
+#pragma once
+/// Which joints are the drive wheels, and which passive wheels roll along.
+///
+/// Named by `left_wheel_joints` and `right_wheel_joints`, both or neither, in any order. Else found. A candidate
+///   rolls (wheel.h) on an axle that is lateral within kAxleTolerance;
+///   reaches the floor: its lowest point is within kFloorTolerance of that of the lowest candidate, or within the
+///     travel of its suspension;
+///   does not stand behind a swivel (an upright joint between it and the root), nor follow another joint by <mimic>;
+///   is not on the middle line, halfway between the outermost candidates.
+/// Of the candidates those are the drive wheels that the URDF says are driven, where these make pairs; else all,
+/// where they do. A pair: one left and one right of the middle line, on one axle (Δx), equally far out (Δ|y|) and of
+/// one radius, each within kPairTolerance of the wheel base or radius. All pairs have one radius. Anything else is not
+/// guessed: the candidates are named, and what to set.
+///
+/// Left and right are told by position: names lie. What a name says otherwise is noted.
+
+#include <string>
+#include <vector>
+
+#include "robot/rigid_bodies.h"
+
+namespace robot_control {
+
+inline constexpr double kFloorTolerance = 0.005;  ///< m
+inline constexpr double kPairTolerance = 0.01;
+
+struct RollingBody {
+  std::size_t body = 0;  ///< index into RigidBodies::bodies
+  WheelModel wheel;      ///< without `joint`
+};
+
+struct DriveTrain {
+  std::vector<RollingBody> wheels;   ///< left ones front to back, then right ones
+  std::vector<RollingBody> casters;  ///< all other bodies that roll and reach the floor within kCasterTolerance
+};
+
+inline constexpr double kCasterTolerance = 0.03;  ///< m
+
+/// Throws RobotError: no wheels, with the reason for each joint that looks like one; wheels that make no pairs; more
+/// than kMaxWheels; names of joints that do not exist, are fixed, slide, are not lateral or round, stand on the wrong
+/// side.
+DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& parameters, std::vector<RobotNote>& notes);
+
+/// m, Δy of the left and right wheels' centres, mean over the axles
+double wheel_base_of(const std::vector<RollingBody>& wheels);
+
+/// 1 + 4 mean(xᵢ²)/b² (RobotModel::wheel_base_multiplier)
+double scrub_multiplier(const std::vector<RollingBody>& wheels);
+
+}  // namespace robot_control

@@ -1,0 +1,16 @@
+#pragma once
+/// Where the IMU sits.
+
+#include <string>
+#include <vector>
+
+#include "robot/rigid_bodies.h"
+
+namespace robot_control {
+
+/// The link of the IMU: `wished` where it is not empty, else "imu_link", else the first link in the file with a word
+/// of its name that begins with "imu" or "gyro", each only if it does not move against the root. Empty: in the base.
+/// Throws RobotError: a wished link that does not exist or moves.
+std::string imu_link_of(const RigidBodies& robot, const std::string& wished, std::vector<RobotNote>& notes);
+
+}  // namespace robot_control

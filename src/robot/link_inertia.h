@@ -1,0 +1,41 @@
+#pragma once
+/// The mass of one link, and what is done with inertias that no body has.
+
+#include <urdf_model/link.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+struct PointInertia {
+  double mass = 0;                                    ///< kg
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();   ///< m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg·m², about `centre`
+};
+
+/// The inertia nearest to `given` that a body of this mass can have. With the principal moments A ≤ B ≤ C:
+///
+///   each ≥ m ρ², ρ = kLeastGyration;  A + B ≥ C: where not, A and B both grow by (C − A − B)/2
+///
+/// C stays, because it is what the maker is likelier to have meant; so do the principal axes. `given` itself where it
+/// needs no repair (up to rounding, 10⁻⁹ of C). Where all of it is zero: that of a solid ball of kBallRadius.
+Eigen::Matrix3d possible_inertia(const Eigen::Matrix3d& given, double mass);
+
+inline constexpr double kLeastGyration = 1e-4;  ///< m: that of a ball of 0.3 mm
+inline constexpr double kBallRadius = 0.02;     ///< m
+
+/// In the body's frame, of which `in_body` is the link's. A link without <inertial> has no mass. Repairs are noted.
+/// Throws RobotError: a negative mass.
+PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body, const std::string& source,
+                        std::vector<RobotNote>& notes);
+
+/// Steiner: both together about their common centre of gravity.
+PointInertia sum(const PointInertia& a, const PointInertia& b);
+
+Eigen::Isometry3d eigen_pose(const urdf::Pose& pose);
+
+}  // namespace robot_control

@@ -1,0 +1,52 @@
+#include "robot/model_hash.h"
+
+#include <bit>
+
+namespace robot_control {
+namespace {
+
+class Fnv1a {
+ public:
+  void add(const std::string& text) {
+    for (const char c : text) add_byte(static_cast<unsigned char>(c));
+    add_byte(0);
+  }
+  void add(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) add(text);
+    add_byte(1);
+  }
+  void add(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(bits >> shift));
+  }
+  void add(const std::optional<double>& value) {
+    add_byte(value.has_value());
+    add(value.value_or(0.0));
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001B3ULL; }
+  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+};
+
+}  // namespace
+
+std::uint64_t model_hash(const std::string& urdf, const RobotParameters& parameters) {
+  Fnv1a hash;
+  hash.add(urdf);
+  hash.add(parameters.left_wheel_joints);
+  hash.add(parameters.right_wheel_joints);
+  hash.add(parameters.wheel_base);
+  hash.add(parameters.wheel_base_multiplier);
+  hash.add(parameters.wheel_radius);
+  hash.add(parameters.wheel_effort_limit);
+  hash.add(parameters.wheel_velocity_limit);
+  hash.add(parameters.mass);
+  hash.add(std::optional<double>(parameters.centre_of_gravity ? 1.0 : 0.0));
+  for (const double value : parameters.centre_of_gravity.value_or(Vector3{})) hash.add(value);
+  hash.add(parameters.imu_link);
+  return hash.value();
+}
+
+}  // namespace robot_control

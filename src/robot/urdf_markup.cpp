@@ -1,0 +1,195 @@
+#include "robot/urdf_markup.h"
+
+#include <map>
+#include <sstream>
+
+#include "robot/urdf_document.h"
+#include "robot/wording.h"
+
+namespace robot_control {
+namespace {
+
+std::string attribute(const TiXmlElement& element, const char* name) {
+  const char* value = element.Attribute(name);
+  return value == nullptr ? "" : value;
+}
+
+std::string at_line(const RobotDescription& description, const TiXmlBase& place) {
+  return description.source + (place.Row() > 0 ? " line " + std::to_string(place.Row()) : "");
+}
+
+void check_joint(const RobotDescription& description, const TiXmlElement& joint) {
+  const std::string type = attribute(joint, "type");
+  const std::string element = joint_element(attribute(joint, "name"));
+  const std::string remedy = "Use fixed, revolute, continuous or prismatic";
+  if (type == "floating" || type == "planar") {
+    refuse(at_line(description, joint), element, "floating and planar joints are not supported", remedy);
+  }
+  if (type != "fixed" && type != "revolute" && type != "continuous" && type != "prismatic") {
+    refuse(at_line(description, joint), element, "type=\"" + type + "\" is unknown", remedy);
+  }
+  if ((type == "revolute" || type == "prismatic") && joint.FirstChildElement("limit") == nullptr) {
+    refuse(at_line(description, joint), element, "a " + type + " joint has no <limit>",
+           type == "revolute" ? "Add <limit lower upper effort velocity>, or make it type=\"continuous\""
+                              : "Add <limit lower upper effort velocity>");
+  }
+}
+
+void check_parents(const RobotDescription& description, const TiXmlElement& robot) {
+  std::map<std::string, std::string> joint_of;
+  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const TiXmlElement* child = joint->FirstChildElement("child");
+    if (child == nullptr) continue;
+    const std::string link = attribute(*child, "link");
+    const auto [other, first] = joint_of.emplace(link, attribute(*joint, "name"));
+    if (!first) {
+      refuse(at_line(description, *joint), joint_element(attribute(*joint, "name")),
+             "its child \"" + link + "\" already hangs on joint \"" + other->second + "\"",
+             "Give each link one parent: a URDF is a tree");
+    }
+  }
+}
+
+std::set<std::string> words(const std::string& text) {
+  std::set<std::string> result;
+  std::string word;
+  for (const char c : text + " ") {
+    if (c == ' ' || c == ',' || c == ';' || c == '\t' || c == '\n' || c == '\r') {
+      if (!word.empty()) result.insert(word);
+      word.clear();
+    } else {
+      word += c;
+    }
+  }
+  return result;
+}
+
+bool says_drive(const std::string& text) {
+  return lower_case(text).find("drive") != std::string::npos;
+}
+
+void add_plugin_joints(const TiXmlElement& element, bool drive, std::set<std::string>& joints) {
+  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    add_plugin_joints(*child, drive, joints);
+    if (child->GetText() == nullptr) continue;
+    if (drive || says_left(child->Value()) || says_right(child->Value())) joints.merge(words(child->GetText()));
+  }
+}
+
+void add_gazebo_joints(const TiXmlElement& element, std::set<std::string>& joints) {
+  for (const TiXmlElement* plugin = element.FirstChildElement("plugin"); plugin != nullptr;
+       plugin = plugin->NextSiblingElement("plugin")) {
+    add_plugin_joints(*plugin, says_drive(attribute(*plugin, "name") + attribute(*plugin, "filename")), joints);
+  }
+}
+
+void remove(TiXmlElement& parent, const std::string& name) {
+  TiXmlElement* child = parent.FirstChildElement(name);
+  while (child != nullptr) {
+    TiXmlElement* next = child->NextSiblingElement(name);
+    parent.RemoveChild(child);
+    child = next;
+  }
+}
+
+bool three_numbers(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double x = 0, y = 0, z = 0;
+  std::string rest;
+  return stream >> x >> y >> z && !(stream >> rest);
+}
+
+void mend_shape(TiXmlElement& visual_or_collision) {
+  TiXmlElement* geometry = visual_or_collision.FirstChildElement("geometry");
+  TiXmlElement* mesh = geometry == nullptr ? nullptr : geometry->FirstChildElement("mesh");
+  if (mesh == nullptr || mesh->Attribute("scale") == nullptr) return;
+  if (!three_numbers(mesh->Attribute("scale"))) mesh->SetAttribute("scale", "0 0 0");
+}
+
+void mend_link(TiXmlElement& link) {
+  TiXmlElement* visual = link.FirstChildElement("visual");
+  while (visual != nullptr) {
+    TiXmlElement* next = visual->NextSiblingElement("visual");
+    const TiXmlElement* geometry = visual->FirstChildElement("geometry");
+    remove(*visual, "material");
+    mend_shape(*visual);
+    if (geometry == nullptr || geometry->FirstChildElement() == nullptr) link.RemoveChild(visual);
+    visual = next;
+  }
+  for (TiXmlElement* collision = link.FirstChildElement("collision"); collision != nullptr;
+       collision = collision->NextSiblingElement("collision")) {
+    mend_shape(*collision);
+  }
+}
+
+void mend_joint(TiXmlElement& joint) {
+  remove(joint, "safety_controller");
+  remove(joint, "calibration");
+  TiXmlElement* limit = joint.FirstChildElement("limit");
+  if (limit == nullptr) return;
+  for (const char* name : {"effort", "velocity"}) {
+    if (limit->Attribute(name) == nullptr) limit->SetAttribute(name, "0");
+  }
+}
+
+}  // namespace
+
+TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml) {
+  xml.Parse(description.text.c_str());
+  if (xml.Error()) {
+    const std::string line = xml.ErrorRow() > 0 ? " line " + std::to_string(xml.ErrorRow()) : "";
+    refuse(description.source + line, "XML", xml.ErrorDesc(), "Mend the markup");
+  }
+  TiXmlElement* root = xml.RootElement();
+  if (root == nullptr || root->ValueStr() != "robot") {
+    refuse(description.source, "<robot>", "there is no such element",
+           "Give a URDF, whose outermost element is <robot>");
+  }
+  if (const TiXmlElement* second = root->NextSiblingElement()) {
+    refuse(at_line(description, *second), "<" + second->ValueStr() + ">",
+           "a second outermost element, beside <robot> in line " + std::to_string(root->Row()),
+           "Keep one: one file is one robot");
+  }
+  for (const TiXmlElement* joint = root->FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    check_joint(description, *joint);
+  }
+  check_parents(description, *root);
+  return *root;
+}
+
+std::set<std::string> driven_joints(const TiXmlElement& robot) {
+  std::set<std::string> joints;
+  for (const TiXmlElement* element = robot.FirstChildElement(); element != nullptr;
+       element = element->NextSiblingElement()) {
+    if (element->ValueStr() == "gazebo") add_gazebo_joints(*element, joints);
+    const bool transmission = element->ValueStr() == "transmission";
+    if (!transmission && element->ValueStr() != "ros2_control") continue;
+    for (const TiXmlElement* joint = element->FirstChildElement("joint"); joint != nullptr;
+         joint = joint->NextSiblingElement("joint")) {
+      if (transmission || joint->FirstChildElement("command_interface") != nullptr) {
+        joints.insert(attribute(*joint, "name"));
+      }
+    }
+  }
+  return joints;
+}
+
+void mend_markup(TiXmlElement& robot) {
+  TiXmlElement* element = robot.FirstChildElement();
+  while (element != nullptr) {
+    TiXmlElement* next = element->NextSiblingElement();
+    if (element->ValueStr() == "link") {
+      mend_link(*element);
+    } else if (element->ValueStr() == "joint") {
+      mend_joint(*element);
+    } else {
+      robot.RemoveChild(element);
+    }
+    element = next;
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,24 @@
+#pragma once
+/// How messages and notes name things: `<link name="…">`, numbers with six digits.
+
+#include <string>
+#include <vector>
+
+namespace robot_control {
+
+std::string link_element(const std::string& name);
+std::string joint_element(const std::string& name);
+
+/// Six significant digits: "0.1", "1e-09".
+std::string number(double value);
+
+/// "a, b, c"; "none" when there is none.
+std::string list(const std::vector<std::string>& names);
+
+/// Whether `name` says "left" or "right" in either case.
+bool says_left(const std::string& name);
+bool says_right(const std::string& name);
+
+std::string lower_case(std::string text);
+
+}  // namespace robot_control
