@@ -21,7 +21,7 @@ class MonitorTest : public testing::Test {
     sensors_.boot = 77;
     sensors_.driver_state = DriverState::kRunning;
     sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
-    sensors_.joint_count = command_.joint_count = kWheels + 1;  // and a caster
+    sensors_.joint_count = command_.joint_count = kWheels;
     input_.sensors = &sensors_;
     input_.command = &command_;
     input_.state_seen = true;
