@@ -25,6 +25,11 @@ namespace robot_control {
 inline constexpr std::uint64_t kFaultCycles = 10;
 inline constexpr double kChangeProbability = 0.1;
 
+/// One seed for each component of a machine.
+constexpr std::uint64_t fault_seed(std::uint64_t seed, FaultComponent component) noexcept {
+  return seed * kFaultComponents + static_cast<std::uint64_t>(component);
+}
+
 /// Random numbers of a fault.
 class FaultRandom {
  public:

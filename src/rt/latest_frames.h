@@ -71,8 +71,15 @@ class FrameWriter {
   void publish(Frame& frame) noexcept {
     seal(frame);
     store(frame);
-    memory_->sequence.fetch_add(1, std::memory_order_release);
-    if (wake_ == Wake::kReaders) futex_wake_all(memory_->sequence);
+    wake();
+  }
+
+  /// The same with a checksum that is wrong: what an injected fault publishes.
+  void publish_broken(Frame& frame) noexcept {
+    seal(frame);
+    frame.head.checksum = ~frame.head.checksum;
+    store(frame);
+    wake();
   }
 
   /// Stores without sealing or waking: for tests that plant a broken frame.
@@ -90,6 +97,11 @@ class FrameWriter {
   LatestFrames<Frame>* memory() const noexcept { return memory_; }
 
  private:
+  void wake() noexcept {
+    memory_->sequence.fetch_add(1, std::memory_order_release);
+    if (wake_ == Wake::kReaders) futex_wake_all(memory_->sequence);
+  }
+
   LatestFrames<Frame>* memory_;
   Wake wake_;
 };

@@ -38,16 +38,19 @@ void ControllerCycle::receive(std::uint64_t cycle) noexcept {
 bool ControllerCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
   const Lookup found = channels_.state->newest(state_);
-  if (found == Lookup::kMissing || found == Lookup::kCorrupt) return false;
+  if (found == Lookup::kMissing) return false;
   if (!current(*channels_.sensors, state_.head, robot_hash_)) return false;
   const Arrival arrival = clock_.judge(state_.head);
   if (arrival == Arrival::kOld) return false;
   const std::uint64_t run = state_.head.run;
   const std::uint64_t cycle = state_.head.cycle;
   const Lookup sensors_found = channels_.sensors->at(run, cycle, sensors_);
+  // A corrupt head is believed only where the sensors know it.
+  if (found == Lookup::kCorrupt && sensors_found != Lookup::kFrame) return false;
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(state_.head);
-  if (found == Lookup::kToken || sensors_found == Lookup::kToken) {
+  if (found == Lookup::kCorrupt) state_.head = sensors_.head;
+  if (found != Lookup::kFrame || sensors_found == Lookup::kToken) {
     publish_token(channels_.command, state_.head);
     return false;
   }
@@ -62,8 +65,8 @@ bool ControllerCycle::step() noexcept {
     input.permit = &permit_;
   }
   controller_.step(input, trace_.command);
-  trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
-  channels_.command.publish(trace_.command);
+  const FrameHead head{.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
+  if (!out_.publish(channels_.command, head, sensors_.injected, trace_.command)) return false;
   trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// The controller's duty in one cycle: state k (which woke it), sensors k and the newest live permit ≤ k-1
-/// → command k. A token is passed on.
+/// → command k. A token is passed on, and a state that is corrupt is one. Told to fail, it does (faulty_writer.h).
 
 #include <cstdint>
 
@@ -9,6 +9,7 @@
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
 #include "runtime/cycle_clock.h"
+#include "runtime/faulty_writer.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -40,6 +41,7 @@ class ControllerCycle {
   DriveController controller_;
   CycleClock clock_;
   Channels channels_;
+  FaultyWriter<CommandFrame> out_{FaultComponent::kController};
   CommandScript script_;
   std::uint64_t robot_hash_;
   LatestValue<VelocityCommand> inbox_;

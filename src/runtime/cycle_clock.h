@@ -67,7 +67,7 @@ std::optional<std::uint64_t> published_before(const FrameWriter<Frame>& own, std
   return last.head.cycle;
 }
 
-/// Lockstep: cycle k has passed here, without a frame.
+/// Cycle k has passed here, without a frame.
 template <class Frame>
 void publish_token(FrameWriter<Frame>& channel, const FrameHead& of) noexcept {
   Frame token{};

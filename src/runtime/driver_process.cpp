@@ -29,7 +29,10 @@ bool attached(const Input<Frame>& input, std::uint64_t run) {
 template <class Frame>
 bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_t cycle) noexcept {
   Frame frame;
-  return reader.at(run, cycle, frame) != Lookup::kMissing;
+  const Lookup found = reader.at(run, cycle, frame);
+  // A corrupt frame may be that of 8 cycles ago, in the same slot.
+  if (found == Lookup::kCorrupt) return frame.head.run == run && frame.head.cycle == cycle;
+  return found != Lookup::kMissing;
 }
 
 /// Lockstep: waits until `published`; false when the loop shall end.

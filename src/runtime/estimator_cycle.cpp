@@ -36,8 +36,8 @@ bool EstimatorCycle::step() noexcept {
     estimator_.reset_pose();
   }
   estimator_.step(sensors_, trace_.state);
-  trace_.state.head = {.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
-  state_channel_.publish(trace_.state);
+  const FrameHead head{.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
+  if (!out_.publish(state_channel_, head, sensors_.injected, trace_.state)) return false;
   trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on.
+/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on. Told to fail, it does
+/// (faulty_writer.h).
 
 #include <atomic>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include "estimation/estimator.h"
 #include "rt/latest_frames.h"
 #include "runtime/cycle_clock.h"
+#include "runtime/faulty_writer.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -31,6 +33,7 @@ class EstimatorCycle {
   CycleClock clock_;
   const FrameReader<SensorFrame>& sensors_channel_;
   FrameWriter<StateFrame> state_channel_;
+  FaultyWriter<StateFrame> out_{FaultComponent::kEstimator};
   std::uint64_t robot_hash_;
   std::atomic<std::uint64_t> pose_resets_{0};
   std::uint64_t pose_resets_done_ = 0;

@@ -6,7 +6,7 @@ namespace robot_control {
 
 MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
                            const Channels& channels, CommandScript script, Now now)
-    : monitor_(parameters, period),
+    : monitor_(parameters, period, robot.wheels.size()),
       clock_(now),
       channels_(channels),
       script_(std::move(script)),
@@ -71,7 +71,8 @@ bool MonitorCycle::step() noexcept {
     input_.state_seen = state_found == Lookup::kFrame;
     input_.corrupt = input_.corrupt || command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt;
   }
-  publish();
+  monitor_.step(input_, trace_.permit);
+  if (!out_.publish(channels_.permit, head(), sensors_.injected, trace_.permit)) return false;
   trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }
@@ -79,14 +80,14 @@ bool MonitorCycle::step() noexcept {
 void MonitorCycle::note_corrupt_sensors() noexcept {
   if (++corrupt_sensors_ != Conditions::kPersistence || input_.sensors == nullptr) return;
   monitor_.sensors_corrupt();
-  publish();
+  publish_again();
 }
 
 void MonitorCycle::silence() noexcept {
   if (!silent_ && input_.sensors != nullptr && sensors_.driver_state != DriverState::kPaused) {
     silent_ = true;
     monitor_.driver_lost();
-    publish();
+    publish_again();
   }
   idle();
 }
@@ -98,13 +99,18 @@ void MonitorCycle::idle() noexcept {
   if (operator_input_.resets == resets) return;
   input_.operator_input = operator_input_;
   monitor_.refuse_reset(operator_input_);
-  publish();
+  publish_again();
 }
 
-void MonitorCycle::publish() noexcept {
+void MonitorCycle::publish_again() noexcept {
   monitor_.step(input_, trace_.permit);
-  trace_.permit.head = {.run = clock_.run(), .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+  if (fault_of(sensors_.injected, out_.component()) != FaultKind::kOk) return;
+  trace_.permit.head = head();
   channels_.permit.publish(trace_.permit);
+}
+
+FrameHead MonitorCycle::head() const noexcept {
+  return {.run = clock_.run(), .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
 }
 
 }  // namespace robot_control

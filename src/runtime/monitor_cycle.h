@@ -1,6 +1,6 @@
 #pragma once
 /// The monitor's duty in one cycle: sensors k (which woke it), command k-1, head of state k-1 → permit k.
-/// A token is passed on.
+/// A token is passed on. Told to fail, it does (faulty_writer.h); then it has nothing to say out of turn.
 
 #include <cstdint>
 
@@ -9,6 +9,7 @@
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
 #include "runtime/cycle_clock.h"
+#include "runtime/faulty_writer.h"
 #include "safety/safety_monitor.h"
 #include "signals/trace.h"
 
@@ -49,11 +50,13 @@ class MonitorCycle {
   void receive_messages() noexcept;
   void note_corrupt_sensors() noexcept;
   void receive(std::uint64_t cycle) noexcept;
-  void publish() noexcept;
+  void publish_again() noexcept;
+  FrameHead head() const noexcept;
 
   SafetyMonitor monitor_;
   CycleClock clock_;
   Channels channels_;
+  FaultyWriter<Permit> out_{FaultComponent::kMonitor};
   CommandScript script_;
   std::uint64_t robot_hash_;
   LatestValue<OperatorInput> inbox_;

@@ -15,7 +15,7 @@ namespace robot_control {
 /// What stands behind a head.
 enum class FrameKind : std::uint64_t {
   kFrame = 1,  ///< A frame with content.
-  kToken = 2,  ///< Lockstep only: "cycle k has passed here, without a frame". Content is zero.
+  kToken = 2,  ///< "Cycle k has passed here, without a frame": of a node told to be silent. Content is zero.
 };
 
 struct FrameHead {

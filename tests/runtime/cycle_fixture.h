@@ -23,8 +23,9 @@ inline RobotModel two_wheels() {
   robot.hash = 7;
   robot.joints = {{"left_wheel_joint", "left_wheel_link", 3.0, 20.0},
                   {"right_wheel_joint", "right_wheel_link", 3.0, 20.0}};
-  robot.left = {.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .sign = 1, .inertia = 0.005};
-  robot.right = {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .sign = 1, .inertia = 0.005};
+  robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
+                  {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
+  robot.wheels[1].side = Side::kRight;
   robot.wheel_base = 0.5;
   robot.mass = 12;
   robot.yaw_inertia = 0.4;
@@ -37,6 +38,7 @@ class StandingMachine final : public Driver {
  public:
   void start() override {}
   void read(SensorFrame& sensors) noexcept override {
+    sensors.injected = faults;
     sensors.driver_state = DriverState::kRunning;
     sensors.valid = kValidJoints | kValidGyro | kValidAccelerometer;
     sensors.joint_count = 2;
@@ -44,7 +46,12 @@ class StandingMachine final : public Driver {
   }
   void write(std::span<const JointCommand> commands) noexcept override { mode = commands[0].mode; }
   void stop() noexcept override {}
+  bool inject(const InjectedFaults& wanted) noexcept override {
+    faults = wanted;
+    return true;
+  }
 
+  InjectedFaults faults{};
   JointMode mode = JointMode::kBrake;
 };
 

@@ -1,0 +1,267 @@
+/// Estimator, controller and monitor that fail as told: what each publishes, and what the others make of it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cycle_fixture.h"
+#include "signals/names.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
+constexpr FaultComponent kNodes[]{FaultComponent::kController, FaultComponent::kEstimator, FaultComponent::kMonitor};
+
+/// A loop in DRIVE whose controller pushes ever harder at wheels that never turn.
+class NodeFaults : public ::testing::Test {
+ protected:
+  NodeFaults() { start(loop); }
+
+  static void start(Loop& any) {
+    any.step();
+    any.controller->inbox().store({.twist = kForward, .count = 1});
+    any.steps(20);
+  }
+
+  static void inject(Loop& any, FaultComponent component, FaultKind kind) {
+    InjectedFaults faults = any.machine.faults;
+    faults[static_cast<std::size_t>(component)] = kind;
+    any.machine.inject(faults);
+  }
+  void inject(FaultComponent component, FaultKind kind) { inject(loop, component, kind); }
+
+  /// Steps once; what this node then published in that cycle.
+  Lookup publishes(FaultComponent component) {
+    loop.step();
+    const std::uint64_t cycle = loop.driver.next_cycle() - 1;
+    if (component == FaultComponent::kController) return loop.command.reader.at(1, cycle, command_);
+    if (component == FaultComponent::kEstimator) return loop.state.reader.at(1, cycle, state_);
+    return loop.permit.reader.at(1, cycle, permit_);
+  }
+
+  static double effort(const CommandFrame& command) { return command.joints[0].effort; }
+
+  /// Cycles until the gate brakes; limit + 1: it never did.
+  int cycles_until_brake(int limit) {
+    for (int cycles = 1; cycles <= limit; ++cycles) {
+      loop.step();
+      if (loop.gate().verdict == GateVerdict::kBrake) return cycles;
+    }
+    return limit + 1;
+  }
+
+  Loop loop;
+  CommandFrame command_;
+  StateFrame state_;
+  Permit permit_;
+};
+
+TEST_F(NodeFaults, OffIsATokenInEveryCycle) {
+  for (const FaultComponent node : kNodes) {
+    inject(node, FaultKind::kOff);
+    for (int i = 0; i < 30; ++i) EXPECT_EQ(publishes(node), Lookup::kToken) << name_of(node);
+    inject(node, FaultKind::kOk);
+    EXPECT_EQ(publishes(node), Lookup::kFrame) << name_of(node);
+  }
+}
+
+TEST_F(NodeFaults, SlowIsAFrameEveryTenthCycleAndTokensBetween) {
+  for (const FaultComponent node : {FaultComponent::kEstimator, FaultComponent::kMonitor}) {
+    inject(node, FaultKind::kSlow);
+    for (int i = 0; i < 30; ++i) {
+      EXPECT_EQ(publishes(node), i % 10 == 0 ? Lookup::kFrame : Lookup::kToken) << name_of(node) << i;
+    }
+    inject(node, FaultKind::kOk);
+    loop.step();
+  }
+}
+
+TEST_F(NodeFaults, IntermittentIsFramesAndTokens) {
+  for (const FaultComponent node : kNodes) {
+    inject(node, FaultKind::kIntermittent);
+    std::set<Lookup> found;
+    for (int i = 0; i < 300; ++i) found.insert(publishes(node));
+    EXPECT_EQ(found, (std::set<Lookup>{Lookup::kFrame, Lookup::kToken})) << name_of(node);
+    inject(node, FaultKind::kOk);
+    loop.step();
+  }
+}
+
+TEST_F(NodeFaults, StuckIsOldContentUnderANewHead) {
+  inject(FaultComponent::kController, FaultKind::kStuck);
+  ASSERT_EQ(publishes(FaultComponent::kController), Lookup::kFrame);
+  const CommandFrame first = command_;
+  for (std::uint64_t i = 1; i <= 15; ++i) {
+    ASSERT_EQ(publishes(FaultComponent::kController), Lookup::kFrame);
+    EXPECT_EQ(command_.head.cycle, first.head.cycle + i);
+    EXPECT_EQ(effort(command_), effort(first));
+    EXPECT_EQ(command_.state_cycle, first.state_cycle);
+  }
+}
+
+TEST_F(NodeFaults, DelayedIsTheContentOfTenCyclesAgo) {
+  Loop healthy;
+  start(healthy);
+  inject(FaultComponent::kController, FaultKind::kDelayed);
+  std::vector<double> efforts;
+  for (std::size_t i = 0; i < 40; ++i) {
+    healthy.step();
+    efforts.push_back(effort(healthy.newest_command()));
+    ASSERT_EQ(publishes(FaultComponent::kController), Lookup::kFrame);
+    EXPECT_EQ(effort(command_), efforts[i < 10 ? 0 : i - 10]) << i;
+  }
+  EXPECT_NE(efforts.front(), efforts.back()) << "or nothing was shown";
+}
+
+TEST_F(NodeFaults, AWrongControllerTurnsEveryEffortRound) {
+  Loop healthy;
+  start(healthy);
+  inject(FaultComponent::kController, FaultKind::kWrong);
+  for (int i = 0; i < 20; ++i) {
+    healthy.step();
+    ASSERT_EQ(publishes(FaultComponent::kController), Lookup::kFrame);
+    EXPECT_EQ(effort(command_), -effort(healthy.newest_command()));
+    EXPECT_NE(effort(command_), 0);
+  }
+}
+
+TEST_F(NodeFaults, AWrongEstimatorMirrorsTheMotion) {
+  state_.pose_odom.position = {1, 2, 0};
+  state_.twist_base = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
+  FaultRandom random;
+  spoil(FaultKind::kWrong, state_, random);
+  EXPECT_EQ(state_.pose_odom.position, (Vector3{-1, -2, 0}));
+  EXPECT_EQ(state_.twist_base.linear, (Vector3{-0.5, 0, 0}));
+  EXPECT_EQ(state_.twist_base.angular, (Vector3{0, 0, -0.2}));
+}
+
+TEST_F(NodeFaults, AWrongMonitorBrakesARobotThatMayDrive) {
+  inject(FaultComponent::kMonitor, FaultKind::kWrong);
+  ASSERT_EQ(publishes(FaultComponent::kMonitor), Lookup::kFrame);
+  EXPECT_EQ(permit_.action, PermitAction::kBrake);
+  loop.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+}
+
+TEST_F(NodeFaults, GarbageIsBrokenUnboundedOrRandom) {
+  inject(FaultComponent::kController, FaultKind::kGarbage);
+  constexpr int kCycles = 2000;
+  int broken = 0, not_finite = 0, finite_ones = 0;
+  for (int i = 0; i < kCycles; ++i) {
+    const Lookup found = publishes(FaultComponent::kController);
+    broken += found == Lookup::kCorrupt ? 1 : 0;
+    if (found != Lookup::kFrame) continue;
+    (finite(command_.joints[0]) ? finite_ones : not_finite) += 1;
+  }
+  // Binomial with p = 1/4: deviation √(np(1 − p)) = 19; five of them.
+  EXPECT_NEAR(broken, kCycles / 4, 97);
+  EXPECT_GT(not_finite, 0);
+  EXPECT_GT(finite_ones, 0);
+}
+
+TEST_F(NodeFaults, AreTheSameInEveryRun) {
+  Loop other;
+  start(other);
+  inject(FaultComponent::kController, FaultKind::kGarbage);
+  inject(other, FaultComponent::kController, FaultKind::kGarbage);
+  for (int i = 0; i < 100; ++i) {
+    other.step();
+    loop.step();
+    const CommandFrame one = loop.newest_command();
+    const CommandFrame two = other.newest_command();
+    EXPECT_EQ(one.head.checksum, two.head.checksum) << i;
+  }
+}
+
+TEST_F(NodeFaults, ACorruptStateCostsTheCommandButNotTheCycle) {
+  inject(FaultComponent::kEstimator, FaultKind::kGarbage);
+  int corrupt = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Lookup state = publishes(FaultComponent::kEstimator);
+    const Lookup command = loop.command.reader.at(1, loop.driver.next_cycle() - 1, command_);
+    EXPECT_EQ(command, state == Lookup::kCorrupt ? Lookup::kToken : Lookup::kFrame);
+    corrupt += state == Lookup::kCorrupt ? 1 : 0;
+  }
+  EXPECT_GT(corrupt, 0);
+}
+
+// What stops the robot, and how soon.
+
+TEST_F(NodeFaults, OfAControllerThatIsOffTheGateHoldsThreeCyclesThenBrakesAndTheMonitorLatches) {
+  inject(FaultComponent::kController, FaultKind::kOff);
+  EXPECT_EQ(cycles_until_brake(50), 5) << "one on time, three held";
+  loop.steps(static_cast<int>(SafetyParameters{}.loss_cycles));
+  EXPECT_NE(loop.newest_permit().causes & kCauseControllerLost, 0u);
+  inject(FaultComponent::kController, FaultKind::kOk);
+  loop.steps(50);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped) << "until a reset";
+}
+
+TEST_F(NodeFaults, OfAnEstimatorThatIsOffTheGateHoldsThreeCyclesThenBrakesAndTheMonitorLatches) {
+  inject(FaultComponent::kEstimator, FaultKind::kOff);
+  EXPECT_EQ(cycles_until_brake(50), 5) << "without a state there is no command";
+  loop.steps(static_cast<int>(SafetyParameters{}.loss_cycles));
+  EXPECT_NE(loop.newest_permit().causes & kCauseEstimatorLost, 0u);
+}
+
+TEST_F(NodeFaults, OfAMonitorThatIsOffThePermitExpires) {
+  inject(FaultComponent::kMonitor, FaultKind::kOff);
+  EXPECT_EQ(cycles_until_brake(50), static_cast<int>(kPermitLife) + 1);
+  EXPECT_NE(loop.gate().reasons & (kGatePermitExpired | kGateNoPermit), 0u);
+}
+
+TEST_F(NodeFaults, OfAMonitorThatIsStuckThePermitExpires) {
+  inject(FaultComponent::kMonitor, FaultKind::kStuck);
+  EXPECT_EQ(cycles_until_brake(50), static_cast<int>(kPermitLife) + 2) << "the frame of the first cycle is healthy";
+  loop.steps(100);
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "a fresh head does not prolong it";
+}
+
+TEST_F(NodeFaults, OfAMonitorThatIsTenCyclesLateThePermitExpires) {
+  inject(FaultComponent::kMonitor, FaultKind::kDelayed);
+  EXPECT_LE(cycles_until_brake(50), static_cast<int>(kPermitLife) + 2);
+  loop.steps(100);
+  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u);
+}
+
+TEST_F(NodeFaults, OfASlowMonitorThePermitExpiresAgainAndAgain) {
+  inject(FaultComponent::kMonitor, FaultKind::kSlow);
+  int braked = 0;
+  for (int i = 0; i < 100; ++i) {
+    loop.step();
+    braked += loop.gate().verdict == GateVerdict::kBrake ? 1 : 0;
+  }
+  // A permit lives for kPermitLife of 10 ticks; in the first of them the command is still that of a controller that
+  // saw no permit. The first spell begins with what was under way.
+  EXPECT_NEAR(braked, 100 - 10 * (static_cast<int>(kPermitLife) - 1), static_cast<int>(kPermitLife));
+}
+
+TEST_F(NodeFaults, OfAControllerThatSendsGarbageTheMonitorLatches) {
+  inject(FaultComponent::kController, FaultKind::kGarbage);
+  loop.steps(100);
+  EXPECT_NE(loop.newest_permit().causes & (kCauseNotFinite | kCauseCorruptFrame), 0u);
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+  EXPECT_GT(loop.gate().refused, 0u);
+}
+
+TEST_F(NodeFaults, NeverAllocate) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  const AllocationGuard guard;
+  for (const FaultComponent node : kNodes) {
+    for (std::size_t kind = 0; kind < kFaultKinds; ++kind) {
+      inject(node, static_cast<FaultKind>(kind));
+      loop.steps(50);
+    }
+    inject(node, FaultKind::kOk);
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control
