@@ -19,10 +19,17 @@ constexpr double kFallen = 30 * M_PI / 180;
 }  // namespace
 
 MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
-    : model_(compile_model(robot, parameters, period)), wheels_(model_, parameters), parameters_(parameters) {
+    : model_(compile_model(robot, parameters, period)),
+      wheels_(model_, parameters),
+      parameters_(parameters),
+      motor_faults_(model_.robot, parameters.seed, model_.model->opt.timestep),
+      sensor_errors_(model_.robot, parameters, period),
+      sensor_faults_(model_.robot, parameters.seed),
+      actuator_delay_(checked_delay("actuator_delay", parameters.actuator_delay)) {
   for (std::size_t wheel = 0; wheel < model_.robot.wheels.size(); ++wheel) {
     laws_.emplace_back(brake_of(model_.robot, wheel, parameters, model_.model->opt.timestep),
                        model_.robot.joints[wheel].effort_limit);
+    motors_.emplace_back(model_.robot.joints[wheel].effort_limit, parameters.no_load_speed, parameters.gear_ratio);
   }
   brakes_.resize(robot.joints.size());
 }
@@ -39,11 +46,17 @@ void MujocoPlant::start() {
   faults_ = 0;
   fault_message_ = {};
   stopped_ = false;
-  joints_ = {};
-  imu_ = {};
+  exact_ = {};
   truth_ = {};
+  injected_ = {};
+  motor_faults_.reset();
+  sensor_errors_.reset();
+  sensor_faults_.reset();
+  actuator_delay_.fill({});
   settled_ = false;
   settle();
+  cycle_ = 0;
+  measure();
 }
 
 void MujocoPlant::settle() {
@@ -54,7 +67,7 @@ void MujocoPlant::settle() {
   std::copy_n(data_->qpos + model_.base_position, 7, origin_.begin());
   double rested = 0;
   for (double time = 0; time < kSettleTime && rested < kRestTime; time += model_.substeps * step) {
-    write(brakes_);
+    simulate(brakes_);
     if (state_ == DriverState::kFault) {
       throw DriverError(where + "the simulation fails while the robot settles: " + fault_message());
     }
@@ -96,19 +109,40 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   const bool good = state_ == DriverState::kRunning;
   sensors.driver_state = state_;
   sensors.faults = faults_;
-  sensors.valid = good ? kValidJoints | kValidGyro | kValidAccelerometer : 0;
+  if (!read_) {
+    handed_out_ = measured_;
+    lost_ = sensor_faults_.step(injected_, cycle_, handed_out_);
+    read_ = true;
+  }
+  sensors.valid = good ? (kValidJoints | kValidGyro | kValidAccelerometer) & ~lost_ : 0;
   sensors.joint_count = brakes_.size();
-  sensors.joints = joints_;
-  sensors.imu = imu_;
+  sensors.joints = handed_out_.joints;
+  sensors.imu = handed_out_.imu;
   sensors.contact_forces = {};
   sensors.digital_inputs = 0;
   sensors.battery_voltage = 0;
   sensors.battery_current = 0;
+  sensors.injected = injected_;
 }
 
 void MujocoPlant::write(std::span<const JointCommand> commands) noexcept {
   if (state_ != DriverState::kRunning) return;
-  if (stopped_ || commands.size() != brakes_.size()) commands = brakes_;
+  if (commands.size() != brakes_.size()) commands = brakes_;
+  commands = received(commands);
+  simulate(motor_faults_.receive(injected_, cycle_, stopped_ ? brakes_ : commands));
+  if (state_ != DriverState::kRunning) return;
+  ++cycle_;
+  measure();
+}
+
+std::span<const JointCommand> MujocoPlant::received(std::span<const JointCommand> commands) noexcept {
+  if (actuator_delay_.delay() == 0) return commands;
+  std::copy(commands.begin(), commands.end(), received_.begin());
+  actuator_delay_.step(received_);
+  return {received_.data(), commands.size()};
+}
+
+void MujocoPlant::simulate(std::span<const JointCommand> commands) noexcept {
   effort_sum_ = {};
   normal_force_sum_ = {};
   acceleration_sum_ = {};
@@ -133,6 +167,11 @@ bool MujocoPlant::truth(TruthFrame& truth) noexcept {
   return true;
 }
 
+bool MujocoPlant::inject(const InjectedFaults& faults) noexcept {
+  injected_ = faults;
+  return true;
+}
+
 void MujocoPlant::substep(void* plant) {
   auto& self = *static_cast<MujocoPlant*>(plant);
   mj_step2(self.model_.model.get(), self.data_.get());
@@ -144,8 +183,10 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   std::fill_n(data_->qfrc_applied, model_.model->nv, 0.0);
   for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) {
     const int dof = model_.joint_velocity[wheel];
-    const double effort =
-        laws_[wheel].step(commands[wheel], data_->qpos[model_.joint_position[wheel]], data_->qvel[dof]);
+    const double position = data_->qpos[model_.joint_position[wheel]];
+    const double velocity = data_->qvel[dof];
+    const double wanted = motors_[wheel].limited(laws_[wheel].step(commands[wheel], position, velocity), velocity);
+    const double effort = motor_faults_.effort(wheel, commands[wheel].mode, wanted, position, velocity);
     data_->qfrc_applied[dof] = effort;
     effort_sum_[wheel] += effort;
   }
@@ -182,15 +223,22 @@ void MujocoPlant::push() noexcept {
 
 void MujocoPlant::collect() noexcept {
   for (std::size_t joint = 0; joint < brakes_.size(); ++joint) {
-    joints_[joint].position = data_->qpos[model_.joint_position[joint]];
-    joints_[joint].velocity = data_->qvel[model_.joint_velocity[joint]];
-    joints_[joint].effort = effort_sum_[joint] / model_.substeps;
+    JointSample& sample = exact_.joints[joint];
+    sample.position = data_->qpos[model_.joint_position[joint]];
+    sample.velocity = data_->qvel[model_.joint_velocity[joint]];
+    sample.effort = effort_sum_[joint] / model_.substeps;
   }
-  std::copy_n(data_->sensordata + model_.gyro, 3, imu_.angular_velocity.begin());
+  std::copy_n(data_->sensordata + model_.gyro, 3, exact_.imu.angular_velocity.begin());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    imu_.linear_acceleration[axis] = acceleration_sum_[axis] / model_.substeps;
+    exact_.imu.linear_acceleration[axis] = acceleration_sum_[axis] / model_.substeps;
   }
   collect_truth();
+}
+
+void MujocoPlant::measure() noexcept {
+  measured_ = exact_;
+  sensor_errors_.step(measured_);
+  read_ = false;
 }
 
 void MujocoPlant::collect_truth() noexcept {
@@ -210,7 +258,7 @@ void MujocoPlant::collect_truth() noexcept {
   mju_rotVecQuat(truth_.twist_base.linear.data(), velocity, to_base);
   std::copy_n(velocity + 3, 3, truth_.twist_base.angular.begin());
 
-  truth_.joints = joints_;
+  truth_.joints = exact_.joints;
   for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) {
     truth_.normal_force[wheel] = normal_force_sum_[wheel] / model_.substeps;
     truth_.slip[wheel] = wheels_.slip(wheel);

@@ -3,7 +3,7 @@
 ///
 /// A period is n = ⌈period / 1 ms⌉ MuJoCo steps of period/n. `write` does for each of them
 ///
-///   wheels: joint law (q, q̇ → τ), tyre friction  →  mj_step2 (accelerations, integration)
+///   wheels: joint law (q, q̇ → τ), motor, tyre friction  →  mj_step2 (accelerations, integration)
 ///   →  mj_step1 (kinematics of the new state)
 ///
 /// Joints that are no wheels take no commands (JointRole): passive ones move freely, held ones stand by friction.
@@ -28,15 +28,23 @@
 /// of `solref` (T = 4 ms) but leaves out the turning of the contact's frame (J̇q̇). In a curve at v, ω the robot
 /// therefore moves sideways with v ω T/2, outwards: 0.2 mm/s at 0.5 m/s and 0.2 rad/s.
 ///
-/// Sensors: encoders (exact), gyro and accelerometer at the IMU, exact. No battery, no contact sensors.
+/// Between command and torque: actuator_delay, injected faults (motor_faults.h), the motor's torque–speed line
+/// (motor.h). Between state and `read`: sensor errors and delay (sensor_errors.h), injected faults (sensor_faults.h).
+/// Truth stands before all of them. `start` takes all injected faults back.
+///
+/// Sensors: encoders of all joints, gyro and accelerometer at the IMU. No battery, no contact sensors.
 
 #include <array>
 #include <string>
 #include <vector>
 
 #include "drivers/joint_law.h"
+#include "drivers/motor.h"
+#include "drivers/motor_faults.h"
 #include "drivers/mujoco_model.h"
 #include "drivers/mujoco_plant_parameters.h"
+#include "drivers/sensor_errors.h"
+#include "drivers/sensor_faults.h"
 #include "drivers/wheel_contacts.h"
 #include "hal/driver.h"
 #include "robot/robot_model.h"
@@ -54,6 +62,7 @@ class MujocoPlant final : public Driver {
   void stop() noexcept override;
   bool simulated() const noexcept override { return true; }
   bool truth(TruthFrame& truth) noexcept override;
+  bool inject(const InjectedFaults& faults) noexcept override;
 
   /// What MuJoCo said when the fault came; "" without one.
   const char* fault_message() const noexcept { return fault_message_.data(); }
@@ -64,6 +73,8 @@ class MujocoPlant final : public Driver {
 
  private:
   static void substep(void* plant);
+  std::span<const JointCommand> received(std::span<const JointCommand> commands) noexcept;
+  void simulate(std::span<const JointCommand> commands) noexcept;
   bool advance(std::span<const JointCommand> commands) noexcept;
   void settle();
   bool at_rest(double base_speed, double joint_speed) const noexcept;
@@ -71,6 +82,7 @@ class MujocoPlant final : public Driver {
   void push() noexcept;
   void collect() noexcept;
   void collect_truth() noexcept;
+  void measure() noexcept;
   bool finite() const noexcept;
   void fail(std::uint64_t fault, const char* message) noexcept;
 
@@ -79,6 +91,10 @@ class MujocoPlant final : public Driver {
   WheelContacts wheels_;
   MujocoPlantParameters parameters_;
   std::vector<JointLaw> laws_;  ///< per drive wheel
+  std::vector<Motor> motors_;   ///< per drive wheel
+  MotorFaults motor_faults_;
+  SensorErrors sensor_errors_;
+  SensorFaults sensor_faults_;
   std::vector<JointCommand> brakes_;
   std::array<double, 7> origin_{};  ///< qpos of the base at time zero
   std::array<double, 3> push_{};    ///< N, world axes
@@ -94,9 +110,18 @@ class MujocoPlant final : public Driver {
   std::array<double, kMaxWheels> normal_force_sum_{};
   std::array<double, 3> acceleration_sum_{};
 
-  // of t_k, as handed out
-  std::array<JointSample, kMaxJoints> joints_{};
-  ImuSample imu_;
+  using Commands = std::array<JointCommand, kMaxJoints>;
+  Commands received_{};
+  DelayLine<Commands, kLongestDelay> actuator_delay_;
+  InjectedFaults injected_{};
+  std::uint64_t cycle_ = 0;  ///< writes since `start`
+
+  // of t_k
+  Measurement exact_;
+  Measurement measured_;    ///< with its errors
+  Measurement handed_out_;  ///< with its faults, once it was read
+  bool read_ = false;
+  std::uint64_t lost_ = 0;  ///< SensorValidity bits taken by faults
   TruthFrame truth_;
 };
 
