@@ -8,7 +8,7 @@
 #include <assimp/Importer.hpp>
 #include <memory>
 
-#include "robot/collada_nodes.h"
+#include "robot/other_process.h"
 
 namespace robot_control {
 namespace {
@@ -50,21 +50,32 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent
   for (unsigned int i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], in_root, points);
 }
 
-}  // namespace
-
-MeshFaces parse_with_assimp(std::string_view bytes, const std::string& format) {
-  if (format == "dae") {
-    if (std::string problem = collada_node_problem(bytes); !problem.empty()) return {{}, std::move(problem)};
-  }
+/// "F" and the points' bytes, or "P" and the problem.
+std::string parsed(std::string_view bytes, const std::string& format) {
   Assimp::Importer importer;
   importer.SetIOHandler(std::make_unique<NoFiles>().release());
   keep_only(importer, format);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.c_str());
-  if (scene == nullptr || scene->mRootNode == nullptr) return {{}, importer.GetErrorString()};
+  if (scene == nullptr || scene->mRootNode == nullptr) return std::string("P") + importer.GetErrorString();
+  std::vector<Eigen::Vector3d> points;
+  collect(*scene, *scene->mRootNode, aiMatrix4x4(), points);
+  return "F" + std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Eigen::Vector3d));
+}
+
+}  // namespace
+
+MeshFaces parse_with_assimp(std::string_view bytes, const std::string& format) {
+  const ProcessResult result = run_apart([&] { return parsed(bytes, format); });
+  if (result.end == ProcessResult::End::kNotStarted) return {{}, "no process to read it in"};
+  if (result.end != ProcessResult::End::kExited || result.code != 0 || result.output.empty()) {
+    return {{}, "assimp breaks down over it"};
+  }
+  if (result.output[0] == 'P') return {{}, result.output.substr(1)};
   MeshFaces faces;
-  collect(*scene, *scene->mRootNode, aiMatrix4x4(), faces.points);
+  faces.points.resize((result.output.size() - 1) / sizeof(Eigen::Vector3d));
+  result.output.copy(reinterpret_cast<char*>(faces.points.data()), std::string::npos, 1);
   return faces;
 }
 

@@ -31,7 +31,7 @@ Points read_mesh(const std::filesystem::path& path);
 ///
 /// Of more than kMostHullCorners, that many are kept: those that span the bounding box, then always the corner
 /// farthest from all that are kept. The hull then lies inside the true one by less than the distance of the last one
-/// added: at most 10 % of the radius for a ball of any fineness, where the loss in depth is 0.3 %.
+/// added: at most 10 % of the radius for a ball of any fineness, where the loss in depth is below 0.5 %.
 Points hull_corners(const Points& points);
 
 /// hull_corners(read_mesh(path)), remembered until the file's size or time of change is another. A hull may be scaled
@@ -39,6 +39,6 @@ Points hull_corners(const Points& points);
 Points mesh_corners(const std::filesystem::path& path);
 
 inline constexpr std::size_t kMostHullCorners = 1000;
-inline constexpr std::uintmax_t kLargestMesh = 256U << 20U;  ///< bytes
+inline constexpr std::uintmax_t kLargestMesh = 100U << 20U;  ///< bytes
 
 }  // namespace robot_control

@@ -105,22 +105,25 @@ std::optional<fs::path> folder_of_urdf(const RobotDescription& description) {
   return error ? std::nullopt : std::optional(file.parent_path());
 }
 
-std::optional<fs::path> above_urdf(const std::string& package, const RobotDescription& description) {
+std::optional<fs::path> above_urdf(const std::string& package, const std::string& file,
+                                   const RobotDescription& description) {
   const std::optional<fs::path> start = folder_of_urdf(description);
   if (!start) return {};
   for (fs::path folder = start->lexically_normal(); folder != folder.root_path(); folder = folder.parent_path()) {
     if (is_there(folder / "package.xml") && package_name(folder) == package) return folder;
-    if (is_folder(folder / package)) return folder / package;
+    // any folder may happen to bear the name
+    if (is_there(folder / package / "package.xml") || is_there(folder / package / file)) return folder / package;
   }
   return {};
 }
 
-std::optional<fs::path> find_package(const std::string& package, const RobotDescription& description) {
+std::optional<fs::path> find_package(const std::string& package, const std::string& file,
+                                     const RobotDescription& description) {
   if (const std::optional<fs::path> folder = on_search_path(package)) return folder;
   for (const fs::path& prefix : folders_of(environment("CMAKE_PREFIX_PATH"))) {
     if (is_folder(prefix / "share" / package)) return prefix / "share" / package;
   }
-  return above_urdf(package, description);
+  return above_urdf(package, file, description);
 }
 
 std::string element_of(const std::string& uri) {
@@ -134,7 +137,8 @@ fs::path package_file(const std::string& uri, const RobotDescription& descriptio
   if (package.empty() || slash == std::string::npos) {
     refuse(description.source, element_of(uri), "it names no file in a package", "Write package://PACKAGE/PATH");
   }
-  const std::optional<fs::path> folder = find_package(package, description);
+  const std::string file = rest.substr(slash + 1);
+  const std::optional<fs::path> folder = find_package(package, file, description);
   if (!folder) {
     const std::string searched = environment("ROS_PACKAGE_PATH");
     refuse(description.source, element_of(uri),
@@ -143,7 +147,7 @@ fs::path package_file(const std::string& uri, const RobotDescription& descriptio
                (folder_of_urdf(description) ? ", nor beside the URDF or above it" : ""),
            "Install it, or add the folder that holds it to ROS_PACKAGE_PATH");
   }
-  return *folder / rest.substr(slash + 1);
+  return *folder / file;
 }
 
 int hexadecimal(char c) {

@@ -21,7 +21,8 @@ namespace robot_control {
 ///      searched further, nor are hidden folders, those with CATKIN_IGNORE or rospack_nosubdirs, or more than
 ///      kPackageDepth levels; a package's name is that in package.xml, else its folder's;
 ///   2. share/PACKAGE in each prefix of CMAKE_PREFIX_PATH;
-///   3. beside the URDF and above it: a folder on the way up that is the package, or one that holds it by its name.
+///   3. beside the URDF and above it: a folder on the way up that is the package, or has one of its name with a
+///      package.xml or with the file.
 ///
 /// Throws RobotError, naming what was looked for and where: an unknown package, a file that is not there, another
 /// scheme, no name at all.

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "robot/program.h"
+#include "robot/other_process.h"
 #include "robot/urdf_document.h"
 
 namespace robot_control {
@@ -46,20 +46,20 @@ std::string expand_xacro(const std::string& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) refuse(path, "xacro", "there is no such file", "Give the path of a file");
   const std::string interpreter = python();
-  const ProgramResult result =
+  const ProcessResult result =
       run_program({interpreter, "-P", "-m", "robot_control.expand_xacro", fs::absolute(path).string()},
                   {python_path(), "PYTHONUTF8=1", "PYTHONDONTWRITEBYTECODE=1"}, kXacroSeconds);
   switch (result.end) {
-    case ProgramResult::End::kNotStarted:
+    case ProcessResult::End::kNotStarted:
       refuse(path, "xacro", interpreter + " cannot be started",
              "Set ROBOT_CONTROL_XACRO_PYTHON to a Python that has xacro, " + std::string(kByHand));
-    case ProgramResult::End::kEnded:
+    case ProcessResult::End::kEnded:
       refuse(path, "xacro", "it wrote nothing for " + std::to_string(kXacroSeconds) + " s, or without end",
              "Look for a circle of includes or macros, " + std::string(kByHand));
-    case ProgramResult::End::kKilled:
+    case ProcessResult::End::kKilled:
       refuse(path, "xacro", "it was killed by signal " + std::to_string(result.code),
              "Start it again, " + std::string(kByHand));
-    case ProgramResult::End::kExited:
+    case ProcessResult::End::kExited:
       break;
   }
   if (result.code == kNotInstalled) {

@@ -1,14 +1,17 @@
-#include "robot/program.h"
+#include "robot/other_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -84,7 +87,7 @@ bool read_some(int from, std::string& to) {
 }
 
 /// Until both are closed; false: too silent or too much.
-bool read_all(Pipe& output, Pipe& errors, int silence, ProgramResult& result) {
+bool read_all(Pipe& output, Pipe& errors, int silence, ProcessResult& result) {
   while (output.reader() >= 0 || errors.reader() >= 0) {
     // poll passes over a negative descriptor
     std::array<pollfd, 2> watched{{{output.reader(), POLLIN, 0}, {errors.reader(), POLLIN, 0}}};
@@ -98,29 +101,75 @@ bool read_all(Pipe& output, Pipe& errors, int silence, ProgramResult& result) {
   return true;
 }
 
-}  // namespace
-
-ProgramResult run_program(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
-                          int silence) {
-  ProgramResult result;
-  Pipe output;
-  Pipe errors;
-  if (output.reader() < 0 || errors.reader() < 0) return result;
-  const pid_t child = spawn(arguments, overlaid(environment), output, errors);
-  if (child < 0) return result;
+ProcessResult watched(pid_t child, Pipe& output, Pipe& errors, int silence) {
+  ProcessResult result;
   output.close_writer();
   errors.close_writer();
-
   const bool is_complete = read_all(output, errors, silence, result);
   if (!is_complete) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  result.end = !is_complete        ? ProgramResult::End::kEnded
-               : WIFEXITED(status) ? ProgramResult::End::kExited
-                                   : ProgramResult::End::kKilled;
+  result.end = !is_complete        ? ProcessResult::End::kEnded
+               : WIFEXITED(status) ? ProcessResult::End::kExited
+                                   : ProcessResult::End::kKilled;
   result.code = WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status);
   return result;
+}
+
+void limit(int resource, rlim_t value) {
+  rlimit limits{};
+  getrlimit(static_cast<__rlimit_resource>(resource), &limits);
+  limits.rlim_cur = std::min(value, limits.rlim_max);
+  setrlimit(static_cast<__rlimit_resource>(resource), &limits);
+}
+
+rlim_t address_space() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+}
+
+[[noreturn]] void work_apart(const std::function<std::string()>& work, const Pipe& output, const Pipe& errors) {
+  dup2(errors.writer(), STDERR_FILENO);
+  // A crash is to be one: no handler of a sanitizer's or of ours.
+  for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal_number, SIG_DFL);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, kApartSeconds);
+  limit(RLIMIT_AS, address_space() + kApartMemory);
+  try {
+    const std::string text = work();
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t wrote = write(output.writer(), text.data() + done, text.size() - done);
+      if (wrote < 0 && errno != EINTR) _exit(1);
+      if (wrote > 0) done += static_cast<std::size_t>(wrote);
+    }
+  } catch (...) {
+    _exit(1);
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+ProcessResult run_program(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
+                          int silence) {
+  Pipe output;
+  Pipe errors;
+  if (output.reader() < 0 || errors.reader() < 0) return {};
+  const pid_t child = spawn(arguments, overlaid(environment), output, errors);
+  if (child < 0) return {};
+  return watched(child, output, errors, silence);
+}
+
+ProcessResult run_apart(const std::function<std::string()>& work) {
+  Pipe output;
+  Pipe errors;
+  if (output.reader() < 0 || errors.reader() < 0) return {};
+  const pid_t child = fork();
+  if (child < 0) return {};
+  if (child == 0) work_apart(work, output, errors);
+  return watched(child, output, errors, 2 * kApartSeconds);
 }
 
 }  // namespace robot_control

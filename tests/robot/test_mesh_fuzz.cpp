@@ -1,0 +1,81 @@
+/// Broken files: refused or read, never more. The failing seed is printed, and under AddressSanitizer what it broke.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mesh_texts.h"
+#include "robot/assimp_mesh.h"
+#include "robot/mesh.h"
+#include "robot/stl.h"
+
+namespace robot_control {
+namespace {
+
+constexpr unsigned kSeeds = 2000;
+constexpr unsigned kAssimpSeeds = 300;  // each is a process
+
+/// One to four changes: a bit, a cut, a piece said twice or elsewhere, another number.
+std::string broken(std::string text, std::mt19937& random) {
+  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  for (std::size_t change = 1 + below(4); change > 0 && !text.empty(); --change) {
+    const std::size_t at = below(text.size());
+    const std::size_t length = 1 + below(40);
+    switch (below(6)) {
+      case 0:
+        text[at] = static_cast<char>(text[at] ^ (1 << below(8)));
+        break;
+      case 1:
+        text.resize(at);
+        break;
+      case 2:
+        text.erase(at, length);
+        break;
+      case 3:
+        text.insert(below(text.size()), std::string(text.substr(at, length)));
+        break;
+      case 4:
+        for (std::size_t i = 0; i < 3; ++i) text.insert(at, text.substr(at, length));
+        break;
+      default: {
+        const std::size_t digit = text.find_first_of("0123456789", at);
+        const char* const numbers[] = {"-1", "99999", "4294967295", "1e39", "nan", "0", ""};
+        if (digit != std::string::npos) text.replace(digit, 1, numbers[below(std::size(numbers))]);
+      }
+    }
+  }
+  return text;
+}
+
+template <typename Parse>
+void expect_only_faces_or_a_problem(const std::string& healthy, unsigned seeds, Parse parse) {
+  for (unsigned seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const MeshFaces faces = parse(broken(healthy, random));
+    Points finite = faces.points;
+    std::erase_if(finite, [](const Eigen::Vector3d& point) { return !point.allFinite(); });
+    EXPECT_LE(hull_corners(finite).size(), kMostHullCorners);
+  }
+}
+
+TEST(MeshFuzz, BinaryStl) {
+  expect_only_faces_or_a_problem(kBinaryStl, kSeeds, parse_stl);
+}
+
+TEST(MeshFuzz, TextStl) {
+  expect_only_faces_or_a_problem(kTextStl, kSeeds, parse_stl);
+}
+
+TEST(MeshFuzz, Obj) {
+  expect_only_faces_or_a_problem(kObj, kAssimpSeeds,
+                                 [](const std::string& text) { return parse_with_assimp(text, "obj"); });
+}
+
+TEST(MeshFuzz, Dae) {
+  expect_only_faces_or_a_problem(kDae, kAssimpSeeds,
+                                 [](const std::string& text) { return parse_with_assimp(text, "dae"); });
+}
+
+}  // namespace
+}  // namespace robot_control
