@@ -7,6 +7,7 @@ log["truth_linear"]  # numpy, one value per cycle
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping
 from os import PathLike, fspath
 from typing import Any
@@ -21,26 +22,33 @@ Log = dict[str, NDArray[np.float64]]
 Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None
 
 
+def _yaml(value: Any) -> str:
+    """YAML text of a number, a truth value, a text or a list of them."""
+    if isinstance(value, bool | np.bool_):
+        return "true" if value else "false"
+    if isinstance(value, float | np.floating):
+        return repr(float(value)) if np.isfinite(value) else {"nan": ".nan", "inf": ".inf"}.get(str(value), "-.inf")
+    if isinstance(value, list | tuple | np.ndarray):
+        return "[" + ", ".join(json.dumps(item) if isinstance(item, str) else _yaml(item) for item in value) + "]"
+    return str(value)
+
+
 def _leaves(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
     """Dotted path and YAML text of every value of a nested dict."""
     for key, value in tree.items():
         path = f"{prefix}{key}"
         if isinstance(value, Mapping):
             yield from _leaves(value, path + ".")
-        elif isinstance(value, bool):
-            yield path, "true" if value else "false"
-        elif isinstance(value, float):
-            yield path, repr(value) if np.isfinite(value) else {"nan": ".nan", "inf": ".inf"}.get(str(value), "-.inf")
         else:
-            yield path, str(value)
+            yield path, _yaml(value)
 
 
 class ClosedLoop:
     """Plant, estimator, controller and safety monitor, one cycle after the other.
 
     Args:
-        params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`;
-            None takes that file as it is.
+        params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`,
+            lists for `left_wheel_joints` and its like; None takes that file as it is.
         seed: of every random number in the plant.
         urdf: path of the robot description; overrides `robot.urdf`.
         scene: path of the MJCF world; overrides `mujoco_plant.scene`.

@@ -24,7 +24,7 @@ CommandReport::CommandReport(const RobotModel& robot, const DriveControllerParam
 std::string CommandReport::speeds(const PlanarTwist& wish) const {
   const double scale = kinematics_.wheel_speed_scale(wish);
   const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
-  const WheelPair rims = kinematics_.rim_speeds(twist);
+  const SidePair rims = kinematics_.rim_speeds(twist);
   std::string text = format("left %.2f m/s, right %.2f m/s (cmd_vel %g m/s, %g rad/s", rims.left, rims.right,
                             wish.linear, wish.angular);
   if (twist.linear != wish.linear || twist.angular != wish.angular) {

@@ -1,7 +1,6 @@
 #include "bridge/motion_messages.h"
 
 #include <algorithm>
-#include <array>
 
 namespace robot_control {
 namespace {
@@ -42,10 +41,6 @@ msg::Odometry odometry_of(const Pose& pose, const Twist& twist, const std::strin
   message.pose.pose.orientation = quaternion_message(pose.orientation);
   message.twist.twist = twist_message(twist);
   return message;
-}
-
-std::array<std::size_t, 2> wheels(const RobotModel& robot) {
-  return {robot.left.joint, robot.right.joint};
 }
 
 }  // namespace
@@ -107,7 +102,7 @@ msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stam
 
 msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot) {
   msg::Float64MultiArray message;
-  for (const std::size_t wheel : wheels(robot)) message.data.push_back(command.joints[wheel].velocity);
+  for (const WheelModel& wheel : robot.wheels) message.data.push_back(command.joints[wheel.joint].velocity);
   msg::MultiArrayDimension dimension;
   dimension.label = "wheel";
   dimension.size = dimension.stride = static_cast<std::uint32_t>(message.data.size());
@@ -118,9 +113,9 @@ msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotMo
 msg::JointState joint_targets(const CommandFrame& command, const RobotModel& robot, ros::Time stamp) {
   msg::JointState message;
   message.header.stamp = stamp;
-  for (const std::size_t wheel : wheels(robot)) {
-    message.name.push_back(robot.joints[wheel].name);
-    message.velocity.push_back(command.joints[wheel].velocity);
+  for (const WheelModel& wheel : robot.wheels) {
+    message.name.push_back(robot.joints[wheel.joint].name);
+    message.velocity.push_back(command.joints[wheel.joint].velocity);
   }
   return message;
 }

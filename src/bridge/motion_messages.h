@@ -17,7 +17,7 @@ namespace robot_control {
 
 Twist twist_of(const msg::Twist& message);
 
-/// All joints in the order of the frames: wheels first, left before right.
+/// All joints in the order of the frames: wheels first, left before right; casters and other joints follow.
 msg::JointState joint_states(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
 
 /// Pose in `odom_frame`, twist in `base_frame`; both covariances complete (REP 105, nav_msgs/Odometry).
@@ -34,7 +34,7 @@ msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_fram
 /// REP 145: in the IMU link's axes; a covariance that begins with −1 says "not measured", all zero "unknown".
 msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
 
-/// Velocity targets of the wheels [rad/s], left, right; dim[0].label is "wheel".
+/// Velocity targets of the wheels [rad/s] in the order of RobotModel::wheels; dim[0].label is "wheel".
 msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot);
 
 /// The same with names.

@@ -2,10 +2,12 @@
 
 #include <ros/ros.h>
 
+#include "bridge/description.h"
 #include "bridge/diagnostics.h"
 #include "bridge/motion_messages.h"
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
+#include "bridge/robot_report.h"
 #include "drivers/mujoco_plant.h"
 #include "runtime/driver_process.h"
 
@@ -21,11 +23,12 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     const LoopParameters& loop = parameters().loop;
     auto plant = std::make_unique<MujocoPlant>(robot(), parameters().plant, loop.period());
     plant_ = plant.get();
-    ros::param::set("robot_description", robot().urdf);
+    description_ = std::make_unique<PublishedDescription>(robot(), parameters().urdf);
     process().open_driver(std::move(plant));
   }
 
   void connect(ros::NodeHandle& handle) override {
+    tell_robot();
     imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
@@ -56,6 +59,18 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
   }
 
  private:
+  void tell_robot() {
+    ROS_INFO("%s", summary(robot()).c_str());
+    for (const RobotNote& note : robot().notes) {
+      const std::string text = sentence(note);
+      if (needs_a_look(note)) {
+        ROS_WARN("%s", text.c_str());
+      } else {
+        ROS_INFO("%s", text.c_str());
+      }
+    }
+  }
+
   void publish_clock() {
     msg::Clock message;
     message.clock = time().at(sensors_.head.stamp_ns);
@@ -63,6 +78,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
   }
 
   const MujocoPlant* plant_ = nullptr;
+  std::unique_ptr<PublishedDescription> description_;
   ros::Publisher imu_;
   ros::Publisher truth_;
   ros::Publisher clock_;

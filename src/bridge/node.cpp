@@ -129,13 +129,13 @@ class NodeLoop {
 
 }  // namespace
 
-int run_node(int argc, char** argv, const std::string& name, RobotSource source, MakeNode make) {
+int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
     catch_signals();
     if (!await_master(name)) return 0;
-    const Setup setup = read_setup(name, source);
+    const Setup setup = read_setup(name);
     const LoopParameters& loop = setup.parameters.loop;
     prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
     const std::unique_ptr<Node> node = make(setup);

@@ -53,7 +53,7 @@ class Node {
 using MakeNode = std::unique_ptr<Node> (*)(const Setup&);
 
 /// The body of main. 0: ended by SIGINT, SIGTERM, ROS or by itself. 1: refused, told on stderr.
-int run_node(int argc, char** argv, const std::string& name, RobotSource source, MakeNode make);
+int run_node(int argc, char** argv, const std::string& name, MakeNode make);
 
 /// Publish tick for topics of these rates [Hz], in a loop of this period: a quarter of the shortest interval,
 /// 0.25 … 2 ms. In lockstep, where simulated time runs much faster, the shortest.

@@ -42,8 +42,13 @@ std::string text_of(XmlRpc::XmlRpcValue value) {
       return number(static_cast<double>(value));
     case XmlRpc::XmlRpcValue::TypeString:
       return quoted(static_cast<std::string>(value));
+    case XmlRpc::XmlRpcValue::TypeArray: {
+      std::string text = "[";
+      for (int i = 0; i < value.size(); ++i) text.append(i == 0 ? "" : ", ").append(text_of(value[i]));
+      return text.append("]");
+    }
     default:
-      return value.toXml();  // a list where a value belongs: the schema refuses it
+      return quoted(value.toXml());  // what no parameter is: the schema refuses it
   }
 }
 

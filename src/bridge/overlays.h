@@ -16,7 +16,8 @@ class XmlRpcValue;
 
 namespace robot_control {
 
-/// All leaves of `tree`: path "block.key", origin "<server_name>/key". Keys in `ignored` are left out.
+/// All leaves of `tree`, a list being one: path "block.key", origin "<server_name>/key". Keys in `ignored` are left
+/// out.
 std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::string& block,
                                  const std::string& server_name, const std::vector<std::string>& ignored = {});
 

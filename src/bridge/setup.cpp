@@ -6,6 +6,9 @@
 #include <ros/param.h>
 #include <ros/this_node.h>
 
+#include <algorithm>
+
+#include "bridge/description.h"
 #include "bridge/overlays.h"
 #include "hal/bus.h"
 
@@ -38,11 +41,12 @@ std::vector<Overlay> server_overlays(const std::string& node) {
   return overlays;
 }
 
-RobotDescription description(const Parameters& parameters, RobotSource source) {
+RobotDescription description(const Parameters& parameters, const std::vector<Overlay>& overlays) {
   const std::string name = ros::names::resolve("robot_description");
-  std::string text;
-  if (source == RobotSource::kServerElseFile && ros::param::get(name, text) && !text.empty()) return {text, name};
-  return load_description(parameters.urdf);
+  std::string published;
+  ros::param::get(name, published);
+  const bool asked_for = std::ranges::any_of(overlays, [](const Overlay& o) { return o.path == "robot.urdf"; });
+  return chosen_description(parameters, asked_for, published, name);
 }
 
 void add(std::string& problems, const std::string& problem) {
@@ -68,7 +72,7 @@ std::string clock_problem(ClockMode clock, bool use_sim_time) {
 
 namespace {
 
-void fill_setup(const std::string& node, RobotSource source, Setup& setup) {
+void fill_setup(const std::string& node, Setup& setup) {
   const std::string path = config_path();
   const std::vector<Overlay> overlays = server_overlays(node);
   for (const Overlay& overlay : overlays) {
@@ -84,7 +88,9 @@ void fill_setup(const std::string& node, RobotSource source, Setup& setup) {
   ros::param::get("/use_sim_time", use_sim_time);
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
   try {
-    setup.robot = read_robot(description(setup.parameters, source), setup.parameters.robot);
+    setup.robot = read_robot(description(setup.parameters, overlays), setup.parameters.robot);
+    std::string& base_frame = setup.parameters.report.base_frame;
+    if (base_frame.empty()) base_frame = setup.robot.base_link;
   } catch (const RobotError& error) {
     add(problems, error.what());
   }
@@ -98,10 +104,10 @@ void fill_setup(const std::string& node, RobotSource source, Setup& setup) {
 
 }  // namespace
 
-Setup read_setup(const std::string& node, RobotSource source) {
+Setup read_setup(const std::string& node) {
   Setup setup;
   try {
-    fill_setup(node, source, setup);
+    fill_setup(node, setup);
   } catch (const SetupError& error) {
     std::string text = error.what();
     for (const std::string& line : setup.overrides) text += "\n  " + line;

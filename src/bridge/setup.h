@@ -19,12 +19,6 @@ class SetupError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Where a node takes its robot from.
-enum class RobotSource {
-  kServerElseFile,  ///< `robot_description` of the parameter server, else the file of robot.urdf
-  kFile,            ///< that file; the driver, which publishes `robot_description` itself
-};
-
 struct Setup {
   Parameters parameters;
   RobotModel robot;
@@ -36,7 +30,8 @@ struct Setup {
 /// too; empty when they agree.
 std::string clock_problem(ClockMode clock, bool use_sim_time);
 
-/// `node`: program and block of the YAML file ("state_estimator"). Throws SetupError with all problems at once.
-Setup read_setup(const std::string& node, RobotSource source);
+/// `node`: program and block of the YAML file ("state_estimator"). The robot is that of description.h. Throws
+/// SetupError with all problems at once.
+Setup read_setup(const std::string& node);
 
 }  // namespace robot_control

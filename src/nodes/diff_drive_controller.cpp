@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "diff_drive_controller", RobotSource::kServerElseFile, make_diff_drive_controller);
+  return run_node(argc, argv, "diff_drive_controller", make_diff_drive_controller);
 }

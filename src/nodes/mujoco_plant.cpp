@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "mujoco_plant", RobotSource::kFile, make_mujoco_plant);
+  return run_node(argc, argv, "mujoco_plant", make_mujoco_plant);
 }

@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "telemetry", RobotSource::kServerElseFile, make_telemetry);
+  return run_node(argc, argv, "telemetry", make_telemetry);
 }

@@ -46,9 +46,7 @@ class CommandReportTest : public testing::Test {
   static RobotModel robot() {
     RobotModel robot;
     robot.wheel_base = 0.5;
-    robot.left.radius = robot.right.radius = 0.1;
-    robot.left.joint = 0;
-    robot.right.joint = 1;
+    robot.wheels = {WheelModel{.joint = 0, .radius = 0.1}, WheelModel{.joint = 1, .radius = 0.1, .side = Side::kRight}};
     robot.joints.resize(2);
     return robot;
   }

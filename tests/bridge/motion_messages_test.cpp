@@ -18,8 +18,7 @@ class MotionMessagesTest : public testing::Test {
     robot_.joints[0].name = "left";
     robot_.joints[1].name = "right";
     robot_.joints[2].name = "mast";
-    robot_.left.joint = 0;
-    robot_.right.joint = 1;
+    robot_.wheels = {WheelModel{.joint = 0}, WheelModel{.joint = 1, .side = Side::kRight}};
     sensors_.joint_count = 3;
     sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
   }
@@ -98,6 +97,14 @@ TEST_F(MotionMessagesTest, JointCommandsAreTheWheelsVelocityTargets) {
   const msg::JointState targets = joint_targets(command_, robot_, stamp_);
   EXPECT_THAT(targets.name, ElementsAre("left", "right"));
   EXPECT_THAT(targets.velocity, ElementsAre(4.5, 5.5));
+}
+
+TEST_F(MotionMessagesTest, JointCommandsAreOfAllWheelsInTheOrderOfTheModel) {
+  robot_.wheels.push_back(WheelModel{.joint = 2, .side = Side::kRight});
+  command_.joints[2].velocity = 6.5;
+  EXPECT_THAT(joint_commands(command_, robot_).data, ElementsAre(0, 0, 6.5));
+  EXPECT_EQ(joint_commands(command_, robot_).layout.dim[0].size, 3u);
+  EXPECT_THAT(joint_targets(command_, robot_, stamp_).name, ElementsAre("left", "right", "mast"));
 }
 
 TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {

@@ -48,6 +48,21 @@ TEST(Overlays, SpellNotANumberAsYamlDoes) {
   EXPECT_EQ(overlays[2].text, "false");
 }
 
+TEST(Overlays, SpellListsAsYamlDoes) {
+  XmlRpc::XmlRpcValue tree;
+  tree["joints"][0] = std::string("front: \"left\"");
+  tree["joints"][1] = std::string("rear");
+  tree["centre"][0] = 0.5;
+  tree["centre"][1] = -1;
+  tree["none"].setSize(0);
+  const std::vector<Overlay> overlays = overlays_of(tree, "robot", "/robot");
+  ASSERT_EQ(overlays.size(), 3u);
+  EXPECT_EQ(overlays[0].text, "[0.5, -1]");
+  EXPECT_EQ(overlays[1].path, "robot.joints");
+  EXPECT_EQ(overlays[1].text, R"(["front: \"left\"", "rear"])");
+  EXPECT_EQ(overlays[2].text, "[]");
+}
+
 TEST(Overlays, AreNoneWhereNothingIsSet) {
   EXPECT_TRUE(overlays_of(XmlRpc::XmlRpcValue(), "robot", "/robot").empty());
 }

@@ -1,0 +1,49 @@
+#include "bridge/description.h"
+
+#include <ros/param.h>
+
+namespace robot_control {
+namespace {
+
+constexpr const char* kDescription = "robot_description";
+constexpr const char* kUrdf = "robot/urdf";
+
+void restore(const char* name, const std::string& before) {
+  if (before.empty()) {
+    ros::param::del(name);
+  } else {
+    ros::param::set(name, before);
+  }
+}
+
+}  // namespace
+
+RobotDescription chosen_description(const Parameters& parameters, bool urdf_asked_for, const std::string& published,
+                                    const std::string& name) {
+  if (urdf_asked_for || published.empty()) return load_description(parameters.urdf);
+  try {
+    RobotDescription file = load_description(parameters.urdf);
+    if (file.text == published) return file;
+  } catch (const RobotError&) {
+    // The file is not asked for.
+  }
+  return {published, name};
+}
+
+PublishedDescription::PublishedDescription(const RobotModel& robot, const std::string& urdf) {
+  ros::param::get(kDescription, description_before_);
+  changed_description_ = description_before_ != robot.urdf;
+  if (changed_description_) ros::param::set(kDescription, robot.urdf);
+  if (!ros::param::has("~urdf")) return;
+  ros::param::get(kUrdf, urdf_before_);
+  changed_urdf_ = urdf_before_ != urdf;
+  if (changed_urdf_) ros::param::set(kUrdf, urdf);
+  ros::param::del("~urdf");  // an argument of this start, not of the next one
+}
+
+PublishedDescription::~PublishedDescription() {
+  if (changed_description_) restore(kDescription, description_before_);
+  if (changed_urdf_) restore(kUrdf, urdf_before_);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,41 @@
+#pragma once
+/// Which description of the robot a node reads. All nodes ask in the same order, so that they agree:
+///
+///   1. the file of `robot/urdf` or of the plant's `~urdf` on the parameter server: somebody asked for it;
+///   2. `robot_description`: the user's, or what a plant published;
+///   3. the file of the YAML file's `robot.urdf`.
+///
+/// A plant publishes what it has read as `robot_description` and makes its `~urdf` everybody's `robot/urdf`; when it
+/// ends, the parameter server is as it was. A text from the server has no folder, so meshes named relative to the URDF
+/// are found only where it is the very text of the file in 3; package:// and file:// are found always.
+
+#include <optional>
+#include <string>
+
+#include "parameters/parameters.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+/// `urdf_asked_for`: parameters.urdf came from the server. `published`: the text on the server, or empty;
+/// `name`: its resolved name. Throws RobotError where a file is needed and cannot be read.
+RobotDescription chosen_description(const Parameters& parameters, bool urdf_asked_for, const std::string& published,
+                                    const std::string& name);
+
+/// What a plant leaves on the parameter server while it lives.
+class PublishedDescription {
+ public:
+  /// `urdf`: path the robot was read from, if it was a file.
+  PublishedDescription(const RobotModel& robot, const std::string& urdf);
+  ~PublishedDescription();
+  PublishedDescription(const PublishedDescription&) = delete;
+  PublishedDescription& operator=(const PublishedDescription&) = delete;
+
+ private:
+  bool changed_description_ = false;
+  bool changed_urdf_ = false;
+  std::string description_before_;
+  std::string urdf_before_;
+};
+
+}  // namespace robot_control
