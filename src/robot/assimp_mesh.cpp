@@ -58,10 +58,11 @@ std::string parsed(std::string_view bytes, const std::string& format) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.c_str());
-  if (scene == nullptr || scene->mRootNode == nullptr) return std::string("P") + importer.GetErrorString();
+  if (scene == nullptr || scene->mRootNode == nullptr) return std::string(1, 'P').append(importer.GetErrorString());
   std::vector<Eigen::Vector3d> points;
   collect(*scene, *scene->mRootNode, aiMatrix4x4(), points);
-  return "F" + std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Eigen::Vector3d));
+  return std::string(1, 'F').append(reinterpret_cast<const char*>(points.data()),
+                                    points.size() * sizeof(Eigen::Vector3d));
 }
 
 }  // namespace
