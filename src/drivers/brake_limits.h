@@ -1,12 +1,13 @@
 #pragma once
 /// How hard a wheel brakes: what the user says, else what robot and time step bear.
 ///
-///   effort      B = min(effort limit, max(a (m + Σ J/r²), m g sin 10°) r / n)      n drive wheels
+///   effort      B = min(effort limit, max(B₀ − f, B₀/10)),  B₀ = max(a (m + Σ J/r²), m g sin 10°) r / n
 ///   damping     d = 0.4 J/h
 ///   stiffness   k = 0.06 J/h²
 ///   hold speed  0.03 m/s / r
 ///
-/// h time step, J the wheel's inertia about its axle, r its radius, m the robot's mass. a is half of the deceleration
+/// n drive wheels, h time step, J a wheel's inertia about its axle, r its radius, f its joint's own dry friction, which
+/// brakes as well, m the robot's mass. a is half of the deceleration
 /// at which wheels lift: about a support at the horizontal distance d from the centre of gravity, which is at the
 /// height c, inertia m a c outweighs m g d from a = g d / c on. d is the distance to the foremost or rearmost
 /// support, whichever is less. Supports are the ground points (ground_points.h) that are on the ground, or come to

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kGravity = 9.81;    // m/s²
 constexpr double kUnknownReach = 1;  // m
-constexpr double kCasterInertiaPart = 0.02;
+constexpr double kSwivelPart = 0.02;
 constexpr double kSupports = 4;
 
 std::string escaped(const std::string& text) {
@@ -99,7 +99,7 @@ class Writer {
       friction =
           std::max(friction, joint.effort_limit > 0 ? joint.effort_limit : model_.mass * kGravity * kUnknownReach);
     }
-    const double armature = wheel ? rolling->rotor_inertia : caster_inertia(body);
+    const double armature = rolling != nullptr ? rolling->rotor_inertia : swivel_inertia(body);
     bodies_ +=
         "<joint" + attribute("name", escaped(joint.name)) + attribute("type", slides ? "slide" : "hinge") +
         " pos=\"0 0 0\"" + attribute("axis", mjcf_numbers(joint.axis)) +
@@ -120,17 +120,14 @@ class Writer {
     return joint.spring_stiffness > 0 ? joint.spring_load / joint.spring_stiffness : 0;
   }
 
-  // Of the wheel itself, or of the swivel that carries it.
-  double caster_inertia(const RigidBody& body) const {
+  // Of a swivel that carries rolling casters.
+  double swivel_inertia(const RigidBody& body) const {
     double radius = 0;
     for (const WheelModel& caster : model_.casters) {
       const RigidBody& wheel = *robot_.moved_by(model_.joints[caster.joint].name);
-      const RigidBody& swivel = robot_.bodies[wheel.parent];
-      if (wheel.name == body.name || (swivel.name == body.name && swivel.joint.type != JointType::kPrismatic)) {
-        radius = std::max(radius, caster.radius);
-      }
+      if (robot_.bodies[wheel.parent].name == body.name) radius = std::max(radius, caster.radius);
     }
-    return kCasterInertiaPart * model_.mass / kSupports * radius * radius;
+    return body.joint.type == JointType::kPrismatic ? 0 : kSwivelPart * model_.mass / kSupports * radius * radius;
   }
 
   void write_inertia(const RigidBody& body) {

@@ -18,8 +18,8 @@
 /// and motor_damping · gear_ratio², motor_friction · gear_ratio add to its losses. A suspension's spring pulls
 /// towards q₀ = load / stiffness. A mimic joint is tied to what it follows by an equality. A joint that somebody
 /// else drives (JointRole::kHeld) is held by dry friction of its effort limit, or the robot's weight times 1 m where
-/// that is unknown: unconditionally stable, whatever it carries. Swivel and wheel of a caster get an armature of at
-/// least 2 % of (a quarter of the robot) · r²: the tyre's stiffness is bound by the inertia behind it (tyre.h).
+/// that is unknown: unconditionally stable, whatever it carries. A caster's swivel gets an armature of 2 % of
+/// (a quarter of the robot) · r²: the stiffness of the wheel's tyre is bound by the inertia behind it (tyre.h).
 ///
 /// Every attribute that a scene's `<default>` could change is written out, all directions are quaternions (the
 /// scene's `<compiler>` sets the unit of angles: ranges and spring angles of turning joints are `apply_angles`').

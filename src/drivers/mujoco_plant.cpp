@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kRestSpeed = 1e-5;       // m/s and rad/s, of the base: 0.3 mm in 30 s
+constexpr double kRestSpeed = 1e-6;       // m/s and rad/s, of the base: 60 µm a minute
 constexpr double kLastRestSpeed = 3e-5;   // 1 mm in 30 s
 constexpr double kJointRestSpeed = 1e-3;  // m/s and rad/s
 constexpr double kRestTime = 0.1;         // s, so long at rest, not just at a turning point

@@ -47,11 +47,13 @@ inline JointCommand velocity_command(double velocity) {
 class PlantTest : public testing::Test {
  protected:
   std::unique_ptr<MujocoPlant> started(const RobotDescription& description, const std::string& scene,
-                                       double period = 0.001) {
+                                       double period = 0.001, const RobotParameters& robot = {}) {
     MujocoPlantParameters parameters;
     parameters.scene = scene;
+    parameters.sensor_errors = false;
+    parameters.tyre = tyre_;
     period_ = period;
-    auto plant = std::make_unique<MujocoPlant>(read_robot(description, {}), parameters, period);
+    auto plant = std::make_unique<MujocoPlant>(read_robot(description, robot), parameters, period);
     plant->start();
     return plant;
   }
@@ -88,6 +90,7 @@ class PlantTest : public testing::Test {
   }
 
   double period_ = 0.001;
+  TyreModel tyre_ = TyreModel::kBrush;
   const std::array<JointCommand, 2> brakes_{};
 };
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "drivers/joint_law.h"
-#include "hal/driver.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
@@ -16,6 +15,7 @@ constexpr double kStep = 0.001;          // s
 constexpr double kFreeInertia = 0.005;   // kg·m², a wheel off the ground
 constexpr double kRobotInertia = 0.065;  // kg·m², a wheel that moves its half of 12 kg
 constexpr double kEffortLimit = 3.5;     // N·m
+constexpr Brake kBrake{.effort = 3.0, .damping = 2.0, .stiffness = 300, .hold_speed = 0.3};
 
 class JointLawTest : public testing::Test {
  protected:
@@ -29,8 +29,7 @@ class JointLawTest : public testing::Test {
     for (int i = 0; i < seconds / kStep; ++i) step({}, load);
   }
 
-  MujocoPlantParameters parameters_;
-  JointLaw law_{parameters_, kEffortLimit};
+  JointLaw law_{kBrake, kEffortLimit};
   double inertia_ = kRobotInertia;
   double position_ = 0;
   double velocity_ = 0;
@@ -56,20 +55,15 @@ TEST_F(JointLawTest, ClampsToTheEffortLimitBothWays) {
 
 TEST_F(JointLawTest, BrakesWithItsBoundWhileFast) {
   velocity_ = 10;
-  EXPECT_EQ(step({}), -parameters_.brake_effort);
+  EXPECT_EQ(step({}), -kBrake.effort);
   velocity_ = -10;
   law_.reset();
-  EXPECT_EQ(step({}), parameters_.brake_effort);
+  EXPECT_EQ(step({}), kBrake.effort);
 }
 
 TEST_F(JointLawTest, ABrakeIsNeverStrongerThanTheJoint) {
-  JointLaw weak(parameters_, 1.0);
+  JointLaw weak(kBrake, 1.0);
   EXPECT_EQ(weak.step({}, 0, 10), -1.0);
-}
-
-TEST_F(JointLawTest, AJointWithoutEffortLimitIsPassive) {
-  JointLaw passive(parameters_, 0);
-  EXPECT_EQ(passive.step({}, 0, 10), 0);
 }
 
 TEST_F(JointLawTest, NumbersThatAreNotFiniteBrake) {
@@ -79,7 +73,7 @@ TEST_F(JointLawTest, NumbersThatAreNotFiniteBrake) {
     command.damping = 1;
     command.velocity = bad;
     law_.reset();
-    EXPECT_EQ(law_.step(command, 0, 10), -parameters_.brake_effort);
+    EXPECT_EQ(law_.step(command, 0, 10), -kBrake.effort);
   }
 }
 
@@ -87,7 +81,7 @@ TEST_F(JointLawTest, AnUnknownModeBrakes) {
   JointCommand command;
   command.mode = static_cast<JointMode>(99);
   command.effort = 2;
-  EXPECT_EQ(law_.step(command, 0, 10), -parameters_.brake_effort);
+  EXPECT_EQ(law_.step(command, 0, 10), -kBrake.effort);
 }
 
 TEST_F(JointLawTest, StopsAndHoldsAFreeWheelAndAHeavyOne) {
@@ -136,7 +130,7 @@ TEST_F(JointLawTest, AWheelThatSlidesDownASlopeIsCaughtAndHeld) {
 
 TEST_F(JointLawTest, ALoadAboveTheBoundDragsTheHeldWheelAndIsNotThrownBack) {
   brake(0.1);
-  for (int i = 0; i < 200; ++i) EXPECT_LE(std::abs(step({}, 4.0)), parameters_.brake_effort);
+  for (int i = 0; i < 200; ++i) EXPECT_LE(std::abs(step({}, 4.0)), kBrake.effort);
   EXPECT_GT(velocity_, 0);
   brake(3);
   const double rest = position_;
@@ -148,12 +142,11 @@ TEST_F(JointLawTest, ALoadAboveTheBoundDragsTheHeldWheelAndIsNotThrownBack) {
 // 2a + b < 4 is the limit; the law itself shows it on either side.
 TEST_F(JointLawTest, TheStabilityLimitIsWhereTheHeaderSaysItIs) {
   for (const double excess : {0.98, 1.02}) {
-    MujocoPlantParameters parameters;
-    parameters.brake_effort = 1e9;  // linear
-    parameters.brake_stiffness = 300;
-    const double b = parameters.brake_stiffness * kStep * kStep / kFreeInertia;
-    parameters.brake_damping = excess * (4 - b) / 2 * kFreeInertia / kStep;
-    JointLaw law(parameters, 1e9);
+    Brake brake = kBrake;
+    brake.effort = 1e9;  // linear
+    const double b = brake.stiffness * kStep * kStep / kFreeInertia;
+    brake.damping = excess * (4 - b) / 2 * kFreeInertia / kStep;
+    JointLaw law(brake, 1e9);
     double position = 0, velocity = 0.01;
     for (int i = 0; i < 2000; ++i) {
       velocity += law.step({}, position, velocity) / kFreeInertia * kStep;
@@ -161,25 +154,6 @@ TEST_F(JointLawTest, TheStabilityLimitIsWhereTheHeaderSaysItIs) {
     }
     EXPECT_EQ(std::abs(velocity) < 0.01, excess < 1) << excess;
   }
-}
-
-TEST(CheckBrake, AcceptsTheDefaultsOnALightWheelAt1kHz) {
-  EXPECT_NO_THROW(check_brake({}, "left_wheel_joint", kFreeInertia, kStep));
-}
-
-TEST(CheckBrake, RefusesWhatALightWheelCannotBear) {
-  MujocoPlantParameters damped;
-  damped.brake_damping = 2.6;  // 2.6 · 0.001 / 0.005 = 0.52
-  EXPECT_THROW(check_brake(damped, "left_wheel_joint", kFreeInertia, kStep), DriverError);
-  MujocoPlantParameters stiff;
-  stiff.brake_stiffness = 2600;  // 2600 · 10⁻⁶ / 0.005 = 0.52
-  EXPECT_THROW(check_brake(stiff, "left_wheel_joint", kFreeInertia, kStep), DriverError);
-}
-
-TEST(CheckBrake, RefusesABrakeThatDoesNotHold) {
-  MujocoPlantParameters limp;
-  limp.brake_stiffness = 0;
-  EXPECT_THROW(check_brake(limp, "left_wheel_joint", kFreeInertia, kStep), DriverError);
 }
 
 TEST_F(JointLawTest, StepDoesNotAllocate) {

@@ -20,7 +20,9 @@ class MujocoFaultTest : public PlantTest {
 
   // A drive without bounds: 10¹² N·m makes accelerations that MuJoCo calls bad.
   std::unique_ptr<MujocoPlant> unbounded() {
-    return started(diffbot_with("<joint name=\"left_wheel_joint\"", "effort=\"3.5\"", "effort=\"1e12\""), kFlat);
+    RobotParameters robot;
+    robot.wheel_effort_limit = 1e12;
+    return started(diffbot_urdf(), kFlat, 0.001, robot);
   }
 
   // A grid of 40 balls that falls for t = √(2·5.9/9.81) = 1.1 s; with it on the floor, MuJoCo wants more than

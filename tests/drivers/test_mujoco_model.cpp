@@ -17,6 +17,7 @@ class MujocoModelTest : public testing::Test {
   MujocoModel compiled(const std::string& scene, double period = 0.001) const {
     MujocoPlantParameters parameters;
     parameters.scene = scene;
+    parameters.tyre = tyre_;
     return compile_model(robot_, parameters, period);
   }
   std::string refusal(const std::string& scene) const {
@@ -29,6 +30,7 @@ class MujocoModelTest : public testing::Test {
   }
 
   RobotModel robot_ = read_robot(diffbot_urdf(), {});
+  TyreModel tyre_ = TyreModel::kBrush;
 };
 
 TEST_F(MujocoModelTest, WeighsWhatTheUrdfWeighs) {
@@ -48,7 +50,8 @@ TEST_F(MujocoModelTest, APeriodIsCutIntoStepsOfAtMostOneMillisecond) {
   }
 }
 
-TEST_F(MujocoModelTest, ABenchmarkCanStepItBare) {
+TEST_F(MujocoModelTest, ABenchmarkCanStepItBareWithNativeFriction) {
+  tyre_ = TyreModel::kNative;
   const MujocoModel model = compiled(kFlat);
   const MujocoData data = set_down(model);
   for (int i = 0; i < 1000; ++i) mj_step(model.model.get(), data.get());
@@ -62,7 +65,7 @@ TEST_F(MujocoModelTest, OverridesDoNotChangeThePhysics) {
   robot_ = read_robot(diffbot_urdf(), parameters);
   const MujocoModel model = compiled(kFlat);
   EXPECT_EQ(model.model->geom_size[3 * model.wheel_shape[0]], 0.1);
-  EXPECT_NEAR(model.start[2], 0.1, 1e-12);
+  EXPECT_NEAR(model.model->qpos0[model.base_position + 2], 0.1, 1e-12);
 }
 
 TEST_F(MujocoModelTest, TheScenesDefaultsAndUnitsDoNotReachTheRobot) {
@@ -76,7 +79,7 @@ TEST_F(MujocoModelTest, TheScenesDefaultsAndUnitsDoNotReachTheRobot) {
   const int wheel = model.wheel_shape[0];
   EXPECT_EQ(m.geom_contype[wheel], 2);
   EXPECT_EQ(m.geom_conaffinity[wheel], 1);
-  EXPECT_EQ(m.geom_condim[wheel], 3);
+  EXPECT_EQ(m.geom_condim[wheel], 1);
   EXPECT_EQ(m.geom_friction[3 * wheel], 0);
   EXPECT_EQ(m.geom_margin[wheel], 0);
   EXPECT_EQ(m.dof_damping[model.joint_velocity[0]], 0);
@@ -96,7 +99,7 @@ TEST_F(MujocoModelTest, TheScenesOwnRelativeIncludesWork) {
     <site name="start" pos="3 0 0"/></worldbody></mujoco>)");
   const MujocoModel model = compiled(scene);
   EXPECT_GE(mj_name2id(model.model.get(), mjOBJ_GEOM, "floor"), 0);
-  EXPECT_EQ(model.start[0], 3);
+  EXPECT_EQ(model.model->qpos0[model.base_position], 3);
 }
 
 TEST_F(MujocoModelTest, ASceneByRelativePathWorks) {
@@ -128,13 +131,15 @@ TEST_F(MujocoModelTest, ASceneThatChangesTheRobotsMassIsRefused) {
               testing::AllOf(HasSubstr("heavy.xml"), HasSubstr("weigh")));
 }
 
-TEST_F(MujocoModelTest, ACollisionMeshIsRefused) {
-  robot_ = read_robot(
-      diffbot_with("<link name=\"base_link\">",
-                   "<collision>\n      <origin xyz=\"-0.08 0 0\"/>\n      <geometry><box size=\"0.40 0.36 0.12\"/>",
-                   "<collision><geometry><mesh filename=\"package://x/y.stl\"/>"),
-      {});
-  EXPECT_THAT(refusal(kFlat), testing::AllOf(HasSubstr("base_link"), HasSubstr("mesh")));
+// The scene of its own text, and one that includes it: both include themselves without end.
+TEST_F(MujocoModelTest, AnIncludeCycleInASceneIsRefused) {
+  const std::string own = scene_file("own.xml", R"(<mujoco><include file="own.xml"/><worldbody><site name="start"/>
+    </worldbody></mujoco>)");
+  EXPECT_THAT(refusal(own), testing::AllOf(HasSubstr("own.xml"), HasSubstr("include")));
+  scene_file("second.xml", R"(<mujocoinclude><include file="first.xml"/></mujocoinclude>)");
+  const std::string first = scene_file("first.xml", R"(<mujoco><include file="second.xml"/><worldbody>
+    <site name="start"/></worldbody></mujoco>)");
+  EXPECT_THAT(refusal(first), testing::AllOf(HasSubstr("first.xml"), HasSubstr("include")));
 }
 
 }  // namespace

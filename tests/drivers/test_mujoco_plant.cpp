@@ -96,7 +96,7 @@ TEST_P(RollsTrue, DistanceIsRadiusTimesAngle) {
     hold(*plant, both(velocity_command(speed), velocity_command(speed)), 2);
     const double turned = sensors(*plant).joints[0].position - angle;
     EXPECT_NEAR(truth(*plant).pose_world.position[0] - position[0], kRadius * turned,
-                0.0005 * kRadius * std::abs(turned));
+                0.0001 * kRadius * std::abs(turned));
   }
 }
 
@@ -105,7 +105,7 @@ TEST_P(RollsTrue, YawRateIsWheelDifferenceOverWheelBase) {
   speed_up(*plant, 4, 6);
   const SensorFrame frame = sensors(*plant);
   const double expected = kRadius * (frame.joints[1].velocity - frame.joints[0].velocity) / kBase;
-  EXPECT_NEAR(truth(*plant).twist_base.angular[2], expected, 0.003 * expected);
+  EXPECT_NEAR(truth(*plant).twist_base.angular[2], expected, 0.0005 * expected);
 }
 
 TEST_P(RollsTrue, WheelsRollStraightWithoutSlip) {
@@ -116,13 +116,22 @@ TEST_P(RollsTrue, WheelsRollStraightWithoutSlip) {
 }
 
 // See the header: v ω T/2 with T = 0.99 · 4 ms, 0.4 mm/s here.
-TEST_P(RollsTrue, WheelsSlipSidewaysInACurveByTheContactsTimeConstant) {
+TEST_P(RollsTrue, NativeWheelsSlipSidewaysInACurveByTheContactsTimeConstant) {
+  tyre_ = TyreModel::kNative;
   auto plant = started(kFlat, GetParam());
   speed_up(*plant, 4, 6);
   const TruthFrame frame = truth(*plant);
   const double expected = frame.twist_base.linear[0] * frame.twist_base.angular[2] * 0.99 * 0.004 / 2;
   EXPECT_NEAR(frame.slip[0], expected, 0.05 * expected);
   EXPECT_NEAR(frame.twist_base.linear[1], -expected, 0.05 * expected);
+}
+
+// tyre.h: the centripetal force of each wheel's share, F = m/2 · v ω, makes it creep by F v / (k L).
+TEST_P(RollsTrue, ATyreCreepsSidewaysInACurveByLessThanANativeWheel) {
+  auto plant = started(kFlat, GetParam());
+  speed_up(*plant, 4, 6);
+  const TruthFrame frame = truth(*plant);
+  EXPECT_LT(std::abs(frame.twist_base.linear[1]), frame.twist_base.linear[0] * frame.twist_base.angular[2] * 0.002);
 }
 
 INSTANTIATE_TEST_SUITE_P(MujocoPlantTest, RollsTrue, testing::Values(0.01, 0.002, 0.001, 0.0005));
@@ -204,7 +213,8 @@ TEST_F(MujocoPlantTest, EffortIsTheMeanOverThePeriod) {
 
 class HardStop : public PlantTest, public testing::WithParamInterface<double> {};
 
-// v²/(2a) with a = 2·3.0 N·m / 0.1 m / (12 kg + 2·0.005/0.1²), 4.62 m/s²: 0.108 m; the soft landing adds some mm.
+// v²/(2a), a half of what lifts the rear, 9.81 · 0.0602 / 0.0890 / 2 = 3.32 m/s²: 0.151 m; the soft landing adds some
+// mm.
 TEST_P(HardStop, FromOneMetrePerSecondStopsWithoutTipping) {
   auto plant = started();
   speed_up(*plant, GetParam() / kRadius, GetParam() / kRadius);
@@ -215,7 +225,7 @@ TEST_P(HardStop, FromOneMetrePerSecondStopsWithoutTipping) {
     pitch = std::max(pitch, std::abs(2 * std::asin(truth(*plant).pose_world.orientation[1])));
   }
   EXPECT_LT(pitch, 10 * M_PI / 180);
-  EXPECT_NEAR(std::abs(truth(*plant).pose_world.position[0] - start), 0.108, 0.005);
+  EXPECT_NEAR(std::abs(truth(*plant).pose_world.position[0] - start), 0.151, 0.005);
   EXPECT_NEAR(truth(*plant).twist_base.linear[0], 0, 1e-6);
 }
 
