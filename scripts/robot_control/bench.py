@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-NAMES = ("step", "lockstep")
+NAMES = ("step", "plant", "lockstep")
 
 
 def run_program(program: Path, params: Path) -> dict[str, Any]:

@@ -16,10 +16,12 @@ inline double simulated_per_second(const Parameters& parameters, std::uint64_t c
   return static_cast<double>(cycles) * parameters.loop.period() / real;
 }
 
-/// `mj_step` of the same model, wheels driven by a constant torque.
+/// `mj_step` of the same model with native friction, wheels driven by a constant torque.
 inline double bare_loop_speed(const Parameters& parameters, const RobotModel& robot, std::uint64_t cycles) {
   constexpr double kTorque = 0.05;  // N·m
-  const MujocoModel model = compile_model(robot, parameters.plant, parameters.loop.period());
+  MujocoPlantParameters native = parameters.plant;
+  native.tyre = TyreModel::kNative;
+  const MujocoModel model = compile_model(robot, native, parameters.loop.period());
   const MujocoData data = set_down(model);
   const std::int64_t start_ns = monotonic_ns();
   for (std::uint64_t k = 0; k < cycles; ++k) {
