@@ -23,7 +23,7 @@ void TimeMap::follow(const SensorFrame& sensors) {
   const auto day = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
   const std::int64_t gap = monotonic_ns() - before;
   if (gap >= kPreempted && !first_) return;
-  update(sensors.head.stamp_ns, day - before - gap / 2 + static_cast<std::int64_t>(sensors.slipped_ns));
+  update(sensors.head.stamp_ns, day - before - gap / 2 + due_ns(sensors) - sensors.head.stamp_ns);
 }
 
 std::int64_t TimeMap::ros_ns(std::int64_t stamp_ns) const noexcept {

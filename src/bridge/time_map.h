@@ -1,8 +1,8 @@
 #pragma once
 /// Sample stamps → ROS time, never backwards.
 ///
-/// Wall clock: stamps are CLOCK_MONOTONIC, later by what a simulated plant let slip; ROS time is the time of day:
-///   ros = stamp + offset,   offset → (time of day − monotonic) as measured + slipped.
+/// Wall clock: stamps are CLOCK_MONOTONIC, behind it by what a simulated plant let slip or was held; ROS time is the
+/// time of day:   ros = stamp + offset,   offset → (time of day − monotonic) as measured + slipped + held.
 /// An offset that grew is adopted at once; one that shrank (the system's clock was set back) is approached by at
 /// most half of the stamps' progress, so that ROS time slows down but never turns back.
 /// Lockstep: the stamps are the time, and the driver publishes them on /clock.

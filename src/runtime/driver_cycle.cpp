@@ -35,6 +35,28 @@ void DriverCycle::begin_run(std::uint64_t run) noexcept {
   futex_wake_all(memory->sequence);
 }
 
+void DriverCycle::publish_paused() noexcept {
+  if (cycle_ == 0) return;
+  paused_ = trace_.sensors;
+  if (paused_.driver_state != DriverState::kFault) paused_.driver_state = DriverState::kPaused;
+  channels_.sensors.publish(paused_);
+}
+
+void DriverCycle::inject(const InjectedFaults& faults) noexcept {
+  if (faults == injected_) return;
+  injected_ = faults;
+  driver_.inject(faults);
+}
+
+void DriverCycle::set_due(std::int64_t deadline_ns) noexcept {
+  held_ns_ = static_cast<std::uint64_t>(deadline_ns - next_stamp_ns()) - slipped_ns_;
+}
+
+double DriverCycle::real_time_factor() const noexcept {
+  const double simulated = static_cast<double>(cycle_) * static_cast<double>(period_ns_);
+  return simulated / (simulated + static_cast<double>(slipped_ns_));
+}
+
 GateInput DriverCycle::latch() noexcept {
   GateInput input;
   input.run = run_;
@@ -62,6 +84,7 @@ void DriverCycle::step() noexcept {
   sensors.gate = gate_.report();
   sensors.overruns = overruns_;
   sensors.slipped_ns = slipped_ns_;
+  sensors.held_ns = held_ns_;
   channels_.sensors.publish(sensors);
   if (now_ != nullptr) trace_.timing = {woke_ns - due_ns(sensors), now_() - due_ns(sensors)};
 

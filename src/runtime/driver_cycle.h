@@ -41,11 +41,23 @@ class DriverCycle {
   /// One tick. The first one of a run is cycle 0.
   void step() noexcept;
 
+  /// After the others have worked on the frame of the last tick: they see it again, as paused. Nothing before
+  /// the first tick of a run.
+  void publish_paused() noexcept;
+
+  /// A simulated machine has these faults from the next tick on.
+  void inject(const InjectedFaults& faults) noexcept;
+
+  /// Wall clock: the next tick is due then. Whatever its stamp lies behind that, and has not slipped, was held.
+  void set_due(std::int64_t deadline_ns) noexcept;
+
   /// Hardware whose node was late: the next tick is that many cycles further on.
   void skip(std::uint64_t cycles) noexcept { cycle_ += cycles; }
 
   std::uint64_t run() const noexcept { return run_; }
   std::uint64_t next_cycle() const noexcept { return cycle_; }
+  /// Wall clock, after the first tick: simulated over real time since the run began; time held is not counted.
+  double real_time_factor() const noexcept;
   std::int64_t next_stamp_ns() const noexcept { return start_ns_ + static_cast<std::int64_t>(cycle_) * period_ns_; }
   void count_overrun() noexcept { ++overruns_; }
   void count_slip(std::int64_t slipped_ns) noexcept { slipped_ns_ += static_cast<std::uint64_t>(slipped_ns); }
@@ -66,6 +78,9 @@ class DriverCycle {
   std::int64_t start_ns_ = 0;
   std::uint64_t overruns_ = 0;
   std::uint64_t slipped_ns_ = 0;
+  std::uint64_t held_ns_ = 0;
+  InjectedFaults injected_{};
+  SensorFrame paused_;
   CommandFrame command_;
   Permit permit_;
   DriverTrace trace_;

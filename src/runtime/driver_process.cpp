@@ -1,6 +1,6 @@
 #include "runtime/driver_process.h"
 
-#include <random>
+#include <algorithm>
 
 #include "rt/clock.h"
 #include "rt/periodic.h"
@@ -10,13 +10,6 @@ namespace robot_control {
 namespace {
 
 constexpr std::int64_t kStopCheck = 100'000'000;  // ns; longest wait before `stopping` is looked at
-
-std::uint64_t mint() {
-  std::random_device device;
-  std::uint64_t number = 0;
-  while (number == 0) number = (std::uint64_t{device()} << 32) | device();
-  return number;
-}
 
 /// Does a living node wait on the sensors of this run?
 template <class Frame>
@@ -33,18 +26,6 @@ bool published(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_
   // A corrupt frame may be that of 8 cycles ago, in the same slot.
   if (found == Lookup::kCorrupt) return frame.head.run == run && frame.head.cycle == cycle;
   return found != Lookup::kMissing;
-}
-
-/// Lockstep: waits until `published`; false when the loop shall end.
-template <class Frame>
-bool await(const FrameReader<Frame>& reader, std::uint64_t run, std::uint64_t cycle,
-           const std::atomic<bool>& stopping) noexcept {
-  while (!stopping.load(std::memory_order_relaxed)) {
-    const std::uint32_t seen = reader.sequence();
-    if (published(reader, run, cycle)) return true;
-    reader.wait(seen, kStopCheck);
-  }
-  return false;
 }
 
 }  // namespace
@@ -75,13 +56,15 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   if (lockstep() && sensors_.reader.newest(last) == Lookup::kFrame) {
     cycle_->set_start(last.head.stamp_ns + loop_parameters().period_ns());
   }
-  cycle_->set_boot(mint());
-  cycle_->begin_run(mint());
+  cycle_->set_boot(mint_number());
+  cycle_->begin_run(mint_number());
+  if (!driver_->simulated()) return;
+  services_ = std::make_unique<SimulationServices>(hold_, *driver_, *cycle_, [this] { return missing(); });
 }
 
 std::vector<std::string> DriverProcess::missing() const {
   std::vector<std::string> names;
-  const std::uint64_t run = cycle_ == nullptr ? 0 : cycle_->run();
+  const std::uint64_t run = attached_run(sensors_.writer.memory()->head);
   if (loop_parameters().wait_for_nodes || lockstep()) {
     if (!attached(state_, run)) names.emplace_back("state_estimator");
     if (!attached(command_, run)) names.emplace_back("diff_drive_controller");
@@ -109,56 +92,92 @@ bool DriverProcess::ready() {
 }
 
 void DriverProcess::loop() noexcept {
+  hold_.begin();
   if (lockstep()) {
     loop_lockstep();
   } else {
     loop_wall();
   }
+  hold_.end();
   finish();
 }
 
-/// False after the last cycle of the run.
-bool DriverProcess::tick() noexcept {
+void DriverProcess::tick() noexcept {
+  cycle_->inject(hold_.faults());
   cycle_->step();
   trace_.append(cycle_->trace(), stopping());
-  return cycles_ == 0 || cycle_->next_cycle() < cycles_;
+}
+
+/// Waits while the loop is held. True if it was: time has passed, perhaps a new run begun.
+bool DriverProcess::await_turn() noexcept {
+  bool held = false;
+  while (!hold_.may_tick(cycle_->next_cycle()) && !stopping().load(std::memory_order_relaxed)) {
+    cycle_->publish_paused();
+    hold_.stand(kStopCheck, stopping());
+    held = true;
+  }
+  return held;
 }
 
 void DriverProcess::loop_wall() noexcept {
-  const std::int64_t start_ns = monotonic_ns() + loop_parameters().period_ns();
-  cycle_->set_start(start_ns);
+  const std::int64_t period_ns = loop_parameters().period_ns();
   const WhenLate when_late = driver_->simulated() ? WhenLate::kSlip : WhenLate::kSkip;
-  Periodic schedule(start_ns, loop_parameters().period_ns(), when_late);
-  bool more = true;
-  while (more && !stopping().load(std::memory_order_relaxed)) {
+  Periodic schedule(monotonic_ns() + period_ns, period_ns, when_late);
+  cycle_->set_start(schedule.deadline_ns());
+  while (more()) {
+    if (await_turn()) {
+      schedule = Periodic(std::max(schedule.deadline_ns(), monotonic_ns()), period_ns, when_late);
+      cycle_->set_due(schedule.deadline_ns());
+    }
+    if (stopping().load(std::memory_order_relaxed)) return;
     sleep_until(schedule.deadline_ns());
     const std::int64_t slipped_before = schedule.slipped_ns();
     cycle_->skip(static_cast<std::uint64_t>(schedule.begin(monotonic_ns())));
     cycle_->count_slip(schedule.slipped_ns() - slipped_before);
-    more = tick();
+    tick();
     if (!schedule.end(monotonic_ns())) cycle_->count_overrun();
-    const auto simulated = static_cast<double>(cycle_->next_stamp_ns() - start_ns);
-    real_time_factor_.store(simulated / (simulated + static_cast<double>(schedule.slipped_ns())));
+    real_time_factor_.store(cycle_->real_time_factor());
   }
 }
 
-void DriverProcess::loop_lockstep() noexcept {
-  const std::int64_t start_ns = monotonic_ns();
-  const std::int64_t first_stamp_ns = cycle_->next_stamp_ns();
+/// Lockstep: have state, command and permit of the last tick passed, with or without content? Waited for; false when
+/// the loop shall end or park. The end of the chain first: when it has come, the others are there, and one wake-up
+/// was enough.
+bool DriverProcess::await_chain() noexcept {
+  if (cycle_->next_cycle() == 0) return true;
   const std::uint64_t run = cycle_->run();
-  bool more = true;
-  while (more && !stopping().load(std::memory_order_relaxed)) {
-    const std::uint64_t cycle = cycle_->next_cycle();
-    more = tick();
-    awaited_.store(cycle + 1);
-    // The end of the chain first: when it has come, the others are there, and one wake-up was enough.
-    if (!await(command_.reader, run, cycle, stopping()) || !await(permit_.reader, run, cycle, stopping()) ||
-        !await(state_.reader, run, cycle, stopping())) {
-      return;
+  const std::uint64_t last = cycle_->next_cycle() - 1;
+  const auto await = [&](const auto& reader) {
+    for (;;) {
+      const std::uint32_t seen = reader.sequence();
+      if (published(reader, run, last)) return true;
+      if (stopping().load(std::memory_order_relaxed) || hold_.park_asked()) return false;
+      reader.wait(seen, kStopCheck);
     }
-    awaited_.store(0);
-    real_time_factor_.store(static_cast<double>(cycle_->next_stamp_ns() - first_stamp_ns) /
-                            static_cast<double>(monotonic_ns() - start_ns + 1));
+  };
+  awaited_.store(last + 1);
+  const bool complete = await(command_.reader) && await(permit_.reader) && await(state_.reader);
+  awaited_.store(0);
+  return complete;
+}
+
+void DriverProcess::loop_lockstep() noexcept {
+  std::int64_t start_ns = monotonic_ns();  // of the run; later by what was held
+  std::uint64_t run = cycle_->run();
+  for (;;) {
+    const bool complete = await_chain();
+    if (stopping().load(std::memory_order_relaxed) || (complete && !more())) return;
+    const std::int64_t before_ns = monotonic_ns();
+    const double simulated_ns =
+        static_cast<double>(cycle_->next_cycle()) * static_cast<double>(loop_parameters().period_ns());
+    real_time_factor_.store(simulated_ns / static_cast<double>(before_ns - start_ns + 1));
+    if (await_turn()) {
+      start_ns += monotonic_ns() - before_ns;
+      if (run != cycle_->run()) start_ns = monotonic_ns();
+      run = cycle_->run();
+      continue;  // parked while the chain was not complete, it still is to be waited for
+    }
+    tick();
   }
 }
 

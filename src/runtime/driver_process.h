@@ -4,6 +4,9 @@
 /// `clock: wall` paces with absolute deadlines; a simulated plant that falls behind lets time slip.
 /// `clock: lockstep` waits for state, command and permit k before tick k+1; time stands still while one is
 /// missing, and `missing` says which.
+///
+/// A simulated machine can be paused, stepped, reset and given faults (simulation_services.h). While the loop stands
+/// it publishes its last frame ten times a second, as paused; afterwards the wall-clock grid begins anew.
 
 #include <atomic>
 #include <cstdint>
@@ -12,7 +15,9 @@
 #include <vector>
 
 #include "runtime/driver_cycle.h"
+#include "runtime/loop_hold.h"
 #include "runtime/process.h"
+#include "runtime/simulation_services.h"
 #include "runtime/trace_sink.h"
 
 namespace robot_control {
@@ -35,7 +40,10 @@ class DriverProcess final : public Process {
     return attached_run(sensors_.writer.memory()->head) == head.run;
   }
 
-  /// Simulated over real time since the run began.
+  /// Of a simulated machine, once it is open; null for hardware.
+  SimulationServices* services() noexcept { return services_.get(); }
+
+  /// Simulated over real time since the run began; time held is not counted.
   double real_time_factor() const noexcept { return real_time_factor_.load(); }
 
  private:
@@ -44,7 +52,10 @@ class DriverProcess final : public Process {
   void loop() noexcept override;
   void loop_wall() noexcept;
   void loop_lockstep() noexcept;
-  bool tick() noexcept;
+  bool await_turn() noexcept;
+  bool await_chain() noexcept;
+  void tick() noexcept;
+  bool more() const noexcept { return cycles_ == 0 || cycle_->next_cycle() < cycles_; }
 
   RobotModel robot_;
   std::uint64_t cycles_;
@@ -56,6 +67,8 @@ class DriverProcess final : public Process {
   TraceSink<DriverTrace> trace_;
   std::unique_ptr<Driver> driver_;
   std::unique_ptr<DriverCycle> cycle_;
+  LoopHold hold_;
+  std::unique_ptr<SimulationServices> services_;
   std::atomic<std::uint64_t> awaited_{0};  ///< lockstep: cycle waited for, plus 1
   std::atomic<double> real_time_factor_{0};
 };

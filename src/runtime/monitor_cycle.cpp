@@ -49,7 +49,10 @@ bool MonitorCycle::step() noexcept {
   if (found == Lookup::kMissing || found == Lookup::kCorrupt) return false;
   if (!current(*channels_.sensors, arrived_.head, robot_hash_)) return false;
   const Arrival arrival = clock_.judge(arrived_.head);
-  if (arrival == Arrival::kOld) return false;
+  if (arrival == Arrival::kOld) {
+    if (found == Lookup::kFrame) note_pause();
+    return false;
+  }
   sensors_ = arrived_;
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(sensors_.head);
@@ -83,6 +86,14 @@ void MonitorCycle::note_corrupt_sensors() noexcept {
   publish_again();
 }
 
+/// A driver that pauses publishes its last frame again. Nothing in it is judged twice, but it tells that no other one
+/// will come, and that comes ten times a second: an operator shall not wait for an answer meanwhile.
+void MonitorCycle::note_pause() noexcept {
+  if (arrived_.head.cycle != clock_.cycle() || arrived_.driver_state != DriverState::kPaused) return;
+  sensors_.driver_state = arrived_.driver_state;
+  idle();
+}
+
 void MonitorCycle::silence() noexcept {
   if (!silent_ && input_.sensors != nullptr && sensors_.driver_state != DriverState::kPaused) {
     silent_ = true;
@@ -98,7 +109,8 @@ void MonitorCycle::idle() noexcept {
   receive_messages();
   if (operator_input_.resets == resets) return;
   input_.operator_input = operator_input_;
-  monitor_.refuse_reset(operator_input_);
+  monitor_.refuse_reset(operator_input_,
+                        sensors_.driver_state == DriverState::kPaused ? kRefusalPaused : kRefusalSilent);
   publish_again();
 }
 

@@ -49,6 +49,7 @@ class MonitorCycle {
   void enter_run() noexcept;
   void receive_messages() noexcept;
   void note_corrupt_sensors() noexcept;
+  void note_pause() noexcept;
   void receive(std::uint64_t cycle) noexcept;
   void publish_again() noexcept;
   FrameHead head() const noexcept;

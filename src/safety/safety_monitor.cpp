@@ -57,9 +57,9 @@ void SafetyMonitor::driver_lost() noexcept {
   if (driver_known_ && !driver_paused_) pending_ |= kCauseDriverLost;
 }
 
-void SafetyMonitor::refuse_reset(const OperatorInput& operator_input) noexcept {
+void SafetyMonitor::refuse_reset(const OperatorInput& operator_input, ResetRefusal why) noexcept {
   resets_handled_ = operator_input.resets;
-  reset_refusal_ = kRefusalSilent;
+  reset_refusal_ = why;
 }
 
 void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {

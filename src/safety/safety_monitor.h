@@ -45,9 +45,9 @@ class SafetyMonitor {
   /// Three sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step on.
   void sensors_corrupt() noexcept { pending_ |= kCauseCorruptFrame; }
 
-  /// No frame comes, so nothing can be judged: a reset asked for meanwhile is answered with kRefusalSilent and
-  /// does not release anything later.
-  void refuse_reset(const OperatorInput& operator_input) noexcept;
+  /// No frame comes, so nothing can be judged: a reset asked for meanwhile is answered with `why` and does not
+  /// release anything later.
+  void refuse_reset(const OperatorInput& operator_input, ResetRefusal why = kRefusalSilent) noexcept;
 
   /// Fills everything but `out.head`. A second step in the same cycle counts nothing twice.
   void step(const MonitorInput& input, Permit& out) noexcept;

@@ -63,6 +63,7 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every wheel stands"},
     {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
     {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
+    {kRefusalPaused, "paused", "the simulation is paused", "let it run (mujoco_plant/set_pause), then ask again"},
 });
 
 inline constexpr auto kMissingNodeNames = std::to_array<BitName>({

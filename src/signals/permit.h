@@ -48,6 +48,7 @@ enum ResetRefusal : std::uint64_t {
   kRefusalMoving = 1u << 2,       ///< A wheel still turns.
   kRefusalInit = 1u << 3,         ///< Still waiting for a node.
   kRefusalSilent = 1u << 4,       ///< No sensor frame comes: nothing can be judged.
+  kRefusalPaused = 1u << 5,       ///< The simulated machine is paused: nothing can be judged.
 };
 
 /// Bits of Permit::missing, in state kInit.

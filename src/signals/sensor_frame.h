@@ -63,6 +63,7 @@ struct SensorFrame {
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
   InjectedFaults injected{};     ///< of a simulator; a node that finds itself in it fails as told
   std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
+  std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or set down anew. Outlives a reset.
 };
 
 }  // namespace robot_control

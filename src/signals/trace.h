@@ -11,9 +11,9 @@
 
 namespace robot_control {
 
-/// When cycle k was due on the wall clock: its stamp, later by what a simulated plant let slip.
+/// When cycle k was due on the wall clock: its stamp, later by what a simulated plant let slip and was held.
 inline std::int64_t due_ns(const SensorFrame& sensors) noexcept {
-  return sensors.head.stamp_ns + static_cast<std::int64_t>(sensors.slipped_ns);
+  return sensors.head.stamp_ns + static_cast<std::int64_t>(sensors.slipped_ns + sensors.held_ns);
 }
 
 /// Relative to `due_ns`, on the same clock. Zero in lockstep, where time stands still.

@@ -1,5 +1,6 @@
 #include "simulation/closed_loop.h"
 
+#include <stdexcept>
 #include <string>
 
 #include "drivers/mujoco_plant.h"
@@ -8,11 +9,12 @@
 #include "runtime/estimator_cycle.h"
 #include "runtime/monitor_cycle.h"
 #include "runtime/start_check.h"
+#include "signals/names.h"
 
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kRun = 1;  // any number but 0: nobody else is on these channels
+constexpr std::uint64_t kBoot = 1;  // any number but 0, as for a run: nobody else is on these channels
 
 /// A channel in private memory, with its two ends.
 template <class Frame>
@@ -45,8 +47,13 @@ struct ClosedLoop::Parts {
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr) {
     plant.start();
-    driver.set_boot(kRun);
-    driver.begin_run(kRun);
+    driver.set_boot(kBoot);
+    driver.begin_run(1);
+  }
+
+  void hand_over() noexcept {
+    controller.inbox().store(request);
+    monitor.inbox().store(operator_input);
   }
 
   Parameters parameters;
@@ -63,6 +70,7 @@ struct ClosedLoop::Parts {
   MonitorCycle monitor;
   VelocityCommand request;
   OperatorInput operator_input;
+  InjectedFaults faults{};
   JoinedRow row;
 };
 
@@ -87,22 +95,35 @@ void ClosedLoop::heartbeat() noexcept {
 
 void ClosedLoop::step() noexcept {
   Parts& parts = *parts_;
-  if (cycle() > 0) {  // what arrives before a run begins is dropped by every node
-    parts.controller.inbox().store(parts.request);
-    parts.monitor.inbox().store(parts.operator_input);
-  }
+  if (cycle() > 0) parts.hand_over();  // what arrives before a run begins is dropped by every node
   parts.driver.step();
   const bool estimated = parts.estimator.step();
   const bool controlled = parts.controller.step();
   const bool monitored = parts.monitor.step();
   const std::uint64_t cycle = parts.driver.trace().sensors.head.cycle;
-  parts.row = {.run = 0,
+  parts.row = {.run = static_cast<std::int64_t>(parts.driver.run()) - 1,
                .cycle = cycle,
                .time = row_time(cycle, parts.parameters.loop.period()),
                .driver = &parts.driver.trace(),
                .estimator = estimated ? &parts.estimator.trace() : nullptr,
                .controller = controlled ? &parts.controller.trace() : nullptr,
                .monitor = monitored ? &parts.monitor.trace() : nullptr};
+}
+
+void ClosedLoop::reset() {
+  Parts& parts = *parts_;
+  parts.hand_over();
+  parts.faults = {};
+  parts.driver.inject(parts.faults);
+  parts.plant.start();
+  parts.driver.set_start(parts.driver.next_stamp_ns());
+  parts.driver.begin_run(parts.driver.run() + 1);
+}
+
+void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {
+  const std::string problem = set_fault(parts_->faults, component, kind);
+  if (!problem.empty()) throw std::invalid_argument(problem);
+  parts_->driver.inject(parts_->faults);
 }
 
 std::uint64_t ClosedLoop::cycle() const noexcept {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "parameters/parameters.h"
 #include "robot/robot_model.h"
@@ -33,8 +34,18 @@ class ClosedLoop {
   void e_stop_reset() noexcept;
   void heartbeat() noexcept;
 
-  /// One cycle.
+  /// One cycle. Time stands still between two steps: that is this loop's pause.
   void step() noexcept;
+
+  /// As `~reset` of mujoco_plant: the robot is set down anew, without injected faults, and a new run begins at
+  /// cycle 0. Estimator, controller and counters begin anew, commands received before are dropped, latched stops
+  /// stay. Apart from `run` and from such a stop its rows are those of a new ClosedLoop, bit for bit. Throws
+  /// DriverError.
+  void reset();
+
+  /// As `~inject_fault`: the machine or a node fails so from the next step on; words of names.h. Throws
+  /// std::invalid_argument with the list where it does not know one.
+  void inject_fault(const std::string& component, const std::string& kind);
 
   /// Cycle and time [s] of the sample that the next step takes.
   std::uint64_t cycle() const noexcept;

@@ -39,7 +39,7 @@ class StandingMachine final : public Driver {
   void start() override {}
   void read(SensorFrame& sensors) noexcept override {
     sensors.injected = faults;
-    sensors.driver_state = DriverState::kRunning;
+    sensors.driver_state = state;
     sensors.valid = kValidJoints | kValidGyro | kValidAccelerometer;
     sensors.joint_count = 2;
     sensors.imu.linear_acceleration = {0, 0, 9.81};
@@ -52,6 +52,7 @@ class StandingMachine final : public Driver {
   }
 
   InjectedFaults faults{};
+  DriverState state = DriverState::kRunning;
   JointMode mode = JointMode::kBrake;
 };
 

@@ -4,10 +4,13 @@
 
 #include <sys/prctl.h>
 
+#include <atomic>
 #include <csignal>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "drivers/mujoco_plant.h"
 #include "rt/clock.h"
@@ -33,15 +36,27 @@ class FourNodes {
         controller_([this] { return consume<ControllerProcess>(); }),
         monitor_([this] { return consume<MonitorProcess>(); }) {}
 
-  /// Real-time factor of the run. Throws std::runtime_error when it does not end within `patience_s`.
-  double run(double patience_s) {
+  using Operator = std::function<void(DriverProcess&)>;
+
+  /// Real-time factor of the run. It ends after `parameters.plant.cycles`, or when `operate` returns, which runs in a
+  /// thread of its own and may call the services. Throws std::runtime_error when it does not end within `patience_s`.
+  double run(double patience_s, const Operator& operate = {}) {
     std::unique_ptr<TelemetryProcess> telemetry;
     if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_, bus_.name());
     DriverProcess driver(parameters_, robot_, bus_.name());
     driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
     const std::int64_t give_up_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
-    while (!driver.finished()) {
-      if (monotonic_ns() > give_up_ns) throw std::runtime_error("the four nodes did not end in time");
+    std::atomic<bool> operated{false};
+    std::jthread operator_thread([&] {
+      if (operate == nullptr) return;
+      operate(driver);
+      operated.store(true);
+    });
+    while (!driver.finished() && !operated.load()) {
+      if (monotonic_ns() > give_up_ns) {
+        driver.stop();  // what the operator waits for comes to an end
+        throw std::runtime_error("the four nodes did not end in time");
+      }
       driver.poll();
       if (telemetry != nullptr) {
         telemetry->poll();
@@ -49,6 +64,8 @@ class FourNodes {
       }
       sleep_ns(kPollNs);
     }
+    operator_thread.join();
+    driver.stop();
     sleep_ns(10 * kPollNs);  // the others append their last rows after the driver has their frames
     if (telemetry != nullptr) telemetry->finish();
     return driver.real_time_factor();

@@ -1,0 +1,149 @@
+#include "runtime/simulation_services.h"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <random>
+#include <utility>
+
+#include "rt/clock.h"
+#include "rt/futex.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::int64_t kPatience = 2'000'000'000;    // ns; a loop that has not stopped by then waits for somebody
+constexpr std::int64_t kStandstill = 5'000'000'000;  // ns without a cycle; a period is 10 ms at most
+constexpr std::int64_t kLook = 500'000;              // ns
+
+ServiceAnswer busy() {
+  return {false, "another step or reset is under way"};
+}
+
+std::string before(std::uint64_t cycle) {
+  return "before cycle " + std::to_string(cycle);
+}
+
+}  // namespace
+
+std::uint64_t mint_number() {
+  std::random_device device;
+  std::uint64_t number = 0;
+  while (number == 0) number = (std::uint64_t{device()} << 32) | device();
+  return number;
+}
+
+SimulationServices::SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
+                                       std::function<std::vector<std::string>()> missing)
+    : hold_(hold), driver_(driver), cycle_(cycle), missing_(std::move(missing)) {}
+
+/// With `asking_` held.
+std::uint64_t SimulationServices::ask() {
+  asked_.number = hold_.ask(asked_);
+  return asked_.number;
+}
+
+std::uint64_t SimulationServices::ask_pause(bool pause) {
+  const std::lock_guard lock(asking_);
+  asked_.paused = pause ? 1 : 0;
+  asked_.step_until = 0;
+  return ask();
+}
+
+std::string SimulationServices::waiting_for() const {
+  std::string names;
+  for (const std::string& name : missing_()) names += (names.empty() ? "; waiting for " : ", ") + name;
+  return names;
+}
+
+ServiceAnswer SimulationServices::set_pause(bool pause) {
+  const std::uint64_t number = ask_pause(pause);
+  if (!pause) return {true, "running" + waiting_for()};
+  if (hold_.await_stand(number, kPatience)) return {true, "paused " + before(hold_.next_cycle())};
+  return {true, "will pause; no cycle runs now" + waiting_for()};
+}
+
+ServiceAnswer SimulationServices::step(std::uint64_t cycles) {
+  const std::unique_lock exclusive(exclusive_, std::try_to_lock);
+  if (!exclusive.owns_lock()) return busy();
+  Steps steps;
+  const std::int64_t end_ns = monotonic_ns() + kPatience;
+  for (;;) {
+    {
+      const std::lock_guard lock(asking_);
+      if (asked_.paused == 0) return {false, "only while paused: call set_pause with true first"};
+      if (hold_.stands(asked_.number)) {  // and does so until somebody else gets this lock
+        const std::uint64_t first = hold_.next_cycle();
+        asked_.step_until = first + std::min(cycles, std::numeric_limits<std::uint64_t>::max() - first);
+        steps = {.number = ask(), .first = first, .target = asked_.step_until};
+        break;
+      }
+    }
+    if (monotonic_ns() > end_ns) return {false, "time stands still anyway" + waiting_for()};
+    sleep_ns(kLook);
+  }
+  return await_steps(steps);
+}
+
+ServiceAnswer SimulationServices::await_steps(const Steps& steps) {
+  std::uint64_t seen = steps.first;
+  std::int64_t seen_ns = monotonic_ns();
+  while (!hold_.stands(steps.number)) {
+    sleep_ns(kLook);
+    if (!hold_.looping()) return {false, "the run has ended " + before(hold_.next_cycle())};
+    if (const std::uint64_t next = hold_.next_cycle(); next != seen) {
+      seen = next;
+      seen_ns = monotonic_ns();
+    } else if (monotonic_ns() - seen_ns > kStandstill) {
+      ask_pause(true);
+      return {false, "time stands still " + before(next) + waiting_for()};
+    }
+    const std::lock_guard lock(asking_);
+    if (asked_.paused == 0) return {false, "resumed meanwhile"};
+  }
+  const std::uint64_t reached = hold_.next_cycle();
+  const std::string done = std::to_string(reached - steps.first) + " cycles done, paused " + before(reached);
+  return {reached == steps.target, reached == steps.target ? done : "interrupted: " + done};
+}
+
+ServiceAnswer SimulationServices::reset() {
+  const std::unique_lock exclusive(exclusive_, std::try_to_lock);
+  if (!exclusive.owns_lock()) return busy();
+  std::uint64_t number = 0;
+  {
+    const std::lock_guard lock(asking_);
+    asked_.parked = hold_.looping() ? 1 : 0;
+    asked_.step_until = 0;
+    asked_.faults = {};
+    number = ask();
+    if (asked_.parked == 0) return {true, "no cycle has run yet" + waiting_for()};
+  }
+  ServiceAnswer answer{true, "a new run begins at cycle 0"};
+  if (!hold_.await_stand(number, kPatience)) {
+    answer = {false, "the loop does not come to a stop" + waiting_for()};
+  } else {
+    try {
+      cycle_.inject({});
+      driver_.start();
+      cycle_.set_start(cycle_.next_stamp_ns());
+      cycle_.begin_run(mint_number());
+    } catch (const std::exception& error) {
+      answer = {false, error.what()};
+    }
+  }
+  const std::lock_guard lock(asking_);
+  asked_.parked = 0;
+  if (answer.success && asked_.paused != 0) answer.message += ", paused";
+  ask();
+  return answer;
+}
+
+ServiceAnswer SimulationServices::inject_fault(const std::string& component, const std::string& kind) {
+  const std::lock_guard lock(asking_);
+  if (std::string problem = set_fault(asked_.faults, component, kind); !problem.empty()) return {false, problem};
+  ask();
+  return {true, "injected: " + names_of(asked_.faults)};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,69 @@
+#pragma once
+/// What an operator may do to a simulated machine while it runs: the services of mujoco_plant, without ROS.
+///
+/// Every call may come from any ordinary thread. It returns once it is done, or says why it is not; `step` and
+/// `reset` refuse while another one of them is under way.
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "hal/driver.h"
+#include "runtime/driver_cycle.h"
+#include "runtime/loop_hold.h"
+
+namespace robot_control {
+
+struct ServiceAnswer {
+  bool success = false;
+  std::string message;
+};
+
+/// A random number, never 0: of a run, of a process.
+std::uint64_t mint_number();
+
+class SimulationServices {
+ public:
+  /// `missing`: who the loop waits for, by node name.
+  SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
+                     std::function<std::vector<std::string>()> missing);
+
+  /// Paused, the machine does not move and stamps do not advance; the others see the last frame again, as paused.
+  /// Time that passed meanwhile is neither caught up nor slip.
+  ServiceAnswer set_pause(bool pause);
+
+  /// While paused: runs exactly so many cycles, then stands again.
+  ServiceAnswer step(std::uint64_t cycles);
+
+  /// The machine is set down anew, without faults, and a new run begins at cycle 0, one period after the last
+  /// stamp: estimator, controller and counters begin anew, a latched stop stays. Paused stays paused. Does not
+  /// succeed where the machine does not start; then the old run goes on, with the driver's fault.
+  ServiceAnswer reset();
+
+  /// From the next cycle on; words of names.h, "ok" heals. Unknown ones are answered with the list.
+  ServiceAnswer inject_fault(const std::string& component, const std::string& kind);
+
+ private:
+  struct Steps {
+    std::uint64_t number = 0;  ///< of the asking
+    std::uint64_t first = 0;
+    std::uint64_t target = 0;  ///< the cycle behind the last one
+  };
+
+  std::uint64_t ask();
+  std::uint64_t ask_pause(bool pause);
+  ServiceAnswer await_steps(const Steps& steps);
+  std::string waiting_for() const;
+
+  LoopHold& hold_;
+  Driver& driver_;
+  DriverCycle& cycle_;
+  std::function<std::vector<std::string>()> missing_;
+  std::mutex asking_;     ///< guards `asked_`
+  std::mutex exclusive_;  ///< held by step and reset
+  LoopHold::Asked asked_;
+};
+
+}  // namespace robot_control

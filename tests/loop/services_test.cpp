@@ -1,0 +1,248 @@
+/// Pause, step, reset and faults while four processes run: in lockstep with the bytes of the closed loop, on the wall
+/// clock without a jump.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "simulation/closed_loop.h"
+#include "support/four_nodes.h"
+#include "telemetry/columns.h"
+#include "telemetry/csv_writer.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kPatience = 120;                // s
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+constexpr const char* kCurve = "1,0.5,0.2,\n1000,0.5,0.2,\n2000,0.5,0.2,\n3000,0.5,0.2,\n";
+
+/// Drives a curve in every run.
+class Services : public ::testing::Test {
+ protected:
+  Services() : folder_(std::filesystem::temp_directory_path() / ("services-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+    set_script(kCurve);
+    parameters_ = read_parameters(std::string(PROJECT_DIRECTORY) + "/config/robot_params.yaml",
+                                  {{"robot.command_script", (folder_ / "script.csv").string(), "test"}});
+    parameters_.loop.wait_for_nodes = true;
+    parameters_.loop.wait_for_telemetry = true;
+    parameters_.telemetry.directory = (folder_ / "log").string();
+    robot_ = read_robot(load_description(parameters_.urdf), parameters_.robot);
+  }
+  ~Services() override { std::filesystem::remove_all(folder_); }
+
+  void set_script(const std::string& rows) {
+    std::ofstream script(folder_ / "script.csv");
+    script << "cycle,linear,angular,event\n" << rows;
+  }
+
+  /// run.csv of four processes under these hands.
+  std::string four_processes(ClockMode clock, const FourNodes::Operator& operate) {
+    parameters_.loop.clock = clock;
+    FourNodes(parameters_, robot_, true).run(kPatience, operate);
+    return content(folder_ / "log" / "run.csv");
+  }
+
+  std::filesystem::path folder_;
+  Parameters parameters_;
+  RobotModel robot_;
+};
+
+/// Pauses before cycle 0, so that everything happens in a cycle that is known.
+void step_from_the_beginning(SimulationServices& services, std::uint64_t cycles) {
+  services.set_pause(true);
+  ServiceAnswer answer;
+  for (int patience = 0; patience < 10 && !answer.success; ++patience) answer = services.step(1);  // 2 s each
+  ASSERT_TRUE(answer.success) << answer.message;
+  answer = services.step(cycles - 1);
+  ASSERT_TRUE(answer.success) << answer.message;
+}
+
+TEST_F(Services, InLockstepStepsAndResetsGiveTheBytesOfTheClosedLoop) {
+  constexpr std::uint64_t kFirst = 1500;  // cycles: at 0.5 m/s
+  constexpr std::uint64_t kSecondRun = 700;
+  const std::string four = four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
+    SimulationServices& services = *driver.services();
+    step_from_the_beginning(services, kFirst);
+    EXPECT_TRUE(services.reset().success);
+    EXPECT_TRUE(services.inject_fault("gyro", "stuck").success);
+    EXPECT_TRUE(services.step(kSecondRun).success);
+    EXPECT_TRUE(services.reset().success) << "which heals";
+    EXPECT_TRUE(services.step(kFirst).success);
+  });
+
+  std::vector<std::string> joints;
+  for (const JointModel& joint : robot_.joints) joints.push_back(joint.name);
+  CsvWriter writer((folder_ / "one.csv").string(), log_columns(joints, false));
+  ClosedLoop loop(parameters_);
+  const auto steps = [&](std::uint64_t cycles) {
+    for (std::uint64_t k = 0; k < cycles; ++k) {
+      loop.step();
+      writer.write(loop.row());
+    }
+  };
+  steps(kFirst);
+  loop.reset();
+  loop.inject_fault("gyro", "stuck");
+  steps(kSecondRun);
+  loop.reset();
+  steps(kFirst);
+  writer.close();
+  EXPECT_TRUE(four == content(folder_ / "one.csv"));
+}
+
+/// Rows of a log as numbers by column name; an empty cell is NaN.
+std::vector<std::map<std::string, double>> rows_of(const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::string> names;
+  std::istringstream header(line);
+  for (std::string name; std::getline(header, name, ',');) names.push_back(name);
+  std::vector<std::map<std::string, double>> rows;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    auto& row = rows.emplace_back();
+    for (const std::string& name : names) {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      row[name] = cell.empty() ? std::nan("") : std::stod(cell);
+    }
+  }
+  return rows;
+}
+
+TEST_F(Services, InLockstepAStoppedRobotStaysStoppedInTheNextRun) {
+  set_script("1,0.5,0.2,\n1000,0.5,0.2,\n1200,,,e_stop\n");
+  const auto rows = rows_of(four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
+    step_from_the_beginning(*driver.services(), 1210);
+    EXPECT_TRUE(driver.services()->reset().success);
+    EXPECT_TRUE(driver.services()->step(1100).success);
+  }));
+  ASSERT_EQ(rows.size(), 1210u + 1100u);
+  EXPECT_GT(rows[1199].at("truth_linear"), 0.4);
+  for (std::size_t row = 1210; row < rows.size(); ++row) {
+    ASSERT_EQ(rows[row].at("run"), 1);
+    ASSERT_EQ(rows[row].at("supervisor_state"), static_cast<double>(SupervisorState::kStopped)) << row;
+    ASSERT_EQ(rows[row].at("gate_verdict"), static_cast<double>(GateVerdict::kBrake)) << row;
+  }
+}
+
+/// Motion begins anew from rest: nothing of the first run's 0.5 m/s is left in pose, command or torque.
+TEST_F(Services, OnTheWallClockAResetAtSpeedIsFollowedWithoutAJump) {
+  constexpr double kEffortStep = 1;  // N·m; max_linear_acceleration takes 0.65 from one cycle to the next
+  const auto rows = rows_of(four_processes(ClockMode::kWall, [](DriverProcess& driver) {
+    sleep_ns(3 * kSecond / 2);
+    const ServiceAnswer answer = driver.services()->reset();
+    EXPECT_TRUE(answer.success) << answer.message;
+    sleep_ns(kSecond);
+  }));
+  std::size_t second = 0;
+  while (second < rows.size() && rows[second].at("run") == 0) ++second;
+  ASSERT_LT(second + 400, rows.size()) << "the second run was too short to judge";
+  EXPECT_GT(rows[second - 1].at("truth_linear"), 0.4);
+  EXPECT_EQ(rows[second].at("cycle"), 0);
+  EXPECT_EQ(rows[second].at("stamp_ns"), rows[second - 1].at("stamp_ns") + 1e6) << "one period after the last stamp";
+  for (std::size_t row = second; row < second + 50; ++row) {
+    if (std::isnan(rows[row].at("estimate_x")) || std::isnan(rows[row].at("requested_linear"))) continue;
+    EXPECT_LT(std::abs(rows[row].at("estimate_x")), 0.001);
+    EXPECT_LT(std::abs(rows[row].at("truth_linear")), 0.05);
+    EXPECT_LT(std::abs(rows[row].at("left_wheel_joint_effort") - rows[row - 1].at("left_wheel_joint_effort")),
+              row == second ? 20 : kEffortStep);
+  }
+  EXPECT_EQ(static_cast<std::uint64_t>(rows[second + 20].at("permit_causes")) & kCauseDriverLost, 0u);
+}
+
+/// What the operator reads of the sensors channel.
+SensorFrame newest(DriverProcess& driver) {
+  SensorFrame sensors;
+  while (driver.sensors().newest(sensors) != Lookup::kFrame) sleep_ns(1'000'000);
+  return sensors;
+}
+
+TEST_F(Services, OnTheWallClockAPauseStopsTimeAndIsNeitherCaughtUpNorSlip) {
+  constexpr std::int64_t kPause = kSecond / 2;
+  constexpr std::uint64_t kPeriod = 1'000'000;   // ns
+  constexpr std::int64_t kStall = kSecond / 20;  // what a busy machine may take off a thread of this test
+  const auto rows = rows_of(four_processes(ClockMode::kWall, [](DriverProcess& driver) {
+    SimulationServices& services = *driver.services();
+    sleep_ns(kSecond);
+    EXPECT_TRUE(services.set_pause(true).success);
+    const SensorFrame before = newest(driver);
+    const std::int64_t before_ns = monotonic_ns();
+    sleep_ns(kPause);
+    const SensorFrame paused = newest(driver);
+    EXPECT_EQ(paused.driver_state, DriverState::kPaused);
+    EXPECT_EQ(paused.head.cycle, before.head.cycle);
+    EXPECT_EQ(paused.head.stamp_ns, before.head.stamp_ns);
+    EXPECT_EQ(paused.joints[0].position, before.joints[0].position);
+
+    EXPECT_TRUE(services.step(5).success);
+    EXPECT_EQ(newest(driver).head.cycle, before.head.cycle + 5);
+    EXPECT_EQ(newest(driver).driver_state, DriverState::kPaused);
+
+    services.set_pause(false);
+    while (newest(driver).driver_state == DriverState::kPaused) sleep_ns(1'000'000);
+    const SensorFrame after = newest(driver);
+    const std::int64_t paused_ns = monotonic_ns() - before_ns;
+    EXPECT_GE(after.held_ns + 2 * kPeriod, before.held_ns + kPause);
+    EXPECT_LE(after.held_ns, before.held_ns + static_cast<std::uint64_t>(paused_ns));
+    EXPECT_NEAR(static_cast<double>(due_ns(after)), static_cast<double>(monotonic_ns()), kStall);
+    EXPECT_LT(after.slipped_ns, before.slipped_ns + static_cast<std::uint64_t>(kPause) / 2);
+    EXPECT_LT(after.head.cycle, before.head.cycle + 5 + static_cast<std::uint64_t>(kStall) / kPeriod) << "no burst";
+    sleep_ns(kSecond / 5);
+  }));
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    ASSERT_EQ(rows[row].at("cycle"), rows[row - 1].at("cycle") + 1);
+    if (std::isnan(rows[row].at("driver_state"))) continue;  // dropped: the machine was busy
+    ASSERT_EQ(rows[row].at("driver_state"), static_cast<double>(DriverState::kRunning)) << "no row is a pause";
+  }
+}
+
+TEST_F(Services, SayWhyTheyDoNot) {
+  four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
+    SimulationServices& services = *driver.services();
+    const ServiceAnswer running = services.step(1);
+    EXPECT_FALSE(running.success);
+    EXPECT_NE(running.message.find("only while paused"), std::string::npos) << running.message;
+    const ServiceAnswer component = services.inject_fault("left_wing", "off");
+    EXPECT_FALSE(component.success);
+    EXPECT_NE(component.message.find("accelerometer"), std::string::npos) << component.message;
+    const ServiceAnswer kind = services.inject_fault("gyro", "broken");
+    EXPECT_FALSE(kind.success);
+    EXPECT_NE(kind.message.find("intermittent"), std::string::npos) << kind.message;
+  });
+}
+
+TEST_F(Services, AStepThatIsTakenBackSaysHowFarItCame) {
+  four_processes(ClockMode::kWall, [](DriverProcess& driver) {
+    SimulationServices& services = *driver.services();
+    step_from_the_beginning(services, 10);
+    ServiceAnswer long_step;
+    std::thread stepping([&] { long_step = services.step(1'000'000); });
+    while (newest(driver).head.cycle < 50) sleep_ns(1'000'000);
+    EXPECT_FALSE(services.reset().success) << "a step is under way";
+    services.set_pause(true);
+    stepping.join();
+    EXPECT_FALSE(long_step.success);
+    EXPECT_NE(long_step.message.find("interrupted"), std::string::npos) << long_step.message;
+  });
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,189 @@
+/// A simulated machine that is paused, or set down anew, and what the other nodes make of it.
+
+#include <gtest/gtest.h>
+
+#include "cycle_fixture.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
+
+/// A loop in DRIVE with a standing command.
+class PausedLoop : public ::testing::Test {
+ protected:
+  PausedLoop() {
+    loop.step();
+    loop.controller->inbox().store({.twist = kForward, .count = 1});
+    loop.steps(20);
+  }
+
+  /// The others wake as often as the paused frame is published.
+  void pause(int times = 1) {
+    for (int i = 0; i < times; ++i) {
+      loop.driver.publish_paused();
+      EXPECT_FALSE(loop.estimator->step());
+      EXPECT_FALSE(loop.controller->step());
+      EXPECT_FALSE(loop.monitor->step());
+    }
+  }
+
+  SensorFrame newest_sensors() const {
+    SensorFrame out;
+    EXPECT_EQ(loop.sensors.reader.newest(out), Lookup::kFrame);
+    return out;
+  }
+
+  void begin_run(std::uint64_t run) {
+    loop.driver.set_start(loop.driver.next_stamp_ns());
+    loop.driver.begin_run(run);
+  }
+
+  Loop loop;
+};
+
+TEST_F(PausedLoop, ShowsTheLastFrameAgain) {
+  const SensorFrame before = newest_sensors();
+  pause();
+  SensorFrame paused = newest_sensors();
+  EXPECT_EQ(paused.driver_state, DriverState::kPaused);
+  paused.driver_state = before.driver_state;
+  seal(paused);
+  EXPECT_EQ(paused.head.checksum, before.head.checksum) << "and nothing else has changed";
+}
+
+TEST_F(PausedLoop, ShowsNothingBeforeTheFirstCycle) {
+  begin_run(2);
+  const std::uint32_t before = loop.sensors.reader.sequence();
+  loop.driver.publish_paused();
+  EXPECT_EQ(loop.sensors.reader.sequence(), before);
+}
+
+TEST_F(PausedLoop, IsIgnoredByEverybody) {
+  const StateFrame state = loop.newest_state();
+  const CommandFrame command = loop.newest_command();
+  const Permit permit = loop.newest_permit();
+  pause(50);
+  EXPECT_EQ(loop.newest_state().head.checksum, state.head.checksum);
+  EXPECT_EQ(loop.newest_command().head.checksum, command.head.checksum);
+  EXPECT_EQ(loop.newest_permit().head.checksum, permit.head.checksum);
+}
+
+TEST_F(PausedLoop, GoesOnAsIfNothingHadBeen) {
+  pause(50);
+  loop.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kPassed);
+  EXPECT_EQ(loop.gate().held, 0u);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kDrive);
+}
+
+TEST_F(PausedLoop, IsNotLostHoweverLongItLasts) {
+  pause();
+  for (int i = 0; i < 10; ++i) loop.monitor->silence();
+  loop.steps(5);
+  EXPECT_EQ(loop.newest_permit().causes, 0u);
+}
+
+TEST_F(PausedLoop, IsLostWhenItFallsSilentAfterwards) {
+  pause();
+  loop.step();
+  loop.monitor->silence();
+  EXPECT_NE(loop.newest_permit().causes & kCauseDriverLost, 0u);
+}
+
+TEST_F(PausedLoop, RefusesAResetBecauseNothingCanBeJudged) {
+  loop.monitor->inbox().store({.resets = 1});
+  pause();
+  EXPECT_EQ(loop.newest_permit().resets_handled, 1u);
+  EXPECT_EQ(loop.newest_permit().reset_refusal, std::uint64_t{kRefusalPaused});
+}
+
+TEST_F(PausedLoop, LatchesAnEmergencyStopOfThePauseInTheNextCycle) {
+  loop.monitor->inbox().store({.e_stop_services = 1});
+  pause();
+  loop.step();
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+}
+
+TEST_F(PausedLoop, IsTakenForAFrameByAMonitorThatHasNotSeenItsCycle) {
+  loop.driver.step();
+  loop.driver.publish_paused();
+  EXPECT_TRUE(loop.estimator->step());
+  EXPECT_TRUE(loop.controller->step());
+  EXPECT_TRUE(loop.monitor->step());
+  loop.monitor->silence();
+  loop.steps(5);
+  EXPECT_EQ(loop.newest_permit().causes, 0u);
+  EXPECT_EQ(loop.gate().missed, 0u);
+}
+
+TEST_F(PausedLoop, KeepsADriversFaultVisible) {
+  loop.machine.state = DriverState::kFault;
+  loop.step();
+  pause();
+  EXPECT_EQ(newest_sensors().driver_state, DriverState::kFault);
+}
+
+TEST_F(PausedLoop, CountsWhatWasHeldApartFromWhatSlipped) {
+  constexpr std::int64_t kSlipped = 3 * kPeriodNs;
+  constexpr std::int64_t kHeld = 1000 * kPeriodNs;
+  loop.driver.count_slip(kSlipped);
+  const std::int64_t deadline = loop.driver.next_stamp_ns() + kSlipped + kHeld;
+  loop.driver.set_due(deadline);
+  loop.step();
+  const SensorFrame sensors = newest_sensors();
+  EXPECT_EQ(sensors.held_ns, static_cast<std::uint64_t>(kHeld));
+  EXPECT_EQ(due_ns(sensors), deadline);
+}
+
+TEST_F(PausedLoop, ANewRunCarriesOnItsStampsAndTheirDistanceFromTheClock) {
+  constexpr std::int64_t kSlipped = 3 * kPeriodNs;
+  loop.driver.count_slip(kSlipped);
+  loop.step();
+  const SensorFrame last = newest_sensors();
+  begin_run(2);
+  const std::int64_t deadline = due_ns(last) + 50 * kPeriodNs;
+  loop.driver.set_due(deadline);
+  loop.step();
+  const SensorFrame first = newest_sensors();
+  EXPECT_EQ(first.head.cycle, 0u);
+  EXPECT_EQ(first.head.stamp_ns, last.head.stamp_ns + kPeriodNs);
+  EXPECT_EQ(first.slipped_ns, 0u);
+  EXPECT_EQ(due_ns(first), deadline);
+}
+
+TEST_F(PausedLoop, ANewRunAfterAPauseIsFollowedAndReleasesNothing) {
+  loop.monitor->inbox().store({.e_stop_services = 1});
+  loop.steps(2);
+  pause(3);
+  begin_run(2);
+  loop.steps(10);
+  EXPECT_EQ(loop.newest_state().head.run, 2u);
+  EXPECT_EQ(loop.newest_state().head.cycle, 9u);
+  EXPECT_EQ(loop.newest_command().twist_requested.linear, Vector3{}) << "what was asked for before is dropped";
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+  EXPECT_EQ(loop.newest_permit().causes, std::uint64_t{kCauseEmergencyStopService});
+}
+
+TEST_F(PausedLoop, FaultsReachTheMachineAndEveryFrame) {
+  InjectedFaults faults{};
+  faults[static_cast<std::size_t>(FaultComponent::kGyro)] = FaultKind::kOff;
+  loop.driver.inject(faults);
+  loop.step();
+  EXPECT_EQ(loop.machine.faults, faults);
+  EXPECT_EQ(newest_sensors().injected, faults);
+}
+
+TEST_F(PausedLoop, DoesNotAllocate) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  const AllocationGuard guard;
+  loop.driver.publish_paused();
+  loop.monitor->step();
+  loop.driver.inject({});
+  loop.driver.set_due(loop.driver.next_stamp_ns());
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control
