@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/mujoco_model.h"
 #include "hal/driver.h"
+#include "python/describe.h"
 #include "simulation/closed_loop.h"
 #include "telemetry/columns.h"
 
@@ -74,6 +76,10 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command) {
   return log;
 }
 
+RobotModel robot_of(const Parameters& parameters) {
+  return read_robot(load_description(parameters.urdf), parameters.robot);
+}
+
 Parameters parameters_from(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
   std::vector<Overlay> overlays;
   for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
@@ -88,6 +94,19 @@ PYBIND11_MODULE(_robot_control, module) {
   py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
   py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
   py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
+  module.def(
+      "describe",
+      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+        return describe(robot_of(parameters_from(path, values)));
+      },
+      py::arg("path"), py::arg("values"));
+  module.def(
+      "mjcf",
+      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+        const Parameters parameters = parameters_from(path, values);
+        return exported_mjcf(robot_of(parameters), parameters.plant, parameters.loop.period());
+      },
+      py::arg("path"), py::arg("values"));
   py::class_<ClosedLoop>(module, "ClosedLoop")
       .def(py::init([](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
              return ClosedLoop(parameters_from(path, values));
@@ -97,6 +116,8 @@ PYBIND11_MODULE(_robot_control, module) {
       .def("e_stop", &ClosedLoop::e_stop)
       .def("e_stop_reset", &ClosedLoop::e_stop_reset)
       .def("heartbeat", &ClosedLoop::heartbeat)
+      .def("reset", &ClosedLoop::reset)
+      .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
       .def("run", &run, py::arg("cycles"), py::arg("command"))
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)

@@ -21,6 +21,7 @@ using Indices = std::vector<std::size_t>;
 struct Cloud {
   Eigen::Matrix3Xd points;
   int dimension = 0;
+  bool is_mirrored = false;  ///< the axes are a left-handed frame
 };
 
 Cloud principal(const Points& points) {
@@ -35,6 +36,7 @@ Cloud principal(const Points& points) {
   const Eigen::Matrix3d spread = cloud.points * cloud.points.transpose();
   const Eigen::Matrix3d axes =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().rowwise().reverse();
+  cloud.is_mirrored = axes.determinant() < 0;
   cloud.points = axes.transpose() * cloud.points;
   const Eigen::Vector3d extent = cloud.points.rowwise().maxCoeff() - cloud.points.rowwise().minCoeff();
   while (cloud.dimension < 3 && extent[cloud.dimension] > kThin) ++cloud.dimension;
@@ -63,38 +65,65 @@ class Qhull {
   Qhull(const Qhull&) = delete;
   Qhull& operator=(const Qhull&) = delete;
 
-  /// Empty when Qhull gives up.
-  Indices corners(const Cloud& cloud, const char* options) {
-    if (silence_ == nullptr) return {};
-    Eigen::MatrixXd coordinates = cloud.points.topRows(cloud.dimension);
+  /// False when Qhull gives up.
+  bool run(const Cloud& cloud, const char* options) {
+    if (silence_ == nullptr) return false;
+    coordinates_ = cloud.points.topRows(cloud.dimension);
     std::string command = options;
-    const int count = static_cast<int>(coordinates.cols());
-    const bool failed =
-        qh_new_qhull(&qh_, cloud.dimension, count, coordinates.data(), 0, command.data(), nullptr, silence_) != 0;
+    count_ = static_cast<int>(coordinates_.cols());
+    return qh_new_qhull(&qh_, cloud.dimension, count_, coordinates_.data(), 0, command.data(), nullptr, silence_) == 0;
+  }
+
+  Indices corners() {
     Indices result;
-    if (!failed) {
-      for (vertexT* vertex = qh_.vertex_list; vertex != nullptr && vertex->next != nullptr; vertex = vertex->next) {
-        const int id = qh_pointid(&qh_, vertex->point);
-        if (id >= 0 && id < count) result.push_back(static_cast<std::size_t>(id));
+    for (vertexT* vertex = qh_.vertex_list; vertex != nullptr && vertex->next != nullptr; vertex = vertex->next) {
+      const int id = qh_pointid(&qh_, vertex->point);
+      if (id >= 0 && id < count_) result.push_back(static_cast<std::size_t>(id));
+    }
+    return result;
+  }
+
+  /// In three dimensions, of facets with three corners.
+  std::vector<std::array<std::size_t, 3>> triangles() {
+    std::vector<std::array<std::size_t, 3>> result;
+    for (facetT* facet = qh_.facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next) {
+      if (qh_setsize(&qh_, facet->vertices) != 3) continue;
+      std::array<std::size_t, 3> triangle{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto* vertex = static_cast<const vertexT*>(facet->vertices->e[i].p);
+        triangle[i] = static_cast<std::size_t>(qh_pointid(&qh_, vertex->point));
       }
+      if (is_clockwise(triangle, facet->normal)) std::swap(triangle[1], triangle[2]);
+      result.push_back(triangle);
     }
     return result;
   }
 
  private:
+  bool is_clockwise(const std::array<std::size_t, 3>& triangle, const double* outward) const {
+    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
+      return coordinates_.col(static_cast<Eigen::Index>(triangle[i]));
+    };
+    const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    return normal.dot(Eigen::Map<const Eigen::Vector3d>(outward)) < 0;
+  }
+
   std::FILE* silence_;
   qhT qh_{};
+  Eigen::MatrixXd coordinates_;  // Qhull points into it
+  int count_ = 0;
 };
 
 Indices corners_of(const Cloud& cloud) {
   if (cloud.dimension == 0) return {0};
   if (cloud.dimension == 1) return ends(cloud);
-  Indices corners = Qhull().corners(cloud, "qhull Qt");
-  if (corners.empty()) corners = Qhull().corners(cloud, "qhull QJ");
-  if (corners.empty()) {
-    for (Eigen::Index i = 0; i < cloud.points.cols(); ++i) corners.push_back(static_cast<std::size_t>(i));
+  for (const char* options : {"qhull Qt", "qhull QJ"}) {
+    Qhull hull;
+    if (hull.run(cloud, options)) return hull.corners();
   }
-  return corners;
+  Indices all;
+  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i) all.push_back(static_cast<std::size_t>(i));
+  return all;
 }
 
 void order(Points& points) {
@@ -139,6 +168,19 @@ Points hull_corners(const Points& points) {
     order(corners);
   }
   return corners;
+}
+
+std::vector<std::array<std::size_t, 3>> hull_triangles(const Points& points) {
+  if (points.empty()) return {};
+  const Cloud cloud = principal(points);
+  if (cloud.dimension < 3) return {};
+  Qhull hull;
+  if (!hull.run(cloud, "qhull Qt")) return {};
+  auto triangles = hull.triangles();
+  for (auto& triangle : triangles) {
+    if (cloud.is_mirrored) std::swap(triangle[1], triangle[2]);
+  }
+  return triangles;
 }
 
 }  // namespace robot_control

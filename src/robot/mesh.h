@@ -11,7 +11,9 @@
 /// Points that no face uses, lines, and points at infinity are no part of a mesh.
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -33,6 +35,10 @@ Points read_mesh(const std::filesystem::path& path);
 /// farthest from all that are kept. The hull then lies inside the true one by less than the distance of the last one
 /// added: at most 10 % of the radius for a ball of any fineness, where the loss in depth is below 0.5 %.
 Points hull_corners(const Points& points);
+
+/// The faces of the convex hull, for pictures: three indices into `points` each, counter-clockwise from outside. None
+/// for a flat cloud.
+std::vector<std::array<std::size_t, 3>> hull_triangles(const Points& points);
 
 /// hull_corners(read_mesh(path)), remembered until the file's size or time of change is another. A hull may be scaled
 /// afterwards: its corners stay corners.

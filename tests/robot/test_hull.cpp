@@ -118,5 +118,23 @@ TEST(HullCorners, OfAWheelKeepItsRadius) {
   }
 }
 
+// Σ v₀·(v₁ × v₂)/6 over outward triangles is the volume.
+TEST(HullTriangles, FaceOutwardAndClose) {
+  for (const double mirror : {-1.0, 1.0}) {
+    Points points;
+    for (const Eigen::Vector3d& corner : kCube)
+      points.emplace_back(mirror * corner.x(), 2 * corner.y(), 3 * corner.z());
+    points.emplace_back(0, 0, 0);
+    double volume = 0;
+    for (const auto& [a, b, c] : hull_triangles(points)) volume += points[a].dot(points[b].cross(points[c])) / 6;
+    EXPECT_NEAR(volume, 2 * 4 * 6, 1e-9);
+  }
+}
+
+TEST(HullTriangles, AreNoneOfAFlatCloud) {
+  EXPECT_TRUE(hull_triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}).empty());
+  EXPECT_TRUE(hull_triangles({}).empty());
+}
+
 }  // namespace
 }  // namespace robot_control
