@@ -1,10 +1,13 @@
 #include "control/feed_forward.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace robot_control {
 
 namespace {
+
+constexpr double kFrictionSpeed = 0.1;  // rad/s, ε of the header
 
 /// h of the header.
 double wheels_beside(const RobotModel& robot, const WheelModel& wheel) noexcept {
@@ -40,6 +43,9 @@ FeedForward::FeedForward(const RobotModel& robot)
     side_[i] = wheel.side == Side::kLeft ? -1 : 1;
     effort_per_force_[i] = wheel.sign * wheel.radius / wheels_beside(robot, wheel);
     effort_per_acceleration_[i] = wheel.sign * wheel.inertia / wheel.radius;
+    turn_per_rim_[i] = wheel.sign / wheel.radius;
+    damping_[i] = robot.joints[wheel.joint].damping;
+    friction_[i] = robot.joints[wheel.joint].friction;
   }
 }
 
@@ -48,10 +54,13 @@ WheelValues FeedForward::efforts(const PlanarTwist& twist, const PlanarTwist& ac
   const double moment = yaw_inertia_ * acceleration.angular + mass_ * centre_ahead_ * twist.linear * twist.angular;
   const double difference = moment / wheel_base_;
   const double rim_difference = half_base_ * acceleration.angular;
+  const double rim_speed_difference = half_base_ * twist.angular;
   WheelValues efforts{};
   for (std::size_t i = 0; i < wheels_; ++i) {
     efforts[i] = effort_per_force_[i] * (0.5 * force + side_[i] * difference) +
                  effort_per_acceleration_[i] * (acceleration.linear + side_[i] * rim_difference);
+    const double velocity = turn_per_rim_[i] * (twist.linear + side_[i] * rim_speed_difference);
+    efforts[i] += damping_[i] * velocity + friction_[i] * std::tanh(velocity / kFrictionSpeed);
   }
   return efforts;
 }

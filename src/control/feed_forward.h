@@ -13,11 +13,13 @@
 ///
 ///   τ = r·F_wheel + J·a/r     (times the joint's sign)
 ///
+/// and the joint itself, of damping d and dry friction f, takes d·q̇ + f·tanh(q̇/ε), ε = 0.1 rad/s: the friction of a
+/// wheel that has just begun to turn is not known better than that.
+///
 /// So a wheel sees, per rad/s² of its own, the inertia
 ///   straight: J + m·r²/(2·h)      turning: J + 2·I·r²/(h·b·b_eff)      lifted: J
 /// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m, h = 1: 0.065, 0.045 and 0.005 kg·m².
-/// Friction, slopes and the scrubbing of wheels behind each other are left to the integrator: RobotModel does not know
-/// them.
+/// Slopes and the scrubbing of wheels behind each other are left to the integrator: RobotModel does not know them.
 
 #include "control/planar_twist.h"
 #include "robot/robot_model.h"
@@ -32,7 +34,7 @@ class FeedForward {
  public:
   explicit FeedForward(const RobotModel& robot);
 
-  /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²).
+  /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²), that of the joint included.
   WheelValues efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;
 
  private:
@@ -45,6 +47,9 @@ class FeedForward {
   WheelValues side_{};                     ///< −1 left, +1 right
   WheelValues effort_per_force_{};         ///< m: sign·r/h, of the force of a side
   WheelValues effort_per_acceleration_{};  ///< N·m·s²/m: sign·J/r
+  WheelValues turn_per_rim_{};             ///< rad/m: sign/r
+  WheelValues damping_{};                  ///< N·m·s/rad
+  WheelValues friction_{};                 ///< N·m
 };
 
 }  // namespace robot_control

@@ -43,7 +43,8 @@ void read_geometry(const RigidBodies& robot, const RobotParameters& parameters, 
 
 void add_joint(const RigidBody& body, JointRole role, RobotModel& model) {
   const double effort = role == JointRole::kPassive ? 0 : body.joint.effort_limit;
-  model.joints.push_back({body.joint.name, body.name, effort, body.joint.velocity_limit, role});
+  model.joints.push_back(
+      {body.joint.name, body.name, effort, body.joint.velocity_limit, role, body.joint.damping, body.joint.friction});
 }
 
 void read_joints(const RigidBodies& robot, const RobotParameters& parameters, DriveTrain& train, RobotModel& model) {
@@ -130,6 +131,12 @@ void read_imu(const RigidBodies& robot, const RobotParameters& parameters, Robot
   model.imu_in_base.orientation = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
 }
 
+void note_mecanum(RobotModel& model) {
+  if (model.wheels.size() == 2 || lower_case(model.urdf).find("mecanum") == std::string::npos) return;
+  model.notes.push_back({RobotNote::Kind::kSuspicious, "<robot>",
+                         "it speaks of mecanum wheels: they are driven as plain ones, and do not roll sideways"});
+}
+
 void check_finite(const RobotModel& model) {
   const auto all_finite = [](const WheelModel& w) {
     return std::isfinite(w.radius) && std::isfinite(w.width) && std::isfinite(w.inertia) && w.inertia > 0;
@@ -194,6 +201,7 @@ RobotModel read_robot(const RobotDescription& description, const RobotParameters
   read_joints(*bodies, parameters, train, model);
   read_masses(*bodies, parameters, model);
   read_imu(*bodies, parameters, model);
+  note_mecanum(model);
   model.notes = merged(model.notes);
   model.bodies = bodies;
   check_finite(model);

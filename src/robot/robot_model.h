@@ -33,7 +33,7 @@ struct RobotParameters {
   std::optional<double> wheel_velocity_limit;   ///< rad/s, every wheel
   std::optional<double> mass;                   ///< kg
   std::optional<Vector3> centre_of_gravity;     ///< m, base axes
-  std::string imu_link;                         ///< empty: "imu_link" where there is one, else the IMU is in the base
+  std::string imu_link;                         ///< empty: found by its name, else the IMU is in the base (imu_place.h)
 };
 
 /// A URDF text and where it was read, for messages ("urdf/diffbot.urdf", "/robot_description").
@@ -56,6 +56,8 @@ struct JointModel {
   double effort_limit = 0;    ///< N·m or N; 0 for passive joints, above 0 for wheels
   double velocity_limit = 0;  ///< rad/s or m/s; 0: none known
   JointRole role = JointRole::kWheel;
+  double damping = 0;   ///< N·m·s/rad or N·s/m, of its bearing and gear
+  double friction = 0;  ///< N·m or N, dry
 };
 
 enum class Side { kLeft, kRight };
@@ -121,7 +123,8 @@ struct RobotModel {
 /// Reads a file; throws RobotError naming it. A name that ends in .xacro is expanded first (xacro.h).
 RobotDescription load_description(const std::string& path);
 
-/// Throws RobotError: malformed XML, no such joint, not a wheel, no shape, no mass, more than kMaxJoints …
+/// Throws RobotError: what read_rigid_bodies, find_drive_train and imu_link_of refuse, overrides that are not above
+/// zero, more than kMaxJoints moving joints, numbers beyond all bounds.
 RobotModel read_robot(const RobotDescription& description, const RobotParameters& parameters);
 
 }  // namespace robot_control

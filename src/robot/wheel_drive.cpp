@@ -1,5 +1,6 @@
 #include "robot/wheel_drive.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "robot/overrides.h"
@@ -34,16 +35,18 @@ DriveLimits drive_limits(const RigidBodies& robot, const DriveTrain& train, cons
     notes.push_back({kind, joint_element(joint.name), text});
   };
   const double share = total_mass(robot) / static_cast<double>(train.wheels.size());
-  const double grip = share * kGravity * wheel.wheel.radius;
   DriveLimits limits{joint.effort_limit, joint.velocity_limit};
   if (limits.velocity >= kBeyondMotors || is_placeholder(joint)) limits.velocity = 0;
-  const bool implausible = joint.effort_limit > kImplausible * grip || is_placeholder(joint);
+  const double speed = kLossSpeed / wheel.wheel.radius;
+  const double turning = limits.velocity > 0 ? std::min(limits.velocity, speed) : speed;
+  const double useful = share * kGravity * wheel.wheel.radius + joint.friction + joint.damping * turning;
+  const bool implausible = joint.effort_limit > kImplausible * useful || is_placeholder(joint);
   if (!(limits.effort > 0) || implausible) {
-    limits.effort = grip;
+    limits.effort = useful;
     if (!parameters.wheel_effort_limit) {
       note(RobotNote::Kind::kAssumed,
            (implausible ? "effort " + number(joint.effort_limit) + " N·m is a placeholder: " : "no effort limit: ") +
-               number(grip) + " N·m taken, what the tyre transmits at a friction of 1");
+               number(useful) + " N·m taken, what the tyre transmits at a friction of 1 and the joint itself loses");
     }
   }
   if (!(limits.velocity > 0) && !parameters.wheel_velocity_limit) {

@@ -1,8 +1,10 @@
 #pragma once
 /// What a URDF leaves out of its drives.
 ///
-///   effort   τ_μ = μ (m g / n) r with μ = 1: what the tyre can transmit. Unknown is a limit that is missing or zero,
-///            above kImplausible · τ_μ, or the pair 100 N·m, 100 rad/s that editors fill in.
+///   effort   τ_μ + τ_loss: what the tyre can transmit, τ_μ = μ (m g / n) r with μ = 1, and what the joint's own
+///            friction and damping cost at kLossSpeed (or its velocity limit, where that is lower). Unknown is a limit
+///            that is missing or zero, above kImplausible · (τ_μ + τ_loss), or the pair 100 N·m, 100 rad/s that editors
+///            fill in.
 ///   velocity unknown: missing, zero, that pair, or 1000 rad/s and more.
 ///   rotor    a wheel's inertia about its axle is at least kDriveShare of the robot's share, (m/n) r². What is missing
 ///            is taken for the drive's rotor, seen through its gear: a wheel of some grams alone, which no real drive
@@ -17,6 +19,7 @@
 namespace robot_control {
 
 inline constexpr double kImplausible = 10;
+inline constexpr double kLossSpeed = 1;  ///< m/s at the rim
 inline constexpr double kDriveShare = 0.05;
 inline constexpr double kCasterShare = 0.02;
 inline constexpr double kGravity = 9.81;  ///< m/s²

@@ -40,6 +40,20 @@ TEST(FeedForward, SharesTheLoadOverAllWheels) {
   }
 }
 
+// 0.5 m/s and 0.2 rad/s turn the wheels with 4.5 and 5.5 rad/s; far above 0.1 rad/s dry friction counts in full.
+TEST(FeedForward, OvercomesWhatTheJointItselfTakes) {
+  RobotModel robot = make_test_robot();
+  robot.wheels[1].sign = -1;
+  for (JointModel& joint : robot.joints) {
+    joint.damping = 0.02;
+    joint.friction = 0.3;
+  }
+  const WheelValues efforts = FeedForward(robot).efforts({0.5, 0.2}, {});
+  EXPECT_NEAR(efforts[0], 0.02 * 4.5 + 0.3, 1e-12);
+  EXPECT_NEAR(efforts[1], -(0.02 * 5.5 + 0.3), 1e-12);
+  EXPECT_EQ(FeedForward(robot).efforts({}, {})[0], 0);
+}
+
 TEST(FeedForward, AcceleratesARigidRobotExactlyAsPlanned) {
   RobotModel robot = make_test_robot();
   robot.centre_of_gravity_base[0] = 0.05;
