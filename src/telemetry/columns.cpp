@@ -155,6 +155,7 @@ void add_safety(Columns& to) {
   to.push_back(column<D>("refused", "", [](const D& d, J) { return d.gate.refused; }));
   to.push_back(column<D>("driver_state", "DriverState", [](const D& d, J) { return d.sensors.driver_state; }));
   to.push_back(column<D>("faults", "DriverFault", [](const D& d, J) { return d.sensors.faults; }));
+  to.push_back(column<D>("injected", "fault_code", [](const D& d, J) { return fault_code(d.sensors.injected); }));
 }
 
 void add_timing(Columns& to) {

@@ -181,5 +181,11 @@ TEST_F(Columns, CarryBitsAsIntegers) {
   EXPECT_EQ(value("permit_causes"), (1 << 3) + (1 << 10));
 }
 
+TEST_F(Columns, ShowTheInjectedFaultsAsOneOctalDigitPerComponent) {
+  EXPECT_EQ(value("injected"), 0);
+  driver.sensors.injected[static_cast<std::size_t>(FaultComponent::kGyro)] = FaultKind::kStuck;
+  EXPECT_EQ(value("injected"), 0200);
+}
+
 }  // namespace
 }  // namespace robot_control
