@@ -10,7 +10,7 @@
 /// N  normal force of the previous step                                 L  relaxation length
 ///
 /// At the bound F points against k z + c v, and |z| ≤ μ N / k: the tread slides, Coulomb friction opposes it. Held
-/// still (u = 0) it is a spring: no creep. Rolling under a force F it creeps with v = F |u| / (k L), as tyres do.
+/// still (u = 0) it is a spring: no creep. Rolling under a force F it creeps with v = F / (k L/|u| + c), as tyres do.
 /// Below a rim speed of 0.1 r per second u counts as zero: a wheel held on encoder counts does not creep. Turn slip
 /// has its twin φ about the normal: φ̇ = ω − |u|/L · φ, M = −(k φ + c ω) ρ², |M| ≤ μ N ϱ, with ρ = 0.2 r the lever of
 /// the bristles and ϱ = 0.01 r that of their bound: a wheel of 0.1 m touches within millimetres.

@@ -1,0 +1,116 @@
+/// Real robots, as their makers publish them, on the plant alone: they stand still and stop without tipping. Skipped
+/// where they are absent: a folder `shared/robots` above the repository, or the one named by ROBOT_CORPUS.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "plant_fixture.h"
+
+namespace robot_control {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path corpus() {
+  if (const char* named = std::getenv("ROBOT_CORPUS")) return named;
+  for (fs::path folder = PROJECT_DIRECTORY; folder != folder.root_path(); folder = folder.parent_path()) {
+    if (fs::exists(folder / "shared/robots/TRUTH.json")) return folder / "shared/robots";
+  }
+  return {};
+}
+
+class RealRobot : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (corpus().empty()) GTEST_SKIP() << "no folder of real robots: set ROBOT_CORPUS";
+    const fs::path folder = corpus() / GetParam();
+    setenv("ROS_PACKAGE_PATH", folder.c_str(), 1);
+    MujocoPlantParameters parameters;
+    parameters.scene = kFlat;
+    parameters.sensor_errors = false;
+    robot_ = read_robot(load_description((folder / "robot.urdf").string()), {});
+    plant_ = std::make_unique<MujocoPlant>(robot_, parameters, 0.001);
+    plant_->start();
+  }
+
+  TruthFrame truth() {
+    TruthFrame frame;
+    plant_->truth(frame);
+    return frame;
+  }
+  void brake(int steps) {
+    const std::vector<JointCommand> brakes(robot_.joints.size());
+    for (int k = 0; k < steps; ++k) plant_->write(brakes);
+  }
+  /// Ramps to `speed` (m/s) in two seconds and goes on for one, with wheel loops as the controller's.
+  void drive(double speed) {
+    std::vector<double> integral(robot_.wheels.size());
+    for (int k = 1; k <= 3000; ++k) {
+      std::vector<JointCommand> commands(robot_.joints.size());
+      SensorFrame sensors;
+      plant_->read(sensors);
+      for (const WheelModel& wheel : robot_.wheels) {
+        JointCommand& command = commands[wheel.joint];
+        command.mode = JointMode::kVelocity;
+        command.velocity = std::min(1.0, k / 2000.0) * speed / wheel.radius * wheel.sign;
+        command.damping = 0.4 * wheel.inertia / 0.001;
+        integral[wheel.joint] +=
+            command.damping / 0.1 * (command.velocity - sensors.joints[wheel.joint].velocity) * 0.001;
+        command.effort = integral[wheel.joint];
+      }
+      plant_->write(commands);
+    }
+  }
+  double full_speed() const {
+    double speed = 1;  // m/s, where the description knows none
+    for (const WheelModel& wheel : robot_.wheels) {
+      const double limit = robot_.joints[wheel.joint].velocity_limit;
+      if (limit > 0) speed = std::min(speed, limit * wheel.radius);
+    }
+    return speed;
+  }
+  /// rad, between the robot's up and the world's.
+  double tilt() const {
+    const mjtNum up[3] = {0, 0, 1};
+    mjtNum turned[3];
+    mju_rotVecQuat(turned, up, plant_->data()->qpos + plant_->model().base_position + 3);
+    return std::acos(std::min(1.0, turned[2]));
+  }
+
+  RobotModel robot_;
+  std::unique_ptr<MujocoPlant> plant_;
+};
+
+TEST_P(RealRobot, WeighsWhatItsLinksWeigh) {
+  const MujocoModel& model = plant_->model();
+  EXPECT_NEAR(model.model->body_subtreemass[model.base_body], robot_.mass, 1e-6 * robot_.mass);
+}
+
+TEST_P(RealRobot, StandsStillForHalfAMinute) {
+  brake(30000);
+  const Vector3 moved = truth().pose_world.position;
+  EXPECT_LT(std::hypot(moved[0], moved[1], moved[2]), 0.001);
+}
+
+TEST_P(RealRobot, StopsHardFromFullSpeedWithoutTipping) {
+  for (const double direction : {1.0, -1.0}) {
+    drive(direction * full_speed());
+    double tipped = 0;
+    for (int k = 0; k < 3000; ++k) {
+      brake(1);
+      tipped = std::max(tipped, tilt());
+    }
+    EXPECT_LT(tipped, 10 * M_PI / 180);
+    EXPECT_NEAR(truth().twist_base.linear[0], 0, 0.001);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Corpus, RealRobot,
+                         testing::Values("jackal", "kobuki", "create3", "pmb2", "boxer", "diffbot_ros2control",
+                                         "scout_v2", "p3dx_mario", "linorobot2_2wd", "rosbot2r", "dingo_d", "create_2"),
+                         [](const auto& named) { return std::string(named.param); });
+
+}  // namespace
+}  // namespace robot_control
