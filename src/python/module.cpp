@@ -120,6 +120,7 @@ PYBIND11_MODULE(_robot_control, module) {
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
       .def("run", &run, py::arg("cycles"), py::arg("command"))
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
+      .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot()); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)
       .def_property_readonly("time", &ClosedLoop::time)
       .def_property_readonly("columns", [](const ClosedLoop& loop) {

@@ -47,6 +47,7 @@ def test_tracks_the_command_on_a_physical_plant(loop):
 
 @pytest.mark.parametrize("command", [(0.5, 0.2), (-0.5, 0.2), (0.0, 1.0), (0.8, -0.5)])
 def test_estimates_the_pose_within_one_percent_of_the_distance(loop, command):
+    drive(loop, 1.0, (0.0, 0.0))  # at rest the gyro's bias shows
     log = drive(loop, 15.0, command)
     error = math.hypot(log["estimate_x"][-1] - log["truth_x"][-1], log["estimate_y"][-1] - log["truth_y"][-1])
     rim = 0.25 * np.sum(np.abs(np.diff(np.unwrap(log["truth_yaw"]))))  # a spin travels at the wheels
@@ -148,10 +149,69 @@ def test_a_lost_heartbeat_ramps_then_brakes():
 
 def test_same_seed_and_calls_give_the_same_bits(loop):
     first = drive(loop, 2.0)
-    loop.reset()
+    loop.reset(seed=0)
     second = drive(loop, 2.0)
     for name, values in first.items():
         assert values.tobytes() == second[name].tobytes(), name
+
+
+def test_a_new_run_after_a_reset_at_speed_has_the_bits_of_the_first(loop):
+    first = drive(loop, 2.0)
+    assert first["truth_linear"][-1] > 0.4
+    loop.inject_fault("right_motor", "off")
+    loop.step(10)
+    loop.command(1.0, 0.0)  # dropped
+    loop.reset()
+    assert loop.cycle == 0
+    second = drive(loop, 2.0)
+    assert np.all(second["run"] == 1)
+    for name in first.keys() - {"run"}:
+        assert first[name].tobytes() == second[name].tobytes(), name
+
+
+def test_a_reset_releases_no_stop(loop):
+    drive(loop, 1.0)
+    loop.e_stop()
+    loop.step()
+    loop.reset()
+    log = drive(loop, 1.0)
+    assert np.all(log["supervisor_state"] == STOPPED)
+    assert moved(log) < 1e-4
+
+
+def test_an_emergency_stop_given_just_before_a_reset_is_not_lost(loop):
+    drive(loop, 1.0)
+    loop.e_stop()
+    loop.reset()
+    assert np.all(drive(loop, 0.5)["supervisor_state"] == STOPPED)
+
+
+def test_paused_it_steps_and_does_not_run(loop):
+    loop.set_pause(True)
+    assert loop.paused
+    loop.step(5)
+    with pytest.raises(RuntimeError, match="set_pause"):
+        loop.run(1.0)
+    assert loop.cycle == 5
+    loop.set_pause(False)
+    loop.run(0.01)
+    assert loop.cycle == 15
+
+
+def test_an_injected_fault_shows_and_heals(loop):
+    drive(loop, 0.5)
+    loop.inject_fault("gyro", "stuck")
+    stuck = drive(loop, 0.5)["gyro_z"]
+    assert np.all(stuck == stuck[0])
+    loop.inject_fault("gyro", "ok")
+    healed = drive(loop, 0.5)["gyro_z"]
+    assert len(np.unique(healed)) > 100
+
+
+@pytest.mark.parametrize(("words", "known"), [(("left_wing", "off"), "left_encoder"), (("gyro", "broken"), "garbage")])
+def test_refuses_an_unknown_fault_with_the_list(loop, words, known):
+    with pytest.raises(ValueError, match=known):
+        loop.inject_fault(*words)
 
 
 def test_steps_and_runs_are_the_same_cycles(loop):
@@ -221,6 +281,8 @@ def test_refuses_a_command_that_is_no_pair_of_numbers(loop, command):
 def test_refuses_to_step_inside_its_own_run(loop):
     with pytest.raises(RuntimeError, match="command function"):
         loop.run(0.01, lambda t: loop.step() and (0, 0))
+    with pytest.raises(RuntimeError, match="command function"):
+        loop.run(0.01, lambda t: loop.reset() or (0, 0))
 
 
 def test_refuses_a_missing_file():

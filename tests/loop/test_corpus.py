@@ -19,6 +19,11 @@ def robot(request) -> CorpusRobot:
     return request.param
 
 
+@pytest.fixture(params=[robot for robot in drivable_robots() if robot.skid_steer], ids=lambda robot: robot.name)
+def skid_steer(request) -> CorpusRobot:
+    return request.param
+
+
 def make(robot: CorpusRobot, **params) -> ClosedLoop:
     return ClosedLoop(urdf=robot.urdf, params=params or None)
 
@@ -69,15 +74,13 @@ def test_tracks_a_straight_line_and_a_turn(robot):
     assert log["truth_angular"][steady].mean() == pytest.approx(rate, rel=0.05)
 
 
-def test_a_skid_steer_turns_as_coulomb_friction_says(robot):
-    if not robot.skid_steer:
-        pytest.skip("one wheel a side")
-    loop = make(robot)
+def test_a_skid_steer_turns_as_coulomb_friction_says(skid_steer):
+    loop = make(skid_steer)
     log = loop.run(RAMP + 4.0, (0.0, YAW_RATE))
     steady = log["time"] >= RAMP
     difference = (rim_speeds(loop, log, "right") - rim_speeds(loop, log, "left"))[steady].mean()
     multiplier = difference / log["truth_angular"][steady].mean() / loop.robot["wheel_base"]
-    assert multiplier == pytest.approx(robot.truth["icr_factor_1+(L/B)^2"], rel=0.05)
+    assert multiplier == pytest.approx(skid_steer.truth["icr_factor_1+(L/B)^2"], rel=0.05)
 
 
 def test_a_hard_stop_from_full_speed_does_not_tip(robot):
