@@ -9,6 +9,7 @@ find_package(catkin REQUIRED COMPONENTS
 
 catkin_python_setup()
 add_message_files(FILES SafetyStatus.msg)
+add_service_files(FILES InjectFault.srv Step.srv)
 generate_messages(DEPENDENCIES std_msgs)
 catkin_package(CATKIN_DEPENDS message_runtime std_msgs)
 unset(CMAKE_RUNTIME_OUTPUT_DIRECTORY)  # catkin's: test programs are no nodes
@@ -30,4 +31,4 @@ function(robot_control_node name)
 endfunction()
 
 install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-catkin_install_python(PROGRAMS scripts/record.py scripts/send_cmd.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_install_python(PROGRAMS scripts/inspect_robot.py scripts/record.py scripts/send_cmd.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -1,0 +1,48 @@
+"""A robot as the C++ reader understood it: plain values, SI units, base axes (x forward, y left, z up)."""
+
+from __future__ import annotations
+
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+from robot_control.share import share_file
+
+Description = dict[str, Any]
+"""Keys: see src/python/describe.h."""
+
+
+def describe(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> Description:
+    """Reads a URDF or .xacro file with the `robot:` block of a YAML file laid over it.
+
+    Raises:
+        RobotError: it cannot be driven, and why.
+        ParameterError: the YAML file is wrong.
+    """
+    from robot_control._robot_control import describe as read
+
+    description: Description = read(*_arguments(urdf, params))
+    return description
+
+
+def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> str:
+    """The MJCF text of robot and scene, as `mujoco-simulate` opens it.
+
+    Raises:
+        RobotError, ParameterError: as `describe`.
+        DriverError: the scene does not compile.
+    """
+    from robot_control._robot_control import mjcf as export
+
+    text: str = export(*_arguments(urdf, params))
+    return text
+
+
+def ground_height(description: Description) -> float:
+    """z of the floor that the drive wheels touch, m."""
+    return min(float(wheel["centre"][2]) - float(wheel["radius"]) for wheel in description["wheels"])
+
+
+def _arguments(urdf: str | PathLike[str], params: str | PathLike[str] | None) -> tuple[str, list[tuple[str, str]]]:
+    path = share_file("config/robot_params.yaml") if params is None else fspath(params)
+    return path, [("robot.urdf", str(Path(urdf).absolute()))]
