@@ -39,8 +39,7 @@ double suspension_travel(const RigidBodies& robot, std::size_t body) {
 }
 
 bool looks_like_a_wheel(const RigidBodies& robot, const std::string& joint) {
-  return lower_case(joint).find("wheel") != std::string::npos ||
-         std::find(robot.driven_joints.begin(), robot.driven_joints.end(), joint) != robot.driven_joints.end();
+  return lower_case(joint).find("wheel") != std::string::npos || robot.driven_joints.contains(joint);
 }
 
 class Search {
@@ -86,6 +85,7 @@ class Search {
 
   void reject(const std::string& joint, const std::string& reason) {
     rejected_ += (rejected_.empty() ? "" : "; ") + joint + ": " + reason;
+    if (robot_.unsaid_axes.contains(joint)) rejected_ += " (and no <axis xyz=\"…\"> is given)";
   }
 
   void consider(std::size_t index) {

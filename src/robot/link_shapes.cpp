@@ -23,7 +23,10 @@ std::vector<Eigen::Vector3d> mesh_points(const urdf::Mesh& mesh, const std::stri
     for (Eigen::Vector3d& point : points) point = point.cwiseProduct(scale);
     return points;
   } catch (const RobotError& error) {
-    throw RobotError(description.source + ": " + element + ": " + error.what());
+    // What names the URDF itself names it once.
+    const std::string prefix = description.source + ": ";
+    const std::string text = error.what();
+    throw RobotError(prefix + element + ": " + (text.starts_with(prefix) ? text.substr(prefix.size()) : text));
   }
 }
 

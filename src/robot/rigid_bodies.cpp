@@ -27,7 +27,8 @@ class Lumper {
     result_.name = document.model->getName();
     result_.source = document.source;
     result_.link_order = document.link_order;
-    result_.driven_joints.assign(document.driven.begin(), document.driven.end());
+    result_.driven_joints = document.driven;
+    result_.unsaid_axes = document.unsaid_axes;
     const auto& links = document.model->links_;
     const auto has_collision = [](const auto& link) { return !link.second->collision_array.empty(); };
     collides_ = std::any_of(links.begin(), links.end(), has_collision);
@@ -141,12 +142,20 @@ class Lumper {
   std::vector<bool> weighed_;
 };
 
-bool finite(const RigidBody& body) {
-  return std::isfinite(body.mass) && body.centre_of_gravity.allFinite() && body.inertia.allFinite() &&
-         body.in_root.matrix().allFinite() && std::all_of(body.shapes.begin(), body.shapes.end(), [](const Shape& s) {
-           return s.in_body.matrix().allFinite() &&
-                  std::all_of(s.points.begin(), s.points.end(), [](const auto& p) { return p.allFinite(); });
-         });
+template <typename Matrix>
+bool of_this_world(const Matrix& m) {
+  return (m.array().abs() < kBeyondRobots).all();  // false for what is not a number, too
+}
+
+bool of_this_world(const RigidBody& body) {
+  const auto shape_is = [](const Shape& shape) {
+    const Eigen::Vector3d sizes(shape.radius, shape.length, shape.size.norm());
+    const auto point_is = [](const Eigen::Vector3d& point) { return of_this_world(point); };
+    return of_this_world(shape.in_body.matrix()) && of_this_world(sizes) &&
+           std::all_of(shape.points.begin(), shape.points.end(), point_is);
+  };
+  return std::abs(body.mass) < kBeyondRobots && of_this_world(body.centre_of_gravity) && of_this_world(body.inertia) &&
+         of_this_world(body.in_root.matrix()) && std::all_of(body.shapes.begin(), body.shapes.end(), shape_is);
 }
 
 }  // namespace
@@ -175,9 +184,9 @@ RigidBodies read_rigid_bodies(const RobotDescription& description) {
   }
   lend_mass(lumped);
   for (const RigidBody& body : lumped.robot.bodies) {
-    if (!finite(body)) {
-      refuse(document.source, link_element(body.name), "a number in it or on the way to it is not finite",
-             "Give numbers that a double can hold");
+    if (!of_this_world(body)) {
+      refuse(document.source, link_element(body.name),
+             "a mass, length or inertia in it or on the way to it exceeds 1e9", "Give kg, m and kg·m²");
     }
   }
   return std::move(lumped.robot);

@@ -15,6 +15,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -78,7 +79,8 @@ struct RigidBodies {
   std::vector<std::string> moving_joints;   ///< in the order of the file
   std::map<std::string, JointType> joints;  ///< all, fixed ones too
   std::vector<std::string> link_order;      ///< in the order of the file
-  std::vector<std::string> driven_joints;   ///< of all kinds; BodyJoint::driven
+  std::set<std::string> driven_joints;      ///< of all kinds; BodyJoint::driven
+  std::set<std::string> unsaid_axes;        ///< joints whose axis is 1 0 0 for want of another
   std::vector<RobotNote> notes;             ///< what was assumed, repaired, ignored
 
   /// Null when no moving joint has this name.
@@ -86,9 +88,10 @@ struct RigidBodies {
 };
 
 inline constexpr double kMasslessShare = 0.01;
+inline constexpr double kBeyondRobots = 1e9;  ///< kg, m, kg·m²: refused, as is what is not finite
 
 /// Throws RobotError: what parse_urdf, inertia_of, shapes_of and read_joint refuse; a moving body or a base whose mass
-/// is said to be zero.
+/// is said to be zero, numbers beyond kBeyondRobots.
 RigidBodies read_rigid_bodies(const RobotDescription& description);
 
 /// kg, all bodies

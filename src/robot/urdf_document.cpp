@@ -62,12 +62,6 @@ std::vector<std::string> names_of(const TiXmlElement& robot, const char* kind) {
   return names;
 }
 
-std::size_t links_below(const urdf::Link& link) {
-  std::size_t count = 1;
-  for (const auto& child : link.child_links) count += links_below(*child);
-  return count;
-}
-
 }  // namespace
 
 void refuse(const std::string& source, const std::string& element, const std::string& what, const std::string& remedy) {
@@ -82,6 +76,7 @@ UrdfDocument parse_urdf(const RobotDescription& description) {
   UrdfDocument document;
   document.source = description.source;
   document.driven = driven_joints(robot);
+  document.unsaid_axes = unsaid_axes(robot);
   mend_markup(robot);
 
   std::string errors;
@@ -92,11 +87,6 @@ UrdfDocument parse_urdf(const RobotDescription& description) {
   }
   document.joint_order = names_of(robot, "joint");
   document.link_order = names_of(robot, "link");
-  if (links_below(*document.model->getRoot()) != document.model->links_.size()) {
-    refuse(description.source, "<robot>",
-           "some links hang on each other in a ring, not on the root link \"" + document.model->getRoot()->name + "\"",
-           "Give each link one way up to the root: a URDF is a tree");
-  }
   return document;
 }
 

@@ -16,11 +16,12 @@ struct UrdfDocument {
   urdf::ModelInterfaceSharedPtr model;   ///< never null
   std::vector<std::string> joint_order;  ///< names as they stand in the file (urdfdom sorts by name)
   std::vector<std::string> link_order;   ///< likewise
-  std::set<std::string> driven;          ///< urdf_markup.h
+  std::set<std::string> driven;          ///< joints (urdf_markup.h)
+  std::set<std::string> unsaid_axes;     ///< joints (urdf_markup.h)
 };
 
-/// Throws RobotError: what parse_markup refuses, links that do not hang on the root, or whatever urdfdom objects to,
-/// in its own words. What urdfdom would print on the console goes into the message.
+/// Throws RobotError: what parse_markup refuses, or whatever urdfdom objects to, in its own words. What urdfdom would
+/// print on the console goes into the message.
 UrdfDocument parse_urdf(const RobotDescription& description);
 
 /// "<source>: <element>: <what>. <remedy>."

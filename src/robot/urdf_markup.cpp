@@ -35,19 +35,42 @@ void check_joint(const RobotDescription& description, const TiXmlElement& joint)
   }
 }
 
-void check_parents(const RobotDescription& description, const TiXmlElement& robot) {
-  std::map<std::string, std::string> joint_of;
+void check_tree(const RobotDescription& description, const TiXmlElement& robot) {
+  struct Above {
+    std::string joint, parent;
+  };
+  std::map<std::string, Above> above;
   for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
     const TiXmlElement* child = joint->FirstChildElement("child");
-    if (child == nullptr) continue;
+    const TiXmlElement* parent = joint->FirstChildElement("parent");
+    if (child == nullptr || parent == nullptr) continue;
     const std::string link = attribute(*child, "link");
-    const auto [other, first] = joint_of.emplace(link, attribute(*joint, "name"));
+    const auto [other, first] = above.emplace(link, Above{attribute(*joint, "name"), attribute(*parent, "link")});
     if (!first) {
       refuse(at_line(description, *joint), joint_element(attribute(*joint, "name")),
-             "its child \"" + link + "\" already hangs on joint \"" + other->second + "\"",
+             "its child \"" + link + "\" already hangs on joint \"" + other->second.joint + "\"",
              "Give each link one parent: a URDF is a tree");
     }
+  }
+  // Link after link is taken down from its end; a ring has none. (urdfdom would never free one.)
+  std::map<std::string, std::size_t> hanging;
+  for (const auto& [link, place] : above) ++hanging[place.parent];
+  std::vector<std::string> ends;
+  for (const auto& [link, place] : above) {
+    if (!hanging.contains(link)) ends.push_back(link);
+  }
+  while (!ends.empty()) {
+    const auto end = above.find(ends.back());
+    ends.pop_back();
+    const std::string parent = end->second.parent;
+    above.erase(end);
+    if (--hanging[parent] == 0 && above.contains(parent)) ends.push_back(parent);
+  }
+  if (!above.empty()) {
+    refuse(description.source, joint_element(above.begin()->second.joint),
+           "its child \"" + above.begin()->first + "\" hangs on itself, in a ring of joints",
+           "Give each link one way up to the root: a URDF is a tree");
   }
 }
 
@@ -127,6 +150,8 @@ void mend_link(TiXmlElement& link) {
 void mend_joint(TiXmlElement& joint) {
   remove(joint, "safety_controller");
   remove(joint, "calibration");
+  const TiXmlElement* axis = joint.FirstChildElement("axis");
+  if (axis != nullptr && axis->Attribute("xyz") == nullptr) remove(joint, "axis");
   TiXmlElement* limit = joint.FirstChildElement("limit");
   if (limit == nullptr) return;
   for (const char* name : {"effort", "velocity"}) {
@@ -156,7 +181,7 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
        joint = joint->NextSiblingElement("joint")) {
     check_joint(description, *joint);
   }
-  check_parents(description, *root);
+  check_tree(description, *root);
   return *root;
 }
 
@@ -173,6 +198,17 @@ std::set<std::string> driven_joints(const TiXmlElement& robot) {
         joints.insert(attribute(*joint, "name"));
       }
     }
+  }
+  return joints;
+}
+
+std::set<std::string> unsaid_axes(const TiXmlElement& robot) {
+  std::set<std::string> joints;
+  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const TiXmlElement* axis = joint->FirstChildElement("axis");
+    const bool fixed = attribute(*joint, "type") == "fixed";
+    if (axis == nullptr ? !fixed : axis->Attribute("xyz") == nullptr) joints.insert(attribute(*joint, "name"));
   }
   return joints;
 }

@@ -4,7 +4,7 @@
 /// urdfdom refuses, or prints about, things that have no use here or whose meaning is plain. They are mended in the
 /// markup, so that what remains to be refused is really wrong:
 ///   <material>, <safety_controller>, <calibration>, whatever stands beside <link> and <joint>   left out
-///   <visual> without a shape                                                                    left out
+///   <visual> without a shape, <axis> without `xyz`                                              left out
 ///   <limit> without effort or velocity                                                          0: unknown
 ///   <mesh scale="…"> that is not three numbers                                                  0 0 0: refused on use
 
@@ -19,13 +19,17 @@ namespace robot_control {
 
 /// Fills `xml` and returns its `<robot>`. Throws RobotError with the line: not well-formed, another or a second root
 /// element, a joint whose type is unknown, floating or planar, a revolute joint without limits, a link with two
-/// parents.
+/// parents, links in a ring.
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml);
 
 /// The joints that something drives, in the words of ROS 1, ROS 2 and Gazebo: named by a <transmission>, given a
 /// <command_interface> in <ros2_control>, or named by a <plugin>: in an element that says left or right, or of a
 /// plugin that is called a drive. Nothing else of these is used: their sides and numbers are wrong too often.
 std::set<std::string> driven_joints(const TiXmlElement& robot);
+
+/// The joints with an <axis> that has no `xyz`, as in <axis xzy="0 1 0">, and moving ones without an <axis>: theirs is
+/// 1 0 0.
+std::set<std::string> unsaid_axes(const TiXmlElement& robot);
 
 /// As above.
 void mend_markup(TiXmlElement& robot);

@@ -42,6 +42,7 @@ std::string described(const RigidBodies& robot, const RollingBody& wheel) {
 }
 
 std::string sort_into_pairs(const RigidBodies& robot, std::vector<RollingBody>& wheels) {
+  if (wheels.size() == 1) return "there is only one";
   const auto y_of = [](const RollingBody& wheel) { return wheel.wheel.centre_base[1]; };
   const auto by_y = [&](const RollingBody& a, const RollingBody& b) { return y_of(a) < y_of(b); };
   const auto [right_most, left_most] = std::minmax_element(wheels.begin(), wheels.end(), by_y);

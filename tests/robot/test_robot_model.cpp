@@ -37,8 +37,8 @@ TEST(RobotModel, YawInertiaIsTakenAboutTheMiddleOfTheAxle) {
 
 TEST(RobotModel, FullTorqueTipsItNeitherWay) {
   const RobotModel robot = read_robot(diffbot_urdf(), {});
-  const double acceleration = 2 * robot.joints[0].effort_limit / robot.left.radius / robot.mass;
-  const double height = robot.centre_of_gravity_base[2] + robot.left.radius;
+  const double acceleration = 2 * robot.joints[0].effort_limit / robot.wheels[0].radius / robot.mass;
+  const double height = robot.centre_of_gravity_base[2] + robot.wheels[0].radius;
   const double behind_axle = -robot.centre_of_gravity_base[0];
   EXPECT_LT(acceleration * height, 9.81 * behind_axle);
   EXPECT_LT(acceleration * height, 9.81 * (0.25 - behind_axle));
@@ -47,14 +47,14 @@ TEST(RobotModel, FullTorqueTipsItNeitherWay) {
 TEST(RobotModel, WheelsAreMeasuredAtTheirCollisionCylinders) {
   const RobotModel robot = read_robot(diffbot_urdf(), {});
   EXPECT_NEAR(robot.wheel_base, 0.5, kRounding);
-  for (const WheelModel* wheel : {&robot.left, &robot.right}) {
+  for (const WheelModel* wheel : {&robot.wheels[0], &robot.wheels[1]}) {
     EXPECT_EQ(wheel->radius, 0.1);
     EXPECT_EQ(wheel->width, 0.04);
     EXPECT_EQ(wheel->sign, 1);
     EXPECT_NEAR(wheel->inertia, 0.005, kRounding);
   }
-  EXPECT_NEAR(robot.left.centre_base[1], 0.25, kRounding);
-  EXPECT_NEAR(robot.right.centre_base[1], -0.25, kRounding);
+  EXPECT_NEAR(robot.wheels[0].centre_base[1], 0.25, kRounding);
+  EXPECT_NEAR(robot.wheels[1].centre_base[1], -0.25, kRounding);
 }
 
 TEST(RobotModel, WheelsComeFirstInTheOrderOfJoints) {
@@ -75,8 +75,8 @@ TEST(RobotModel, WheelsComeFirstInTheOrderOfJoints) {
 
 TEST(RobotModel, AMirroredAxisTurnsTheSign) {
   const RobotModel robot = read_robot(diffbot_with(kRightJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 -1 0\"/>"), {});
-  EXPECT_EQ(robot.left.sign, 1);
-  EXPECT_EQ(robot.right.sign, -1);
+  EXPECT_EQ(robot.wheels[0].sign, 1);
+  EXPECT_EQ(robot.wheels[1].sign, -1);
 }
 
 // The common way to draw a wheel: the link's z is the axle, the joint turns it there.
@@ -89,9 +89,9 @@ TEST(RobotModel, AnAxisTurnedByTheJointsOriginIsTheSameWheel) {
   description.text = replaced(description.text, "<link name=\"left_wheel_link\">",
                               "<collision>\n      <origin rpy=\"1.5707963267948966 0 0\"/>", "<collision>");
   const RobotModel robot = read_robot(description, {});
-  EXPECT_EQ(robot.left.sign, 1);
-  EXPECT_EQ(robot.left.radius, 0.1);
-  EXPECT_NEAR(robot.left.inertia, 0.005, kRounding);
+  EXPECT_EQ(robot.wheels[0].sign, 1);
+  EXPECT_EQ(robot.wheels[0].radius, 0.1);
+  EXPECT_NEAR(robot.wheels[0].inertia, 0.005, kRounding);
   EXPECT_NEAR(robot.wheel_base, 0.5, kRounding);
   EXPECT_NEAR(robot.mass, 12, kRounding);
 }
@@ -103,7 +103,7 @@ TEST(RobotModel, ASphereIsAWheelToo) {
                               "<geometry><cylinder radius=\"0.1\" length=\"0.04\"/>",
                               "</visual><collision><geometry><sphere radius=\"0.1\"/>"),
                  {});
-  EXPECT_EQ(robot.left.radius, 0.1);
+  EXPECT_EQ(robot.wheels[0].radius, 0.1);
 }
 
 TEST(RobotModel, EffectiveWheelBaseAndRadiusOverrideTheUrdf) {
@@ -112,8 +112,49 @@ TEST(RobotModel, EffectiveWheelBaseAndRadiusOverrideTheUrdf) {
   parameters.wheel_radius = 0.099;
   const RobotModel robot = read_robot(diffbot_urdf(), parameters);
   EXPECT_EQ(robot.wheel_base, 0.51);
-  EXPECT_EQ(robot.left.radius, 0.099);
-  EXPECT_EQ(robot.right.radius, 0.099);
+  EXPECT_EQ(robot.wheels[0].radius, 0.099);
+  EXPECT_EQ(robot.wheels[1].radius, 0.099);
+}
+
+// The base and the wheels' 12 kg, doubled: the yaw inertia about the same centre of gravity doubles, too.
+TEST(RobotModel, AnotherMassIsBelievedInThePlaceOfTheUrdfs) {
+  const RobotModel urdf = read_robot(diffbot_urdf(), {});
+  RobotParameters parameters;
+  parameters.mass = 24;
+  const RobotModel robot = read_robot(diffbot_urdf(), parameters);
+  EXPECT_EQ(robot.mass, 24);
+  EXPECT_NEAR(robot.yaw_inertia, 2 * urdf.yaw_inertia, kRounding);
+  EXPECT_NEAR(total_mass(*robot.bodies), 12, kRounding);
+}
+
+// Steiner: moved to the middle of the axle, the robot loses m d².
+TEST(RobotModel, AnotherCentreOfGravityIsBelievedInThePlaceOfTheUrdfs) {
+  const RobotModel urdf = read_robot(diffbot_urdf(), {});
+  RobotParameters parameters;
+  parameters.centre_of_gravity = Vector3{0, 0, 0.02};
+  const RobotModel robot = read_robot(diffbot_urdf(), parameters);
+  EXPECT_EQ(robot.centre_of_gravity_base, (Vector3{0, 0, 0.02}));
+  const auto& c = urdf.centre_of_gravity_base;
+  EXPECT_NEAR(robot.yaw_inertia, urdf.yaw_inertia - 12 * (c[0] * c[0] + c[1] * c[1]), kRounding);
+}
+
+TEST(RobotModel, OverridesBeyondOnePercentAreNotedOnce) {
+  RobotParameters parameters;
+  parameters.wheel_base = 0.504;
+  parameters.wheel_radius = 0.102;
+  parameters.mass = 13;
+  std::vector<std::string> noted;
+  for (const RobotNote& note : read_robot(diffbot_urdf(), parameters).notes) {
+    if (note.kind == RobotNote::Kind::kOverridden) noted.push_back(note.element);
+  }
+  EXPECT_EQ(noted, (std::vector<std::string>{"robot/wheel_radius", "robot/mass"}));
+}
+
+TEST(RobotModel, TheBodiesAreThoseOfTheFile) {
+  const RobotModel robot = read_robot(diffbot_urdf(), {});
+  ASSERT_NE(robot.bodies, nullptr);
+  EXPECT_EQ(robot.bodies->bodies.size(), 3u);
+  EXPECT_EQ(robot.bodies->moving_joints, (std::vector<std::string>{"left_wheel_joint", "right_wheel_joint"}));
 }
 
 TEST(RobotModel, EqualHashMeansEqualRobot) {
@@ -126,6 +167,21 @@ TEST(RobotModel, EqualHashMeansEqualRobot) {
   RobotParameters larger;
   larger.wheel_radius = 0.5;
   EXPECT_NE(read_robot(diffbot_urdf(), larger).hash, read_robot(diffbot_urdf(), wider).hash);
+  const auto changed = [&](auto change) {
+    RobotParameters parameters;
+    change(parameters);
+    return read_robot(diffbot_urdf(), parameters).hash != hash;
+  };
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.wheel_base_multiplier = 1.1; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.wheel_effort_limit = 1; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.wheel_velocity_limit = 1; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.mass = 13; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.centre_of_gravity = Vector3{}; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.imu_link = "base_link"; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) {
+    p.left_wheel_joints = {"left_wheel_joint"};
+    p.right_wheel_joints = {"right_wheel_joint"};
+  }));
 }
 
 TEST(RobotModel, ImuSitsAtItsLink) {
