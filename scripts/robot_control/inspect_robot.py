@@ -7,6 +7,7 @@ import json
 import sys
 from pathlib import Path
 
+from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.robot_description import Description, describe, mjcf
 from robot_control.robot_report import report
 
@@ -14,7 +15,6 @@ from robot_control.robot_report import report
 def main(arguments: list[str] | None = None) -> None:
     """Prints the report; exits with 1 and one message when the robot is refused."""
     options = _parser().parse_args(arguments)
-    from robot_control._robot_control import DriverError, ParameterError, RobotError
 
     try:
         robot = describe(options.file, options.params)
@@ -39,7 +39,9 @@ def _parser() -> argparse.ArgumentParser:
         "assumed, repaired or ignored.",
     )
     parser.add_argument("file", type=Path, help="URDF, or .xacro")
-    parser.add_argument("--params", type=Path, metavar="YAML", help="parameter file; its robot: block lies over the URDF")
+    parser.add_argument(
+        "--params", type=Path, metavar="YAML", help="parameter file; its robot: block lies over the URDF"
+    )
     parser.add_argument("--json", action="store_true", help="the same as JSON")
     parser.add_argument("--mjcf", type=Path, metavar="OUT.xml", help="write the model that MuJoCo simulates")
     parser.add_argument("--picture", type=Path, metavar="OUT.png", help="draw the robot")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 OVERSAMPLING = 2  # samples per pixel and axis
-LIGHT = np.array([0.35, 0.6, 0.72])  # from above and the right of the viewer: right, up, towards
+LIGHT = np.array([-0.25, 0.62, 0.74])  # from above and the left of the viewer: right, up, towards
 CREASE = 0.8  # cosine between neighbouring normals below which an outline is drawn: 37°
 
 
@@ -97,7 +97,7 @@ class _Canvas:
 
     def picture(self, colours: Array) -> NDArray[np.uint8]:
         covered = self.part >= 0
-        shade = 0.42 + 0.62 * np.clip(self.normal @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
+        shade = 0.50 + 0.54 * np.clip(self.normal @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
         shade[self._outlines()] *= 0.45
         image = np.zeros((*self.part.shape, 4))
         if colours.size:

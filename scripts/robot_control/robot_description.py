@@ -6,10 +6,10 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
+from robot_control import _robot_control
 from robot_control.share import share_file
 
-Description = dict[str, Any]
-"""Keys: see src/python/describe.h."""
+Description = dict[str, Any]  # keys: src/python/describe.h
 
 
 def describe(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> Description:
@@ -19,9 +19,7 @@ def describe(urdf: str | PathLike[str], params: str | PathLike[str] | None = Non
         RobotError: it cannot be driven, and why.
         ParameterError: the YAML file is wrong.
     """
-    from robot_control._robot_control import describe as read
-
-    description: Description = read(*_arguments(urdf, params))
+    description: Description = _robot_control.describe(*_arguments(urdf, params))
     return description
 
 
@@ -32,15 +30,8 @@ def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -
         RobotError, ParameterError: as `describe`.
         DriverError: the scene does not compile.
     """
-    from robot_control._robot_control import mjcf as export
-
-    text: str = export(*_arguments(urdf, params))
+    text: str = _robot_control.mjcf(*_arguments(urdf, params))
     return text
-
-
-def ground_height(description: Description) -> float:
-    """z of the floor that the drive wheels touch, m."""
-    return min(float(wheel["centre"][2]) - float(wheel["radius"]) for wheel in description["wheels"])
 
 
 def _arguments(urdf: str | PathLike[str], params: str | PathLike[str] | None) -> tuple[str, list[tuple[str, str]]]:

@@ -15,19 +15,23 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Wedge
 
 from robot_control.rendering import Array, Part, View, Window, render
-from robot_control.robot_description import Description, ground_height
-from robot_control.robot_shapes import triangles_in_base
+from robot_control.robot_shapes import ground_height, triangles_in_base
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 LEFT, RIGHT, CASTER, OTHER, BODY = "#2f6fb7", "#d2553f", "#5d8f4e", "#c9a24b", "#c3c9d0"
 INK, SOFT, FLOOR = "#22262b", "#7b838c", "#9aa1a9"
 CORNER, FROM_THE_RIGHT, FROM_ABOVE = (View.towards(d) for d in ((0.62, -0.72, 0.46), (0, -1, 0), (0, 0, 1)))
+ROLLING = {to_rgb(LEFT), to_rgb(RIGHT), to_rgb(CASTER)}
+THROUGH = 0.4  # how much wheels shine through what hides them
 PIXELS = 1000  # width of a rendered view
 
 
-def draw_robot(robot: Description, path: Path) -> None:
+def draw_robot(robot: dict[str, Any], path: Path) -> None:
     """Writes a PNG of 1760 × 990 pixels."""
     ground = ground_height(robot)
     parts = _parts(robot)
@@ -47,7 +51,7 @@ def draw_robot(robot: Description, path: Path) -> None:
         plt.close(figure)
 
 
-def _subtitle(robot: Description) -> str:
+def _subtitle(robot: dict[str, Any]) -> str:
     count = len(robot["wheels"])
     base = f"wheel base {_length(robot['wheel_base'])}"
     if robot["wheel_base_multiplier"] != 1:
@@ -59,13 +63,11 @@ def _length(metres: float) -> str:
     return f"{metres * 1000:.4g} mm" if abs(metres) < 0.1 else f"{metres:.4g} m"
 
 
-def _parts(robot: Description) -> list[Part]:
+def _parts(robot: dict[str, Any]) -> list[Part]:
     colours = {wheel["joint"]: LEFT if wheel["side"] == "left" else RIGHT for wheel in robot["wheels"]}
     colours |= {caster["joint"]: CASTER for caster in robot["casters"]}
     colours |= {joint["name"]: OTHER for joint in robot["joints"] if joint["name"] not in colours}
-    parts = [
-        Part(triangles_in_base(shape), to_rgb(colours.get(shape["joint"], BODY))) for shape in robot["shapes"]
-    ]
+    parts = [Part(triangles_in_base(shape), to_rgb(colours.get(shape["joint"], BODY))) for shape in robot["shapes"]]
     return [part for part in parts if part.triangles.size]
 
 
@@ -76,7 +78,7 @@ def _extent(points: Array, margin: float) -> tuple[float, float, float, float]:
     return float(low[0] - rim), float(high[0] + rim), float(low[1] - rim), float(high[1] + rim)
 
 
-def _all_points(robot: Description, parts: list[Part]) -> Array:
+def _all_points(robot: dict[str, Any], parts: list[Part]) -> Array:
     wheels = [
         np.asarray(wheel["centre"]) + sign * wheel["radius"]
         for wheel in (*robot["wheels"], *robot["casters"])
@@ -86,18 +88,24 @@ def _all_points(robot: Description, parts: list[Part]) -> Array:
 
 
 def _show(axes: Axes, parts: list[Part], view: View, extent: tuple[float, float, float, float]) -> None:
-    picture = render(parts, view, Window(*extent), PIXELS)
-    axes.imshow(picture, extent=extent, zorder=3, interpolation="antialiased")
+    axes.imshow(render(parts, view, Window(*extent), PIXELS), extent=extent, zorder=3, interpolation="antialiased")
+    rolling = [part for part in parts if part.colour in ROLLING]
+    through = render(rolling, view, Window(*extent), PIXELS)
+    axes.imshow(through, extent=extent, zorder=4, interpolation="antialiased", alpha=THROUGH)
 
 
 def _frame(axes: Axes, left: float, right: float, bottom: float, top: float) -> None:
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlim(left, right)
-    axes.set_ylim(bottom, top)
+    """Limits that hold at least this, in true scale."""
+    box = axes.get_window_extent()
+    wide = max(right - left, (top - bottom) * box.width / box.height)
+    high = wide * box.height / box.width
+    axes.set_xlim((left + right - wide) / 2, (left + right + wide) / 2)
+    axes.set_ylim((bottom + top - high) / 2, (bottom + top + high) / 2)
+    axes.set_aspect("equal")
     axes.axis("off")
 
 
-def _draw_corner(axes: Axes, robot: Description, parts: list[Part], ground: float) -> None:
+def _draw_corner(axes: Axes, robot: dict[str, Any], parts: list[Part], ground: float) -> None:
     points = _all_points(robot, parts)
     size = float(np.ptp(points, axis=0).max())
     _draw_floor(axes, points, ground, size)
@@ -105,14 +113,15 @@ def _draw_corner(axes: Axes, robot: Description, parts: list[Part], ground: floa
     _draw_shadow(axes, parts, ground, size)
     _show(axes, parts, CORNER, extent)
     front = np.array([points[:, 0].max() + 0.06 * size, 0, ground])
-    _arrow(axes, CORNER.project(front), CORNER.project(front + (0.22 * size, 0, 0)), "forward")
+    _arrow(axes, CORNER.project(front), CORNER.project(front + np.array([0.22 * size, 0, 0])), "forward")
     _triad(axes, CORNER, np.asarray(robot["imu"]["position"]), robot["imu"]["orientation"], 0.09 * size)
     left, right, bottom, top = _extent(CORNER.project(points), 0.12)
     _frame(axes, left, right, bottom, top)
 
 
 def _draw_floor(axes: Axes, points: Array, ground: float, size: float) -> None:
-    step = 10.0 ** np.floor(np.log10(size)) * (0.1 if size / 10 ** np.floor(np.log10(size)) < 4 else 0.2)
+    decade = 10.0 ** np.floor(np.log10(size))
+    step = float(decade * next(part for part in (0.1, 0.2, 0.5, 1) if size / decade <= 12 * part))
     low = np.floor((points.min(axis=0) - 0.25 * size) / step) * step
     high = np.ceil((points.max(axis=0) + 0.25 * size) / step) * step
     for x in np.arange(low[0], high[0] + step / 2, step):
@@ -145,7 +154,7 @@ def _draw_shadow(axes: Axes, parts: list[Part], ground: float, size: float) -> N
     axes.imshow(shadow, extent=extent, zorder=2, interpolation="bilinear")
 
 
-def _draw_side(axes: Axes, robot: Description, parts: list[Part], ground: float) -> None:
+def _draw_side(axes: Axes, robot: dict[str, Any], parts: list[Part], ground: float) -> None:
     points = _all_points(robot, parts)
     left, right, bottom, top = _extent(FROM_THE_RIGHT.project(points), 0.02)
     size = max(right - left, top - bottom)
@@ -163,7 +172,7 @@ def _draw_side(axes: Axes, robot: Description, parts: list[Part], ground: float)
     rear = min((wheel for wheel in robot["wheels"] if wheel["side"] == "right"), key=lambda wheel: wheel["centre"][0])
     at = left - 0.06 * size
     _dimension(axes, (at, ground), (at, rear["centre"][2]), f"radius {_length(rear['radius'])}", rear["centre"][0])
-    at = right + 0.06 * size
+    at = right + 0.09 * size
     _dimension(axes, (at, ground), (at, z), f"centre of gravity\n{_length(z - ground)} high", x, before=False)
     axles = sorted({round(float(wheel["centre"][0]), 4) for wheel in robot["wheels"]})
     if axles[-1] - axles[0] > 0.02 * size:
@@ -171,10 +180,10 @@ def _draw_side(axes: Axes, robot: Description, parts: list[Part], ground: float)
         _dimension_across(axes, (axles[0], below), (axles[-1], below), f"axles {_length(axles[-1] - axles[0])}")
     _arrow(axes, (right - 0.14 * size, top + 0.05 * size), (right + 0.02 * size, top + 0.05 * size), "forward")
     axes.set_title("From its right")
-    _frame(axes, left - 0.3 * size, right + 0.3 * size, min(bottom, ground) - 0.16 * size, top + 0.12 * size)
+    _frame(axes, left - 0.36 * size, right + 0.44 * size, min(bottom, ground) - 0.16 * size, top + 0.12 * size)
 
 
-def _draw_above(axes: Axes, robot: Description, parts: list[Part]) -> None:
+def _draw_above(axes: Axes, robot: dict[str, Any], parts: list[Part]) -> None:
     points = _all_points(robot, parts)
     left, right, bottom, top = _extent(FROM_ABOVE.project(points), 0.02)
     size = max(right - left, top - bottom)
@@ -199,7 +208,7 @@ def _draw_above(axes: Axes, robot: Description, parts: list[Part]) -> None:
     )  # fmt: skip
     _arrow(axes, (right + 0.05 * size, 0), (right + 0.2 * size, 0), "forward")
     axes.set_title("From above")
-    _frame(axes, left - 0.3 * size, right + 0.3 * size, bottom - 0.05 * size, top + 0.05 * size)
+    _frame(axes, left - 0.36 * size, right + 0.44 * size, bottom - 0.05 * size, top + 0.05 * size)
 
 
 def _circle(centre: tuple[float, float], radius: float, colour: str) -> Circle:
@@ -230,7 +239,7 @@ def _triad(axes: Axes, view: View, origin: Array, orientation: list[float], leng
     axes.plot(start[0], start[1], "o", color=INK, markersize=4.5, zorder=10)
 
 
-def _arrow(axes: Axes, begin: Any, end: Any, text: str) -> None:
+def _arrow(axes: Axes, begin: Sequence[float] | Array, end: Sequence[float] | Array, text: str) -> None:
     axes.annotate(
         "", (end[0], end[1]), (begin[0], begin[1]),
         arrowprops={"arrowstyle": "-|>,head_length=0.7,head_width=0.35", "color": INK, "linewidth": 2.2}, zorder=9,
@@ -262,12 +271,12 @@ def _dimension_across(axes: Axes, left: tuple[float, float], right: tuple[float,
     )  # fmt: skip
 
 
-def _legend(figure: Any, robot: Description) -> None:
+def _legend(figure: Figure, robot: dict[str, Any]) -> None:
     entries: list[Any] = [Patch(color=LEFT, label="left wheels"), Patch(color=RIGHT, label="right wheels")]
     if robot["casters"]:
         entries.append(Patch(color=CASTER, label="caster wheels"))
-    driven = {wheel["joint"] for wheel in (*robot["wheels"], *robot["casters"])}
-    if any(joint["name"] not in driven for joint in robot["joints"]):
+    rolling = {"", *(wheel["joint"] for wheel in (*robot["wheels"], *robot["casters"]))}
+    if any(shape["joint"] not in rolling for shape in robot["shapes"]):
         entries.append(Patch(color=OTHER, label="other moving parts"))
     entries.append(Patch(color=BODY, label="base, as it collides"))
     entries.append(Line2D([], [], marker="o", color="white", markeredgecolor=INK, markerfacecolor=INK, markersize=9,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
-from robot_control.robot_description import Description, ground_height
+from robot_control.robot_shapes import ground_height
 
 WIDTH = 110
 HEADINGS = {
@@ -17,7 +17,7 @@ HEADINGS = {
 }
 
 
-def report(robot: Description) -> str:
+def report(robot: dict[str, Any]) -> str:
     """What was understood, what was assumed, repaired, ignored, overridden, and what looks suspicious."""
     lines = [f"{robot['name'] or 'robot'}: {robot['source']}", "", *_body(robot), "", *_wheels(robot)]
     lines += ["", *_base(robot)]
@@ -27,7 +27,7 @@ def report(robot: Description) -> str:
     return "\n".join(lines)
 
 
-def _body(robot: Description) -> list[str]:
+def _body(robot: dict[str, Any]) -> list[str]:
     x, y, z = robot["centre_of_gravity"]
     imu = robot["imu"]
     place = f"{imu['link']} at {_vector(imu['position'])}" if imu["link"] else f"none: taken as in {robot['base_link']}"
@@ -39,9 +39,11 @@ def _body(robot: Description) -> list[str]:
     ]
 
 
-def _wheels(robot: Description) -> list[str]:
+def _wheels(robot: dict[str, Any]) -> list[str]:
     limits = {joint["name"]: joint for joint in robot["joints"]}
-    rows = [("drive wheel", "side", "x [m]", "y [m]", "z [m]", "radius", "width", "turns", "N·m", "rad/s", "kg·m²")]
+    rows: list[tuple[str, ...]] = [
+        ("drive wheel", "side", "x [m]", "y [m]", "z [m]", "radius", "width", "turns", "N·m", "rad/s", "kg·m²")
+    ]
     for wheel in robot["wheels"]:
         limit = limits[wheel["joint"]]
         rows.append(
@@ -60,15 +62,15 @@ def _wheels(robot: Description) -> list[str]:
     return _table(rows, left=2)
 
 
-def _base(robot: Description) -> list[str]:
+def _base(robot: dict[str, Any]) -> list[str]:
     line = f"wheel base         {robot['wheel_base']:.5g} m"
     if robot["wheel_base_multiplier"] != 1:
         line += f" × {robot['wheel_base_multiplier']:.4g} = {robot['effective_wheel_base']:.5g} m effective in a turn"
     return [line]
 
 
-def _casters(robot: Description) -> list[str]:
-    rows = [("caster wheel", "x [m]", "y [m]", "z [m]", "radius", "width")]
+def _casters(robot: dict[str, Any]) -> list[str]:
+    rows: list[tuple[str, ...]] = [("caster wheel", "x [m]", "y [m]", "z [m]", "radius", "width")]
     rows += [
         (
             caster["joint"],
@@ -81,9 +83,9 @@ def _casters(robot: Description) -> list[str]:
     return _table(rows, left=1) if robot["casters"] else []
 
 
-def _joints(robot: Description) -> list[str]:
+def _joints(robot: dict[str, Any]) -> list[str]:
     others = [joint for joint in robot["joints"] if joint["role"] != "wheel"]
-    rows = [("other joint", "role", "type", "moves", "range")]
+    rows: list[tuple[str, ...]] = [("other joint", "role", "type", "moves", "range")]
     rows += [(joint["name"], joint["role"], joint["type"], joint["link"], _range(joint)) for joint in others]
     return _table(rows, left=5) if others else []
 
@@ -96,7 +98,7 @@ def _range(joint: dict[str, Any]) -> str:
     return f"{joint['lower']:.4g} … {joint['upper']:.4g} {'m' if joint['type'] == 'prismatic' else 'rad'}"
 
 
-def _notes(robot: Description, kind: str) -> list[str]:
+def _notes(robot: dict[str, Any], kind: str) -> list[str]:
     notes = [note for note in robot["notes"] if note["kind"] == kind]
     if not notes:
         return []

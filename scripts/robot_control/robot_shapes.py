@@ -1,7 +1,8 @@
-"""The shapes of a robot as triangles."""
+"""The shapes of a robot as triangles, and the floor it stands on."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,14 @@ ROUND = 72  # corners of a circle
 RINGS = 24  # of a sphere, pole to pole
 
 
+def ground_height(robot: dict[str, Any]) -> float:
+    """z of the floor that the drive wheels touch, m."""
+    return min(float(wheel["centre"][2]) - float(wheel["radius"]) for wheel in robot["wheels"])
+
+
 def triangles_in_base(shape: dict[str, Any]) -> Array:
     """Array of shape (n, 3, 3): n triangles of three corners, m, base axes; none for a flat mesh."""
-    local = {"sphere": _sphere, "cylinder": _cylinder, "box": _box, "mesh": _mesh}[shape["type"]](shape)
+    local: Array = {"sphere": _sphere, "cylinder": _cylinder, "box": _box, "mesh": _mesh}[shape["type"]](shape)
     pose = np.asarray(shape["in_base"], dtype=float)
     result: Array = local @ pose[:3, :3].T + pose[:3, 3]
     return result
@@ -24,7 +30,8 @@ def triangles_in_base(shape: dict[str, Any]) -> Array:
 def _mesh(shape: dict[str, Any]) -> Array:
     if not shape["triangles"]:
         return np.empty((0, 3, 3))
-    return np.asarray(shape["points"], dtype=float)[np.asarray(shape["triangles"], dtype=int)]
+    corners: Array = np.asarray(shape["points"], dtype=float)[np.asarray(shape["triangles"], dtype=int)]
+    return corners
 
 
 def _box(shape: dict[str, Any]) -> Array:
@@ -49,7 +56,7 @@ def _sphere(shape: dict[str, Any]) -> Array:
         * np.column_stack((np.cos(angle) * np.sin(polar), np.sin(angle) * np.sin(polar), np.full(ROUND, np.cos(polar))))
         for polar in np.linspace(0, np.pi, RINGS)
     ]
-    return np.concatenate([_band(upper, lower) for upper, lower in zip(rings, rings[1:], strict=False)])
+    return np.concatenate([_band(upper, lower) for upper, lower in pairwise(rings)])
 
 
 def _band(one: Array, other: Array) -> Array:
