@@ -13,7 +13,7 @@ namespace robot_control {
 namespace {
 
 constexpr unsigned kSeeds = 2000;
-constexpr unsigned kAssimpSeeds = 300;  // each is a process
+constexpr unsigned kAssimpSeeds = 200;  // each is a process
 
 /// One to four changes: a bit, a cut, a piece said twice or elsewhere, another number.
 std::string broken(std::string text, std::mt19937& random) {
