@@ -36,6 +36,7 @@ void SensorFaults::reset() noexcept {
   right_.output.reset();
   gyro_.reset();
   accelerometer_.reset();
+  failing_ = false;
 }
 
 void SensorFaults::step_encoders(Encoders& encoders, FaultKind kind, std::uint64_t cycle,
@@ -66,6 +67,9 @@ void SensorFaults::step_encoders(Encoders& encoders, FaultKind kind, std::uint64
 }
 
 std::uint64_t SensorFaults::step(const InjectedFaults& faults, std::uint64_t cycle, Measurement& measurement) noexcept {
+  const bool failing = faults != InjectedFaults{};
+  if (!failing && !failing_) return 0;
+  failing_ = failing;
   step_encoders(left_, fault_of(faults, FaultComponent::kLeftEncoder), cycle, measurement);
   step_encoders(right_, fault_of(faults, FaultComponent::kRightEncoder), cycle, measurement);
   std::uint64_t lost = 0;

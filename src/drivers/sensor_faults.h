@@ -57,6 +57,7 @@ class SensorFaults {
 
   static void step_encoders(Encoders& encoders, FaultKind kind, std::uint64_t cycle, Measurement& measurement) noexcept;
 
+  bool failing_ = false;  ///< in the last step
   Encoders left_, right_;
   FaultyOutput<Vector3> gyro_, accelerometer_;
 };

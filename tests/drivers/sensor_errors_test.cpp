@@ -118,6 +118,24 @@ TEST_F(SensorErrorsTest, HaveTheDensityAskedForAtEveryRate) {
   }
 }
 
+TEST_F(SensorErrorsTest, AreNormal) {
+  constexpr std::size_t kSamples = 100000;
+  white_only();
+  const Record noise = record(kSamples);
+  const double deviation = std::sqrt(variance(noise.gyro[0]));
+  double third = 0, fourth = 0, within = 0;
+  for (const double value : noise.gyro[0]) {
+    const double z = value / deviation;
+    third += z * z * z / kSamples;
+    fourth += z * z * z * z / kSamples;
+    within += std::abs(z) < 1 ? 1.0 / kSamples : 0;
+  }
+  // Deviations of skewness and kurtosis of n normal numbers: √(6/n), √(24/n); of a share p: √(p(1 − p)/n).
+  EXPECT_NEAR(third, 0, kDeviations * std::sqrt(6.0 / kSamples));
+  EXPECT_NEAR(fourth, 3, kDeviations * std::sqrt(24.0 / kSamples));
+  EXPECT_NEAR(within, 0.6827, kDeviations * std::sqrt(0.6827 * 0.3173 / kSamples));
+}
+
 TEST_F(SensorErrorsTest, AreWhite) {
   constexpr std::size_t kSamples = 100000;
   white_only();
