@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "drivers/mujoco_errors.h"
+#include "drivers/rest.h"
 
 namespace robot_control {
 namespace {
@@ -14,7 +15,6 @@ constexpr double kLastRestSpeed = 3e-5;   // 1 mm in 30 s
 constexpr double kJointRestSpeed = 1e-3;  // m/s and rad/s
 constexpr double kRestTime = 0.1;         // s, so long at rest, not just at a turning point
 constexpr double kSettleTime = 20;        // s
-constexpr double kFallen = 30 * M_PI / 180;
 
 }  // namespace
 
@@ -71,14 +71,14 @@ void MujocoPlant::settle() {
     if (state_ == DriverState::kFault) {
       throw DriverError(where + "the simulation fails while the robot settles: " + fault_message());
     }
-    if (fallen()) {
+    if (fallen(model_, *data_)) {
       throw DriverError(where +
                         "the robot falls over where it is set down. Look at its centre of gravity and at what "
                         "it stands on, and at the ground around the site \"start\".");
     }
-    rested = at_rest(kRestSpeed, kJointRestSpeed) ? rested + model_.substeps * step : 0;
+    rested = at_rest(model_, *data_, kRestSpeed, kJointRestSpeed) ? rested + model_.substeps * step : 0;
   }
-  if (rested < kRestTime && !at_rest(kLastRestSpeed, kJointRestSpeed)) {
+  if (rested < kRestTime && !at_rest(model_, *data_, kLastRestSpeed, kJointRestSpeed)) {
     throw DriverError(where +
                       "with its brakes on the robot does not come to rest at the site \"start\". Put the site "
                       "on a plane, z upwards from it, less steep than brakes and friction can hold.");
@@ -89,20 +89,6 @@ void MujocoPlant::settle() {
   mju_rotVecQuat(push_.data(), push, origin_.data() + 3);
   settled_ = true;
   collect();
-}
-
-bool MujocoPlant::at_rest(double base_speed, double joint_speed) const noexcept {
-  const mjtNum* base = data_->qvel + model_.base_velocity;
-  return std::all_of(base, base + 6, [&](double speed) { return std::abs(speed) < base_speed; }) &&
-         std::all_of(model_.joint_velocity.begin(), model_.joint_velocity.end(),
-                     [&](int joint) { return std::abs(data_->qvel[joint]) < joint_speed; });
-}
-
-bool MujocoPlant::fallen() const noexcept {
-  const mjtNum upright[3] = {0, 0, 1};
-  mjtNum up[3];
-  mju_rotVecQuat(up, upright, data_->qpos + model_.base_position + 3);
-  return mju_dot3(up, model_.up.data()) < std::cos(kFallen);
 }
 
 void MujocoPlant::read(SensorFrame& sensors) noexcept {
@@ -209,7 +195,7 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   return true;
 }
 
-// In a window that opens and closes in the middle of a step, as good as at its ends.
+// Half a step aside, so that rounding of the time does not decide when it begins.
 void MujocoPlant::push() noexcept {
   const double since = data_->time - parameters_.push_start + model_.model->opt.timestep / 2;
   const bool acts = since >= 0 && since < parameters_.push_duration;

@@ -6,11 +6,10 @@
 ///   wheels: joint law (q, q̇ → τ), motor, tyre friction  →  mj_step2 (accelerations, integration)
 ///   →  mj_step1 (kinematics of the new state)
 ///
-/// Joints that are no wheels take no commands (JointRole): passive ones move freely, held ones stand by friction.
-///
 /// and collects what `read` and `truth` hand out, so that after `write` k everything describes t_k+1: positions,
 /// velocities and gyro at that instant; accelerometer, contact forces and efforts as means over [t_k, t_k+1), as
-/// SensorFrame promises.
+/// SensorFrame promises. Joints that are no wheels take no commands (JointRole): passive ones move freely, held ones
+/// stand by friction.
 ///
 /// `start` sets the robot down on the site `start` of the scene and lets it settle with the brakes on, at most for
 /// 20 s; where it then rests is time zero and the origin of truth. It rests when its base has moved slower than
@@ -77,8 +76,6 @@ class MujocoPlant final : public Driver {
   void simulate(std::span<const JointCommand> commands) noexcept;
   bool advance(std::span<const JointCommand> commands) noexcept;
   void settle();
-  bool at_rest(double base_speed, double joint_speed) const noexcept;
-  bool fallen() const noexcept;
   void push() noexcept;
   void collect() noexcept;
   void collect_truth() noexcept;
