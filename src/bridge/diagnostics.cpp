@@ -43,12 +43,16 @@ void report_missing(DiagnosticReport& report, const std::vector<std::string>& mi
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor) {
   if (sensors.driver_state == DriverState::kFault) report.error(sentences_of(kDriverFaultNames, sensors.faults));
+  if (sensors.driver_state == DriverState::kPaused) report.ok("paused");
+  if (sensors.injected != InjectedFaults{}) report.warn("injected faults: " + names_of(sensors.injected));
   report.value("driver_state", std::string(name_of(sensors.driver_state)));
   report.value("faults", names_of(kDriverFaultNames, sensors.faults));
   report.value("cycle", sensors.head.cycle);
   report.value("real_time_factor", real_time_factor);
   report.value("overruns", sensors.overruns);
   report.value("slipped_s", static_cast<double>(sensors.slipped_ns) * 1.0e-9);
+  report.value("held_s", static_cast<double>(sensors.held_ns) * 1.0e-9);
+  report.value("injected", names_of(sensors.injected));
   report.value("gate_verdict", std::string(name_of(sensors.gate.verdict)));
   report.value("gate_reasons", names_of(kGateReasonNames, sensors.gate.reasons));
   report.value("commands_held", sensors.gate.held);

@@ -8,6 +8,7 @@
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
 #include "bridge/robot_report.h"
+#include "bridge/simulation_messages.h"
 #include "drivers/mujoco_plant.h"
 #include "runtime/driver_process.h"
 
@@ -32,6 +33,11 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
+    ros::NodeHandle own("~");
+    set_pause_ = own.advertiseService("set_pause", &MujocoPlantNode::set_pause, this);
+    step_ = own.advertiseService("step", &MujocoPlantNode::step, this);
+    reset_ = own.advertiseService("reset", &MujocoPlantNode::reset, this);
+    inject_fault_ = own.advertiseService("inject_fault", &MujocoPlantNode::inject_fault, this);
   }
 
   std::int64_t tick_ns() const override {
@@ -71,6 +77,34 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     }
   }
 
+  template <class Response>
+  static bool answer(const ServiceAnswer& given, Response& response) {
+    response.success = given.success ? 1 : 0;
+    response.message = given.message;
+    if (given.success) {
+      ROS_INFO("%s", given.message.c_str());
+    } else {
+      ROS_WARN("%s", given.message.c_str());
+    }
+    return true;
+  }
+
+  bool set_pause(msg::SetBoolRequest& request, msg::SetBoolResponse& response) {
+    return answer(process().services()->set_pause(request.data != 0), response);
+  }
+
+  bool step(msg::StepRequest& request, msg::StepResponse& response) {
+    return answer(process().services()->step(request.cycles), response);
+  }
+
+  bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    return answer(process().services()->reset(), response);
+  }
+
+  bool inject_fault(msg::InjectFaultRequest& request, msg::InjectFaultResponse& response) {
+    return answer(process().services()->inject_fault(request.component, request.kind), response);
+  }
+
   void publish_clock() {
     msg::Clock message;
     message.clock = time().at(sensors_.head.stamp_ns);
@@ -82,6 +116,10 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
   ros::Publisher imu_;
   ros::Publisher truth_;
   ros::Publisher clock_;
+  ros::ServiceServer set_pause_;
+  ros::ServiceServer step_;
+  ros::ServiceServer reset_;
+  ros::ServiceServer inject_fault_;
   Pacer imu_pace_;
   Pacer truth_pace_;
   Pacer clock_pace_;

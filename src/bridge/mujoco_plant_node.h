@@ -1,5 +1,6 @@
 #pragma once
-/// mujoco_plant: imu/data_raw, ground_truth/odom, /clock (lockstep), robot_description.
+/// mujoco_plant: imu/data_raw, ground_truth/odom, /clock (lockstep), robot_description; ~set_pause, ~step, ~reset,
+/// ~inject_fault.
 
 #include <memory>
 

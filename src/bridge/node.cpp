@@ -147,8 +147,8 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
     ros::AsyncSpinner callbacks(kCallbackThreads);
     callbacks.start();
     NodeLoop(*node, setup, handle).run();
+    node->stop();  // first, so that a service that waits for cycles comes to its end
     callbacks.stop();
-    node->stop();
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), error.what());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "rt/clock.h"
+#include "signals/trace.h"
 
 namespace robot_control {
 

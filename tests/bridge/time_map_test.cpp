@@ -70,6 +70,16 @@ TEST(TimeMap, AddsWhatASimulatedPlantLetSlip) {
   EXPECT_NEAR(static_cast<double>(map.ros_ns(sensors.head.stamp_ns)), static_cast<double>(now_ns), 1e9);
 }
 
+TEST(TimeMap, AddsWhatASimulatedPlantWasHeld) {
+  TimeMap map(ClockMode::kWall);
+  SensorFrame sensors;
+  sensors.held_ns = 100 * kSecond;
+  sensors.head.stamp_ns = monotonic_ns() - 100 * kSecond;
+  map.follow(sensors);
+  const std::int64_t now_ns = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+  EXPECT_NEAR(static_cast<double>(map.ros_ns(sensors.head.stamp_ns)), static_cast<double>(now_ns), 1e9);
+}
+
 TEST(TimeMap, IsTheStampItselfInLockstep) {
   TimeMap map(ClockMode::kLockstep);
   SensorFrame sensors;
