@@ -83,9 +83,37 @@ class ClosedLoop:
         self._values = values
         self.reset(seed)
 
-    def reset(self, seed: int = 0) -> None:
-        """Starts anew at cycle 0: robot set down, estimator, controller and latches fresh."""
+    def reset(self, seed: int | None = None) -> None:
+        """Sets the robot down anew, without injected faults; the next cycle is 0.
+
+        Args:
+            seed: None: as `mujoco_plant/reset`, a new run with the same random numbers. The other nodes follow:
+                estimator, controller and counters begin anew, commands given before are dropped, a latched stop
+                stays, and so does a pause. A number: everything is as after `ClosedLoop(seed=...)`.
+        """
+        self._refuse_inside_a_run("reset")
+        if seed is None:
+            self._loop.reset()
+            return
+        self._paused = False
         self._loop = _ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
+
+    def set_pause(self, pause: bool) -> None:
+        """As `mujoco_plant/set_pause`: while paused `step` runs, `run` refuses."""
+        self._paused = pause
+
+    def inject_fault(self, component: str, kind: str) -> None:
+        """As `mujoco_plant/inject_fault`, from the next cycle on.
+
+        Args:
+            component: left_encoder right_encoder gyro accelerometer left_motor right_motor controller estimator
+                monitor
+            kind: ok (heals) off stuck garbage wrong slow delayed intermittent
+
+        Raises:
+            ValueError: an unknown word, with the list of those there are.
+        """
+        self._loop.inject_fault(component, kind)
 
     def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
         """As if just received on cmd_vel: linear [m/s], angular [rad/s]. Times out like cmd_vel."""
@@ -118,18 +146,30 @@ class ClosedLoop:
 
         Returns:
             Column name → float array of shape (cycles,); NaN where a node published nothing. Units: `units`.
+
+        Raises:
+            RuntimeError: the loop is paused.
         """
+        if self._paused:
+            raise RuntimeError("paused: call set_pause(False), or step(cycles)")
         cycles = round(seconds / self.period)
         return self._run(cycles, command if command is None or callable(command) else lambda _time: command)
 
     def _run(self, cycles: int, command: Callable[[float], tuple[float, float]] | None) -> Log:
-        if self._running:
-            raise RuntimeError("step and run cannot be called from the command function of a run")
+        self._refuse_inside_a_run("step and run")
         self._running = True
         try:
             return self._loop.run(cycles, command)
         finally:
             self._running = False
+
+    def _refuse_inside_a_run(self, what: str) -> None:
+        if self._running:
+            raise RuntimeError(f"{what} cannot be called from the command function of a run")
+
+    @property
+    def paused(self) -> bool:
+        return self._paused
 
     @property
     def time(self) -> float:
@@ -145,6 +185,13 @@ class ClosedLoop:
     def period(self) -> float:
         """s"""
         return self._loop.period
+
+    @property
+    def robot(self) -> dict[str, Any]:
+        """The robot as it was understood, SI units, base axes: `wheels`, `casters`, `joints`, `mass`,
+        `centre_of_gravity`, `wheel_base`, `wheel_base_multiplier`, `imu`, `shapes`, and `notes`, which say what was
+        assumed, repaired, ignored. `inspect_robot.py` prints it."""
+        return self._loop.robot
 
     @property
     def units(self) -> dict[str, str]:
