@@ -119,7 +119,7 @@ std::optional<fs::path> above_urdf(const std::string& package, const std::string
 
 std::optional<fs::path> find_package(const std::string& package, const std::string& file,
                                      const RobotDescription& description) {
-  if (const std::optional<fs::path> folder = on_search_path(package)) return folder;
+  if (std::optional<fs::path> folder = on_search_path(package)) return folder;
   for (const fs::path& prefix : folders_of(environment("CMAKE_PREFIX_PATH"))) {
     if (is_folder(prefix / "share" / package)) return prefix / "share" / package;
   }
@@ -179,7 +179,7 @@ fs::path locate(const std::string& uri, const RobotDescription& description) {
     refuse(description.source, element_of(uri), "\"" + uri.substr(0, scheme) + "://\" is not read",
            "Use package://, file:// or a path");
   }
-  const fs::path path = uri;
+  fs::path path = uri;
   if (path.is_absolute()) return path;
   const std::optional<fs::path> folder = folder_of_urdf(description);
   if (!folder) {
@@ -195,10 +195,10 @@ fs::path resolve_resource(const std::string& uri, const RobotDescription& descri
   if (uri.find_first_not_of(" \t\r\n") == std::string::npos) {
     refuse(description.source, element_of(uri), "it names no file", "Give its filename");
   }
-  const fs::path path = locate(uri, description);
+  fs::path path = locate(uri, description);
   if (is_there(path)) return path;
   // a/b/../c, where b is not there: cleaned up, as a URL is
-  if (const fs::path cleaned = path.lexically_normal(); is_there(cleaned)) return cleaned;
+  if (fs::path cleaned = path.lexically_normal(); is_there(cleaned)) return cleaned;
   refuse(description.source, element_of(uri), "there is no file " + path.string(),
          "Put it there, or mend the file name (letters count in upper and lower case)");
 }

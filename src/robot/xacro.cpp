@@ -21,7 +21,7 @@ std::string environment(const char* name) {
 }
 
 std::string python() {
-  if (const std::string chosen = environment("ROBOT_CONTROL_XACRO_PYTHON"); !chosen.empty()) return chosen;
+  if (std::string chosen = environment("ROBOT_CONTROL_XACRO_PYTHON"); !chosen.empty()) return chosen;
   std::error_code error;
   const std::string ours = ROBOT_CONTROL_PROJECT "/build/xacro/bin/python3";
   return fs::exists(ours, error) ? ours : "/usr/bin/python3";
