@@ -45,7 +45,7 @@ double NormalStream::next() noexcept {
 }
 
 InertialError::InertialError(double noise, double bias, double walk, double period, std::uint64_t device)
-    : noise_(noise / std::sqrt(period)), draw_(bias), walk_(walk * std::sqrt(period)), device_(device) {}
+    : noise_(noise / std::sqrt(period)), draw_(bias), walk_(walk * std::sqrt(kWalkCycles * period)), device_(device) {}
 
 void InertialError::reset(std::uint64_t seed) {
   NormalStream bias_stream;
@@ -53,14 +53,14 @@ void InertialError::reset(std::uint64_t seed) {
   for (double& axis : bias_) axis = draw_ * bias_stream.next();
   noise_stream_.seed(seed, kStreams * device_ + kNoiseStream);
   walk_stream_.seed(seed, kStreams * device_ + kWalkStream);
-  first_ = true;
+  cycle_ = 0;
 }
 
 void InertialError::step(Vector3& value) noexcept {
-  if (walk_ > 0 && !first_) {
+  if (walk_ > 0 && cycle_ > 0 && cycle_ % kWalkCycles == 0) {
     for (double& axis : bias_) axis += walk_ * walk_stream_.next();
   }
-  first_ = false;
+  ++cycle_;
   for (std::size_t axis = 0; axis < value.size(); ++axis) value[axis] += bias_[axis];
   if (noise_ > 0) {
     for (double& axis : value) axis += noise_ * noise_stream_.next();

@@ -10,12 +10,13 @@
 ///
 /// Gyro and accelerometer, each axis, with σ = noise, s = walk, and w, v, u independent standard normal numbers:
 ///
-///   measured(k) = true(k) + b(k) + σ/√T·w(k)      b(k) = b(k−1) + s·√T·v(k)      b(0) = bias·u
+///   measured(k) = true(k) + b(k) + σ/√T·w(k)      b(k) = b(k−m) + s·√(m·T)·v(k)      b(0) = bias·u
 ///
 /// White noise of density σ, so that its integral over t has the variance σ²·t, on a bias that is drawn at switch-on
 /// and walks with the variance s²·t (the model of IEEE Std 952, Annex C, without its terms of bias instability and
 /// quantisation; σ and s are the continuous-time densities of N. Trawny and S. Roumeliotis, "Indirect Kalman Filter
-/// for 3D Attitude Estimation", 2005).
+/// for 3D Attitude Estimation", 2005). It walks every m = kWalkCycles cycles: a step in each of them would be 4·10⁻⁵ of
+/// the noise and twice the work.
 ///
 /// Then all samples are `sensor_delay` cycles late together, under the head of the present cycle; until there is one
 /// so old, the first one comes.
@@ -65,6 +66,8 @@ class InertialError {
   /// Densities as above; `period` in s. `device`: another number for each.
   InertialError(double noise, double bias, double walk, double period, std::uint64_t device);
 
+  static constexpr std::uint64_t kWalkCycles = 10;
+
   void reset(std::uint64_t seed);
   void step(Vector3& value) noexcept;
 
@@ -73,9 +76,9 @@ class InertialError {
  private:
   double noise_;  ///< standard deviation of one sample
   double draw_;   ///< of the bias at switch-on
-  double walk_;   ///< of the bias' step in one period
+  double walk_;   ///< of the bias' step in kWalkCycles periods
   std::uint64_t device_;
-  bool first_ = true;
+  std::uint64_t cycle_ = 0;
   Vector3 bias_{};
   NormalStream noise_stream_, walk_stream_;
 };
