@@ -331,13 +331,28 @@ TEST_F(MonitorTest, ReadyPermitsAndBecomesDriveWithARequestOrAMotion) {
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
   turn_wheels(-0.05);
-  step();
+  steps(2);
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
   turn_wheels(0.049);
   steps(JointStandstill::kStandingCycles - 1);
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
+}
+
+// The wheel rests at the edge of a count: 1.53 rad/s for a cycle, every now and then.
+TEST_F(CausesTest, ACountOfAWheelAtRestIsNoMotion) {
+  stand();
+  for (int count = 0; count < 3; ++count) {
+    turn_wheels(count % 2 == 0 ? 1.53 : -1.53);
+    step();
+    EXPECT_EQ(permit_.state, SupervisorState::kReady);
+    turn_wheels(0);
+    steps(JointStandstill::kStandingCycles);
+  }
+  turn_wheels(1.53);
+  steps(2);
+  EXPECT_EQ(permit_.state, SupervisorState::kDrive);
 }
 
 TEST_F(CausesTest, ACasterThatTurnsIsNoMotion) {
