@@ -98,7 +98,7 @@ Eigen::Vector3d believed_centre(const RigidBodies& robot, const RobotParameters&
                                 const Eigen::Vector3d& from_urdf, RobotModel& model) {
   if (!parameters.centre_of_gravity) return from_urdf;
   const Vector3& given = *parameters.centre_of_gravity;
-  const Eigen::Vector3d centre(given[0], given[1], given[2]);
+  Eigen::Vector3d centre(given[0], given[1], given[2]);
   const auto words = [](const Eigen::Vector3d& v) { return list({number(v.x()), number(v.y()), number(v.z())}); };
   if (!centre.allFinite()) {
     refuse(robot.source, "robot/centre_of_gravity", words(centre) + " m", "Give three finite numbers, or none");

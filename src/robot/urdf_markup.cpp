@@ -1,5 +1,6 @@
 #include "robot/urdf_markup.h"
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -71,6 +72,35 @@ void check_tree(const RobotDescription& description, const TiXmlElement& robot) 
     refuse(description.source, joint_element(above.begin()->second.joint),
            "its child \"" + above.begin()->first + "\" hangs on itself, in a ring of joints",
            "Give each link one way up to the root: a URDF is a tree");
+  }
+}
+
+/// TinyXML descends by recursion.
+void check_depth(const RobotDescription& description) {
+  const std::string& text = description.text;
+  int depth = 0;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    if (text.compare(i, 4, "<!--") == 0) {
+      i = std::min(text.find("-->", i), text.size());
+    } else if (text.compare(i, 2, "</") == 0 || text.compare(i, 2, "/>") == 0) {
+      --depth;
+    } else if (text[i] == '<' && text[i + 1] != '!' && text[i + 1] != '?' && ++depth > kDeepest) {
+      refuse(description.source, "XML", "elements within elements, " + std::to_string(kDeepest) + " deep",
+             "Close each element; a URDF needs five levels");
+    }
+  }
+}
+
+/// urdfdom hands its messages, with our text in them, to printf as the format.
+void check_percent(const RobotDescription& description, const TiXmlElement& element) {
+  for (const TiXmlAttribute* given = element.FirstAttribute(); given != nullptr; given = given->Next()) {
+    const std::string text = std::string(given->Name()) + "=\"" + given->Value() + "\"";
+    if (std::string(given->Name()) == "filename" || text.find('%') == std::string::npos) continue;
+    refuse(at_line(description, element), "<" + element.ValueStr() + ">", text + " has a percent sign",
+           "Names and numbers have none");
+  }
+  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    check_percent(description, *child);
   }
 }
 
@@ -162,6 +192,7 @@ void mend_joint(TiXmlElement& joint) {
 }  // namespace
 
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml) {
+  check_depth(description);
   xml.Parse(description.text.c_str());
   if (xml.Error()) {
     const std::string line = xml.ErrorRow() > 0 ? " line " + std::to_string(xml.ErrorRow()) : "";
@@ -176,6 +207,12 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
     refuse(at_line(description, *second), "<" + second->ValueStr() + ">",
            "a second outermost element, beside <robot> in line " + std::to_string(root->Row()),
            "Keep one: one file is one robot");
+  }
+  for (const char* kind : {"link", "joint"}) {
+    for (const TiXmlElement* element = root->FirstChildElement(kind); element != nullptr;
+         element = element->NextSiblingElement(kind)) {
+      check_percent(description, *element);
+    }
   }
   for (const TiXmlElement* joint = root->FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {

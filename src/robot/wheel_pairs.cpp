@@ -60,7 +60,7 @@ std::string sort_into_pairs(const RigidBodies& robot, std::vector<RollingBody>& 
     return std::to_string(left) + " on the left, " + std::to_string(wheels.size() - left) + " on the right";
   }
   for (std::size_t i = 0; i < left; ++i) {
-    const std::string objection = pair_objection(robot, wheels[i], wheels[left + i], middle);
+    std::string objection = pair_objection(robot, wheels[i], wheels[left + i], middle);
     if (!objection.empty()) return objection;
   }
   return radius_objection(robot, wheels);

@@ -209,6 +209,18 @@ TEST(RobotRefusals, ARingOfLinks) {
   EXPECT_THAT(refusal(robot_of(two_wheels() + ring)), HasSubstr("ring"));
 }
 
+// urdfdom would read its arguments from the stack.
+TEST(RobotRefusals, AFormatInANumber) {
+  EXPECT_THAT(refusal(diffbot_with("<robot", "<mass value=\"3.45\"/>", "<mass value=\"%s%s%n\"/>")),
+              names("<mass>", "percent"));
+}
+
+TEST(RobotRefusals, AMillionElementsInOneAnother) {
+  std::string deep = "<robot name=\"r\">";
+  for (int i = 0; i < 1000000; ++i) deep += "<a>";
+  EXPECT_THAT(refusal({deep, "diffbot.urdf"}), names("XML", "deep"));
+}
+
 TEST(RobotRefusals, AnAxisWithoutDirection) {
   EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>")),
               names("left_wheel_joint", "axis"));
