@@ -98,7 +98,7 @@ class ClosedLoop:
         self._paused = False
         self._loop = _ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
 
-    def set_pause(self, pause: bool) -> None:
+    def set_pause(self, pause: bool) -> None:  # noqa: FBT001 (the service's own form)
         """As `mujoco_plant/set_pause`: while paused `step` runs, `run` refuses."""
         self._paused = pause
 
@@ -169,6 +169,7 @@ class ClosedLoop:
 
     @property
     def paused(self) -> bool:
+        """What `set_pause` said last."""
         return self._paused
 
     @property
@@ -190,7 +191,8 @@ class ClosedLoop:
     def robot(self) -> dict[str, Any]:
         """The robot as it was understood, SI units, base axes: `wheels`, `casters`, `joints`, `mass`,
         `centre_of_gravity`, `wheel_base`, `wheel_base_multiplier`, `imu`, `shapes`, and `notes`, which say what was
-        assumed, repaired, ignored. `inspect_robot.py` prints it."""
+        assumed, repaired, ignored. `inspect_robot.py` prints it.
+        """
         return self._loop.robot
 
     @property
