@@ -22,7 +22,7 @@ Log = dict[str, NDArray[np.float64]]
 Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None
 
 
-def _yaml(value: Any) -> str:
+def _yaml(value: object) -> str:
     """YAML text of a number, a truth value, a text or a list of them."""
     if isinstance(value, bool | np.bool_):
         return "true" if value else "false"
@@ -81,7 +81,8 @@ class ClosedLoop:
         self._running = False
         self._path = path
         self._values = values
-        self.reset(seed)
+        self._paused = False
+        self._loop = self._new_loop(seed)
 
     def reset(self, seed: int | None = None) -> None:
         """Sets the robot down anew, without injected faults; the next cycle is 0.
@@ -96,7 +97,10 @@ class ClosedLoop:
             self._loop.reset()
             return
         self._paused = False
-        self._loop = _ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
+        self._loop = self._new_loop(seed)
+
+    def _new_loop(self, seed: int) -> _ClosedLoop:
+        return _ClosedLoop(self._path, [*self._values, ("mujoco_plant.seed", str(seed))])
 
     def set_pause(self, pause: bool) -> None:  # noqa: FBT001 (the service's own form)
         """As `mujoco_plant/set_pause`: while paused `step` runs, `run` refuses."""
