@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s²
 constexpr double kPartOfLifting = 0.5;
+constexpr double kAlmostLifting = 0.9;
 constexpr double kLeastPart = 0.1;
 constexpr double kSlopeHeld = 10 * M_PI / 180;
 constexpr double kSettlingTilt = 3 * M_PI / 180;
@@ -37,14 +38,19 @@ Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantPara
   const JointModel& joint = robot.joints[wheel.joint];
   double moved = robot.mass;
   for (const WheelModel& other : robot.wheels) moved += other.inertia / (other.radius * other.radius);
-  const double force =
-      std::max(moved * kPartOfLifting * lifting_deceleration(robot), robot.mass * kGravity * std::sin(kSlopeHeld));
-  const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
+  const double lifting = lifting_deceleration(robot);
+  const double half = moved * kPartOfLifting * lifting;
+  const double slope = robot.mass * kGravity * std::sin(kSlopeHeld);
   const double friction = robot.bodies->moved_by(joint.name)->joint.friction;
-  const double effort = std::max(share - friction, kLeastPart * share);
+  const auto effort = [&](double force) {
+    const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
+    return std::min(parameters.brake_effort.value_or(std::max(share - friction, kLeastPart * share)),
+                    joint.effort_limit);
+  };
 
   Brake brake;
-  brake.effort = std::min(parameters.brake_effort.value_or(effort), joint.effort_limit);
+  brake.effort = effort(std::max(half, std::min(slope, kAlmostLifting * robot.mass * lifting)));
+  brake.hold_effort = effort(std::max(half, slope));
   brake.damping = parameters.brake_damping.value_or(0.4 * wheel.inertia / step);
   brake.stiffness = parameters.brake_stiffness.value_or(0.06 * wheel.inertia / (step * step));
   brake.hold_speed = parameters.brake_hold_speed.value_or(kHoldSpeed / wheel.radius);

@@ -16,6 +16,7 @@ double clamped(double value, double limit) {
 
 JointLaw::JointLaw(const Brake& brake, double effort_limit) : brake_(brake), effort_limit_(effort_limit) {
   brake_.effort = std::min(brake.effort, effort_limit);
+  brake_.hold_effort = std::min(brake.hold_effort, effort_limit);
 }
 
 void JointLaw::reset() noexcept {
@@ -51,20 +52,20 @@ double JointLaw::brake(double position, double velocity) noexcept {
   }
   if (!holding_ && (speed <= brake_.hold_speed || speed_stays(speed))) {
     holding_ = true;
-    reference_ = position + (clamped(applied_, brake_.effort) + brake_.damping * velocity) / brake_.stiffness;
+    reference_ = position + (clamped(applied_, brake_.hold_effort) + brake_.damping * velocity) / brake_.stiffness;
   }
   if (!holding_) return clamped(-brake_.damping * velocity, brake_.effort);
 
   const double wanted = brake_.stiffness * (reference_ - position) - brake_.damping * velocity;
-  const double effort = clamped(wanted, brake_.effort);
+  const double effort = clamped(wanted, brake_.hold_effort);
   if (effort != wanted) reference_ = position + (effort + brake_.damping * velocity) / brake_.stiffness;
   return effort;
 }
 
 bool JointLaw::speed_stays(double speed) noexcept {
+  if (++steps_since_mark_ < kMarkSteps) return false;
   const bool saturated = brake_.damping * speed >= brake_.effort;
-  if (!saturated && ++steps_since_mark_ < kMarkSteps) return false;
-  const bool stays = !saturated && speed > 0.9 * marked_speed_;
+  const bool stays = speed > (saturated ? 1.0 : 0.9) * marked_speed_;
   steps_since_mark_ = 0;
   marked_speed_ = speed;
   return stays;

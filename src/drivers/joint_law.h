@@ -7,16 +7,17 @@
 ///
 /// clamped to the joint's effort limit.
 ///
-/// kBrake, bounded by B, the effort of a Brake (brake_limits.h):
+/// kBrake, bounded by B, the effort or hold effort of a Brake (brake_limits.h):
 ///
 ///   slowing   τ = −d q̇
 ///   holding   τ = k (q* − q) − d q̇,   where the bound is reached, q* follows so that τ = ±B
 ///
-/// d its damping, k its stiffness. The brake holds from |q̇| ≤ its hold speed on, or when a load has
-/// kept the unsaturated speed from falling by a tenth within 50 steps (on a slope, damping alone would creep for
-/// ever). Holding begins with the torque that was applied last, q* = q + (τ₋ + d q̇)/k: the hand-over from a drive that
-/// held the robot on a slope, or from slowing, has no jolt and no sag. Once holding it stays so, as a dry brake
-/// does: a load above B drags it with the torque B.
+/// d its damping, k its stiffness. The brake holds from |q̇| ≤ its hold speed on, or when within
+/// 50 steps a load has kept the unsaturated speed from falling by a tenth (on a slope, damping alone would creep for
+/// ever), or has raised the saturated one (on a steeper slope, the bound for slowing is not enough). Holding begins
+/// with the torque that was applied last, q* = q + (τ₋ + d q̇)/k: the hand-over from a drive that held the robot on a
+/// slope, or from slowing, has no jolt and no sag. Once holding it stays so, as a dry brake does: a load above B drags
+/// it with the torque B.
 ///
 /// An unknown mode, or a number that is not finite, brakes.
 ///

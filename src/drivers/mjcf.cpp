@@ -150,8 +150,7 @@ class Writer {
       Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
       frame.translation() = body.in_root.inverse() * eigen(wheel->centre_base);
       frame.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), body.joint.axis).toRotationMatrix();
-      bodies_ +=
-          mjcf_rolling_shape(mjcf_wheel_name(number_of(*wheel)), frame, wheel->radius, wheel->width, parameters_);
+      bodies_ += mjcf_rolling_shape(mjcf_wheel_name(number_of(*wheel)), frame, *wheel, parameters_);
       return;
     }
     for (const Shape& shape : body.shapes) {

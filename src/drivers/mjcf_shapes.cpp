@@ -14,8 +14,8 @@ const char* const kContact =
 
 const char* const kSliding = R"( condim="1" priority="1" friction="0 0 0")";
 
-std::string rolling(const MujocoPlantParameters& parameters) {
-  if (parameters.tyre == TyreModel::kBrush) return kSliding;
+std::string rolling(const WheelModel& wheel, const MujocoPlantParameters& parameters) {
+  if (wheel.omni || parameters.tyre == TyreModel::kBrush) return kSliding;
   if (!parameters.ground_friction) return R"( condim="3" priority="0" friction="0 0 0")";
   return R"( condim="3" priority="1" friction=")" + mjcf_number(*parameters.ground_friction) + R"( 0 0")";
 }
@@ -84,10 +84,10 @@ std::string mjcf_sliding_shape(const Shape& shape, const std::string& mesh) {
   return geom + "\"/>\n";
 }
 
-std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, double radius, double width,
+std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,
                                const MujocoPlantParameters& parameters) {
-  return "<geom name=\"" + name + '"' + mjcf_pose(frame) + kContact + rolling(parameters) +
-         " type=\"ellipsoid\" size=\"" + mjcf_numbers({radius, radius, width / 2}) + "\"/>\n";
+  return "<geom name=\"" + name + '"' + mjcf_pose(frame) + kContact + rolling(wheel, parameters) +
+         " type=\"ellipsoid\" size=\"" + mjcf_numbers({wheel.radius, wheel.radius, wheel.width / 2}) + "\"/>\n";
 }
 
 std::string mjcf_mesh(const std::string& name, const std::vector<Eigen::Vector3d>& corners) {

@@ -19,8 +19,8 @@ std::string mjcf_pose(const Eigen::Isometry3d& frame);
 /// `<geom …/>` of a shape that slides; `mesh` names its asset.
 std::string mjcf_sliding_shape(const Shape& shape, const std::string& mesh);
 
-/// `<geom …/>` of a wheel: `frame` has the axle as its z.
-std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, double radius, double width,
+/// `<geom …/>` of a drive wheel or caster: `frame` has the axle as its z.
+std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,
                                const MujocoPlantParameters& parameters);
 
 /// `<mesh …/>` with its corners; flat ones thickened.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "drivers/mujoco_errors.h"
 #include "drivers/rest.h"
@@ -13,8 +14,9 @@ namespace {
 constexpr double kRestSpeed = 1e-6;       // m/s and rad/s, of the base: 60 µm a minute
 constexpr double kLastRestSpeed = 3e-5;   // 1 mm in 30 s
 constexpr double kJointRestSpeed = 1e-3;  // m/s and rad/s
-constexpr double kRestTime = 0.1;         // s, so long at rest, not just at a turning point
-constexpr double kSettleTime = 20;        // s
+constexpr double kLastJointSpeed = std::numeric_limits<double>::infinity();  // a caster in the air may swing on
+constexpr double kRestTime = 0.1;   // s, so long at rest, not just at a turning point
+constexpr double kSettleTime = 20;  // s
 
 }  // namespace
 
@@ -78,7 +80,13 @@ void MujocoPlant::settle() {
     }
     rested = at_rest(model_, *data_, kRestSpeed, kJointRestSpeed) ? rested + model_.substeps * step : 0;
   }
-  if (rested < kRestTime && !at_rest(model_, *data_, kLastRestSpeed, kJointRestSpeed)) {
+  const std::string side = unloaded_side(model_, wheels_);
+  const std::string standing = bodies_on_ground(model_, *data_);
+  if (!side.empty() && !standing.empty()) {
+    throw DriverError(where + "its " + side + " wheels bear no load, what stands on the ground is " + standing +
+                      ". Look at how low the wheels reach, and the <collision> shapes of the rest.");
+  }
+  if (rested < kRestTime && !at_rest(model_, *data_, kLastRestSpeed, kLastJointSpeed)) {
     throw DriverError(where +
                       "with its brakes on the robot does not come to rest at the site \"start\". Put the site "
                       "on a plane, z upwards from it, less steep than brakes and friction can hold.");

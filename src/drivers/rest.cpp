@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace robot_control {
 namespace {
 
 constexpr double kFallen = 30 * M_PI / 180;
+constexpr double kLeastLoad = 0.001;
+constexpr double kGravity = 9.81;  // m/s²
 
 }  // namespace
 
@@ -15,6 +18,33 @@ bool at_rest(const MujocoModel& model, const mjData& data, double base_speed, do
   return std::all_of(base, base + 6, [&](double speed) { return std::abs(speed) < base_speed; }) &&
          std::all_of(model.joint_velocity.begin(), model.joint_velocity.end(),
                      [&](int joint) { return std::abs(data.qvel[joint]) < joint_speed; });
+}
+
+std::string unloaded_side(const MujocoModel& model, const WheelContacts& wheels) {
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    double load = 0;
+    for (std::size_t i = 0; i < model.drive_wheels; ++i) {
+      if (model.robot.wheels[i].side == side) load += wheels.normal_force(i);
+    }
+    if (load < kLeastLoad * model.robot.mass * kGravity) return side == Side::kLeft ? "left" : "right";
+  }
+  return "";
+}
+
+std::string bodies_on_ground(const MujocoModel& model, const mjData& data) {
+  std::set<std::string> names;
+  for (int i = 0; i < data.ncon; ++i) {
+    for (const int shape : {data.contact[i].geom1, data.contact[i].geom2}) {
+      const int body = model.model->geom_bodyid[shape];
+      const bool of_robot = model.model->body_rootid[body] == model.base_body;
+      const auto& rolling = model.wheel_shape;
+      if (!of_robot || std::find(rolling.begin(), rolling.end(), shape) != rolling.end()) continue;
+      names.insert(mj_id2name(model.model.get(), mjOBJ_BODY, body));
+    }
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
 }
 
 bool fallen(const MujocoModel& model, const mjData& data) noexcept {

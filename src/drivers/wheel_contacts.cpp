@@ -39,6 +39,7 @@ WheelContacts::WheelContacts(const MujocoModel& model, const MujocoPlantParamete
     wheel.body = model_->geom_bodyid[wheel.shape];
     wheel.dof = model_->body_dofadr[wheel.body];
     wheel.radius = model_->geom_size[3 * wheel.shape];
+    wheel.omni = i >= model.drive_wheels && model.robot.casters[i - model.drive_wheels].omni;
     wheel_of_[static_cast<std::size_t>(wheel.shape)] = static_cast<int>(i);
     wheels_.push_back(wheel);
   }
@@ -128,9 +129,19 @@ void WheelContacts::observe(Wheel& wheel, const mjData& data, int index) noexcep
     input.turn_rate -= Vector(data.cvel + 6 * ground).dot(input.normal);
   }
   input.velocity -= input.velocity.dot(input.normal) * input.normal;
+  if (wheel.omni) let_slide_aside(wheel, data, *slot);
   input.rim_speed = wheel.radius * data.qvel[wheel.dof];
   input.grip = friction(data, contact, other) * slot->normal_force;
   wheel.slip = std::max(wheel.slip, input.velocity.norm());
+}
+
+void WheelContacts::let_slide_aside(const Wheel& wheel, const mjData& data, Contact& contact) const noexcept {
+  const Vector axle(data.xaxis + 3 * model_->body_jntadr[wheel.body]);
+  const Eigen::Vector3d& normal = contact.input.normal;
+  const Eigen::Vector3d aside = (axle - axle.dot(normal) * normal).normalized();
+  contact.input.velocity -= contact.input.velocity.dot(aside) * aside;
+  contact.input.turn_rate = 0;
+  contact.state.deflection -= contact.state.deflection.dot(aside) * aside;
 }
 
 double WheelContacts::friction(const mjData& data, const mjContact& contact, int other) const noexcept {

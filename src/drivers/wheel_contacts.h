@@ -12,6 +12,9 @@
 /// shape's `friction`. A region is a shape of the scene named "friction/…" that collides with nothing
 /// (contype="0" conaffinity="0"); a box, sphere or ellipsoid. So a patch of ice lies in a floor that stays a plane.
 ///
+/// A caster that nothing turns into the direction of travel (WheelModel::omni) has friction along its rolling direction
+/// alone.
+///
 /// With native friction `apply` does nothing, MuJoCo's own forces act; regions then have no effect.
 ///
 /// m of a tyre: 1/λ, λ = Σⱼ |Aᵢⱼ|, A = J M⁻¹ Jᵀ the accelerations that unit forces at the lowest points j of all the
@@ -58,6 +61,7 @@ class WheelContacts {
   struct Wheel {
     int shape = 0, body = 0, dof = 0;
     double radius = 0;
+    bool omni = false;
     TyreParameters tyre;
     std::array<Contact, kContacts> contacts;
     double normal_force = 0;
@@ -65,6 +69,7 @@ class WheelContacts {
   };
 
   void observe(Wheel& wheel, const mjData& data, int contact) noexcept;
+  void let_slide_aside(const Wheel& wheel, const mjData& data, Contact& contact) const noexcept;
   double friction(const mjData& data, const mjContact& contact, int other) const noexcept;
   Eigen::Vector3d velocity(const mjData& data, int body, const mjtNum* point) const noexcept;
   void push(mjData& data, int body, const mjtNum* point, const Eigen::Vector3d& force,

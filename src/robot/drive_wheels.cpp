@@ -15,18 +15,26 @@ namespace robot_control {
 namespace {
 
 constexpr double kUpright = 0.8;  // |z| of a swivel's axis: within 37° of the vertical
+constexpr int kBisections = 60;   // to the last bit
 
 double lowest_point(const WheelModel& wheel) {
   return wheel.centre_base[2] - wheel.radius;
 }
 
-bool behind_swivel(const RigidBodies& robot, std::size_t body) {
+const RigidBody* swivel_of(const RigidBodies& robot, std::size_t body) {
   for (std::size_t i = robot.bodies[body].parent; i != 0; i = robot.bodies[i].parent) {
     const RigidBody& ancestor = robot.bodies[i];
     const bool turns = ancestor.joint.type != JointType::kPrismatic;
-    if (turns && std::abs((ancestor.in_root.linear() * ancestor.joint.axis).z()) > kUpright) return true;
+    if (turns && std::abs((ancestor.in_root.linear() * ancestor.joint.axis).z()) > kUpright) return &ancestor;
   }
-  return false;
+  return nullptr;
+}
+
+double trail(const RigidBody& swivel, const RollingMeasure& wheel) {
+  const Eigen::Vector3d axis = swivel.in_root.linear() * swivel.joint.axis;
+  const Eigen::Vector3d rolling = wheel.axle_in_root.cross(axis).normalized();
+  const Eigen::Vector3d centre(wheel.wheel.centre_base[0], wheel.wheel.centre_base[1], wheel.wheel.centre_base[2]);
+  return std::abs((centre - swivel.in_root.translation()).dot(rolling));
 }
 
 double suspension_travel(const RigidBodies& robot, std::size_t body) {
@@ -50,6 +58,7 @@ class Search {
         reject(name, "it is fixed, a wheel has to turn");
     }
     for (std::size_t i = 1; i < robot.bodies.size(); ++i) consider(i);
+    rolling_ = candidates_.size();
     drop_those_above_the_floor();
     drop_those_on_the_middle_line();
   }
@@ -62,6 +71,11 @@ class Search {
     std::vector<RollingBody> driven;
     for (const RollingBody& candidate : candidates_) {
       if (robot_.bodies[candidate.body].joint.driven) driven.push_back(candidate);
+    }
+    if (driven.empty() && rolling_ > kMaxWheels) {
+      refuse(robot_.source, "<robot>",
+             std::to_string(rolling_) + " wheels roll, and nothing says which of them drive: tracks are not supported",
+             remedy());
     }
     std::string objection;
     for (std::vector<RollingBody> pairs : {driven, candidates_}) {
@@ -100,7 +114,7 @@ class Search {
                                robot_.bodies[0].name + ", 0.2° are allowed");
     }
     if (!measure.objection.empty()) return reject(joint, measure.objection);
-    if (behind_swivel(robot_, index)) return reject(joint, "it stands behind a swivel");
+    if (swivel_of(robot_, index) != nullptr) return reject(joint, "it stands behind a swivel");
     if (!body.joint.mimicked.empty()) return reject(joint, "it follows " + body.joint.mimicked);
     candidates_.push_back({index, measure.wheel});
   }
@@ -136,6 +150,7 @@ class Search {
 
   const RigidBodies& robot_;
   std::vector<RollingBody> candidates_;
+  std::size_t rolling_ = 0;  // candidates at any height
   std::string rejected_;
 };
 
@@ -149,7 +164,21 @@ void note_lying_names(const RigidBodies& robot, const RollingBody& wheel, std::v
                        (left ? "left" : "right") + " wheel: y is " + number(wheel.wheel.centre_base[1]) + " m"});
 }
 
-std::vector<RollingBody> find_casters(const RigidBodies& robot, const std::vector<RollingBody>& wheels) {
+/// Whether it rolls, sets `omni`.
+bool judge_swivel(const RigidBodies& robot, std::size_t body, RollingMeasure& measure, std::vector<RobotNote>& notes) {
+  const RigidBody* swivel = swivel_of(robot, body);
+  measure.wheel.omni = swivel == nullptr;
+  const bool follows = swivel != nullptr && trail(*swivel, measure) >= kLeastTrail * measure.wheel.radius;
+  if (follows) return true;
+  notes.push_back({RobotNote::Kind::kAssumed, joint_element(robot.bodies[body].joint.name),
+                   measure.wheel.omni
+                       ? "no swivel turns it: it slides sideways without friction, as an omni wheel does"
+                       : "it stands below its swivel, which cannot turn it: it slides without friction"});
+  return measure.wheel.omni;
+}
+
+std::vector<RollingBody> find_casters(const RigidBodies& robot, const std::vector<RollingBody>& wheels,
+                                      std::vector<RobotNote>& notes) {
   std::set<std::size_t> taken;
   double floor = std::numeric_limits<double>::infinity();
   for (const RollingBody& wheel : wheels) {
@@ -159,9 +188,9 @@ std::vector<RollingBody> find_casters(const RigidBodies& robot, const std::vecto
   std::vector<RollingBody> casters;
   for (std::size_t i = 1; i < robot.bodies.size(); ++i) {
     if (taken.contains(i)) continue;
-    const RollingMeasure measure = measure_wheel(robot.bodies[i]);
+    RollingMeasure measure = measure_wheel(robot.bodies[i]);
     if (!measure.objection.empty() || lowest_point(measure.wheel) - floor > kCasterTolerance) continue;
-    casters.push_back({i, measure.wheel});
+    if (judge_swivel(robot, i, measure, notes)) casters.push_back({i, measure.wheel});
   }
   return casters;
 }
@@ -178,7 +207,7 @@ DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& par
            "At most " + std::to_string(kMaxWheels) + " are supported; tracks are not");
   }
   for (const RollingBody& wheel : train.wheels) note_lying_names(robot, wheel, notes);
-  train.casters = find_casters(robot, train.wheels);
+  train.casters = find_casters(robot, train.wheels, notes);
   return train;
 }
 
@@ -192,12 +221,24 @@ double wheel_base_of(const std::vector<RollingBody>& wheels) {
 }
 
 double scrub_multiplier(const std::vector<RollingBody>& wheels) {
-  const auto count = static_cast<double>(wheels.size());
+  if (wheels.size() == 2) return 1;
+  const double base = wheel_base_of(wheels);
   double mean = 0;
-  for (const RollingBody& wheel : wheels) mean += wheel.wheel.centre_base[0] / count;
-  double square = 0;
-  for (const RollingBody& wheel : wheels) square += std::pow(wheel.wheel.centre_base[0] - mean, 2) / count;
-  return wheels.size() == 2 ? 1 : 1 + 4 * square / std::pow(wheel_base_of(wheels), 2);
+  for (const RollingBody& wheel : wheels) mean += wheel.wheel.centre_base[0] / static_cast<double>(wheels.size());
+  double least = 0, most = 0;
+  for (const RollingBody& wheel : wheels) {
+    most = std::max(most, 2 * std::pow(wheel.wheel.centre_base[0] - mean, 2) / base);
+  }
+  for (int i = 0; i < kBisections; ++i) {
+    const double slip = (least + most) / 2;
+    double moment = 0;
+    for (const RollingBody& wheel : wheels) {
+      const double x = wheel.wheel.centre_base[0] - mean;
+      moment += (base * slip / 2 - x * x) / std::hypot(slip, x);
+    }
+    (moment < 0 ? least : most) = slip;
+  }
+  return 1 + (least + most) / base;
 }
 
 }  // namespace robot_control

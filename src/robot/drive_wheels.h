@@ -12,7 +12,14 @@
 /// one radius, each within kPairTolerance of the wheel base or radius. All pairs have one radius. Anything else is not
 /// guessed: the candidates are named, and what to set.
 ///
+/// More than kMaxWheels candidates, of which the URDF drives none, are the rollers of a track: refused.
+///
 /// Left and right are told by position: names lie. What a name says otherwise is noted.
+///
+/// All else that rolls near the floor is a caster. Its swivel turns it into the direction of travel by its trail, the
+/// distance by which the wheel follows the swivel's axis, across the axle. Without a swivel the robot could turn only by
+/// dragging it sideways: it is taken for an omni wheel (WheelModel::omni). With a trail below kLeastTrail of the radius
+/// it is no caster, but slides. Both are noted.
 
 #include <string>
 #include <vector>
@@ -23,6 +30,7 @@ namespace robot_control {
 
 inline constexpr double kFloorTolerance = 0.005;  ///< m
 inline constexpr double kPairTolerance = 0.01;
+inline constexpr double kLeastTrail = 0.05;
 
 struct RollingBody {
   std::size_t body = 0;  ///< index into RigidBodies::bodies
@@ -44,7 +52,7 @@ DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& par
 /// m, Δy of the left and right wheels' centres, mean over the axles
 double wheel_base_of(const std::vector<RollingBody>& wheels);
 
-/// 1 + 4 mean(xᵢ²)/b² (RobotModel::wheel_base_multiplier)
+/// 1 + 2 s/b (RobotModel::wheel_base_multiplier)
 double scrub_multiplier(const std::vector<RollingBody>& wheels);
 
 }  // namespace robot_control

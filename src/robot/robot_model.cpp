@@ -11,6 +11,7 @@
 #include "robot/model_hash.h"
 #include "robot/overrides.h"
 #include "robot/rigid_bodies.h"
+#include "robot/rockers.h"
 #include "robot/suspension.h"
 #include "robot/urdf_document.h"
 #include "robot/wheel_drive.h"
@@ -20,6 +21,8 @@
 
 namespace robot_control {
 namespace {
+
+constexpr double kCentral = 0.05;  // of the wheel base
 
 Vector3 plain(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -122,6 +125,19 @@ void read_masses(const RigidBodies& robot, const RobotParameters& parameters, Ro
   model.yaw_inertia = model.mass / sum.mass * sum.yaw_inertia + model.mass * (centre.head<2>() - middle).squaredNorm();
 }
 
+/// The multiplier is that of equal loads.
+void note_unequal_loads(const RobotParameters& parameters, RobotModel& model) {
+  if (model.wheels.size() == 2 || parameters.wheel_base_multiplier) return;
+  Eigen::Vector2d offset(model.centre_of_gravity_base[0], model.centre_of_gravity_base[1]);
+  for (const WheelModel& wheel : model.wheels) {
+    offset -= Eigen::Vector2d(wheel.centre_base[0], wheel.centre_base[1]) / static_cast<double>(model.wheels.size());
+  }
+  if (offset.norm() <= kCentral * model.wheel_base) return;
+  model.notes.push_back({RobotNote::Kind::kSuspicious, "robot/wheel_base_multiplier",
+                         "the centre of gravity lies " + number(offset.x()) + " m before and " + number(offset.y()) +
+                             " m left of the middle of the wheels, the multiplier is that of equal loads"});
+}
+
 void read_imu(const RigidBodies& robot, const RobotParameters& parameters, RobotModel& model) {
   model.imu_link = imu_link_of(robot, parameters.imu_link, model.notes);
   if (model.imu_link.empty()) return;
@@ -197,9 +213,11 @@ RobotModel read_robot(const RobotDescription& description, const RobotParameters
   DriveTrain train = find_drive_train(*bodies, parameters, model.notes);
   assume_rotors(*bodies, train, model.notes);
   assume_springs(*bodies, train, model.notes);
+  assume_differential(*bodies, train, model.notes);
   read_geometry(*bodies, parameters, train, model);
   read_joints(*bodies, parameters, train, model);
   read_masses(*bodies, parameters, model);
+  note_unequal_loads(parameters, model);
   read_imu(*bodies, parameters, model);
   note_mecanum(model);
   model.notes = merged(model.notes);

@@ -72,6 +72,7 @@ struct WheelModel {
   double inertia = 0;        ///< kg·m² about the axle, rotor_inertia included
   double rotor_inertia = 0;  ///< kg·m², assumed of a drive whose URDF leaves it out (drive_wheels.h)
   Side side = Side::kLeft;
+  bool omni = false;  ///< caster that nothing turns into the direction of travel: slides sideways without friction
 };
 
 inline constexpr std::size_t kMaxWheels = 8;
@@ -102,8 +103,10 @@ struct RobotModel {
   double wheel_base = 0;           ///< m, distance between the left and right wheel centres, mean over the axles
 
   /// Effective over geometric wheel base: what the wheels' speed difference is to be divided by. 1 for one wheel a
-  /// side. Wheels behind each other scrub in a turn; for equal loads and isotropic friction the moments balance at
-  ///   1 + 4 mean(xᵢ²)/b²,   xᵢ the axles' positions from their mean, b the wheel base: 1 + (L/b)² for two axles.
+  /// side. Wheels behind each other scrub in a turn. With xᵢ the axles' positions from their mean, b the wheel base and
+  /// s the speed, per rad/s of turning, by which each tread slips along its rolling direction, axle i slips with
+  /// (s, xᵢ); equal loads under isotropic Coulomb friction turn the robot steadily where
+  ///   Σ (b s/2 − xᵢ²)/√(s² + xᵢ²) = 0,   multiplier 1 + 2 s/b:   1 + (L/b)² for two axles L apart.
   double wheel_base_multiplier = 1;
 
   double mass = 0;                            ///< kg, all links

@@ -44,8 +44,17 @@ TEST(BrakeOf, BrakesWithHalfTheLiftingDeceleration) {
 TEST(BrakeOf, HoldsATopHeavyRobotOnASlopeOfTenDegrees) {
   MadeRobot robot = four_wheels();
   robot.body_z = 3;
-  EXPECT_NEAR(brake_of(robot.model(), 0, {}, kStep).effort,
+  EXPECT_NEAR(brake_of(robot.model(), 0, {}, kStep).hold_effort,
               20 * kGravity * std::sin(10 * M_PI / 180) * robot.radius / 4, 1e-9);
+}
+
+// Half of what lifts it is less than the slope takes, all of it is not.
+TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
+  MadeRobot robot = four_wheels();
+  robot.body_z = 1.0;  // centre of gravity at (16 · 1.1 + 4 · 0.1)/20 = 0.9 m, lifts at g/6
+  const Brake brake = brake_of(robot.model(), 0, {}, kStep);
+  EXPECT_NEAR(brake.effort, 20 * 0.9 * kGravity * 0.15 / 0.9 * robot.radius / 4, 1e-9);
+  EXPECT_GT(brake.hold_effort, brake.effort);
 }
 
 TEST(BrakeOf, IsNeverStrongerThanTheDrive) {
@@ -62,6 +71,7 @@ TEST(BrakeOf, TakesWhatTheUserSays) {
   parameters.brake_hold_speed = 0.2;
   const Brake brake = brake_of(four_wheels().model(), 0, parameters, kStep);
   EXPECT_EQ(brake.effort, 1.5);
+  EXPECT_EQ(brake.hold_effort, 1.5);
   EXPECT_EQ(brake.damping, 1);
   EXPECT_EQ(brake.stiffness, 100);
   EXPECT_EQ(brake.hold_speed, 0.2);

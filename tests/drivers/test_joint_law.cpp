@@ -15,7 +15,7 @@ constexpr double kStep = 0.001;          // s
 constexpr double kFreeInertia = 0.005;   // kg·m², a wheel off the ground
 constexpr double kRobotInertia = 0.065;  // kg·m², a wheel that moves its half of 12 kg
 constexpr double kEffortLimit = 3.5;     // N·m
-constexpr Brake kBrake{.effort = 3.0, .damping = 2.0, .stiffness = 300, .hold_speed = 0.3};
+constexpr Brake kBrake{.effort = 3.0, .hold_effort = 3.0, .damping = 2.0, .stiffness = 300, .hold_speed = 0.3};
 
 class JointLawTest : public testing::Test {
  protected:
@@ -128,6 +128,31 @@ TEST_F(JointLawTest, AWheelThatSlidesDownASlopeIsCaughtAndHeld) {
   EXPECT_NEAR(law_.step({}, position_, velocity_), -kLoad, 1e-6);
 }
 
+TEST_F(JointLawTest, HoldsWithMoreThanItSlowsWith) {
+  Brake gentle = kBrake;
+  gentle.effort = 1.0;
+  law_ = JointLaw(gentle, kEffortLimit);
+  velocity_ = 5;
+  EXPECT_EQ(step({}), -1.0);
+  brake(3);
+  EXPECT_TRUE(law_.holding());
+  brake(3, 2.0);
+  EXPECT_NEAR(velocity_, 0, 1e-9);
+  EXPECT_NEAR(law_.step({}, position_, velocity_), -2.0, 1e-6);
+}
+
+// Downhill with 2 N·m against 1 N·m of slowing: what holds takes over within 50 steps, and wins by 1 N·m.
+TEST_F(JointLawTest, ALoadThatSlowingDoesNotBearIsBrakedByWhatHolds) {
+  Brake gentle = kBrake;
+  gentle.effort = 1.0;
+  law_ = JointLaw(gentle, kEffortLimit);
+  velocity_ = 1.0;
+  brake(0.051, 2.0);
+  EXPECT_TRUE(law_.holding());
+  brake(3, 2.0);
+  EXPECT_NEAR(velocity_, 0, 1e-9);
+}
+
 TEST_F(JointLawTest, ALoadAboveTheBoundDragsTheHeldWheelAndIsNotThrownBack) {
   brake(0.1);
   for (int i = 0; i < 200; ++i) EXPECT_LE(std::abs(step({}, 4.0)), kBrake.effort);
@@ -143,7 +168,7 @@ TEST_F(JointLawTest, ALoadAboveTheBoundDragsTheHeldWheelAndIsNotThrownBack) {
 TEST_F(JointLawTest, TheStabilityLimitIsWhereTheHeaderSaysItIs) {
   for (const double excess : {0.98, 1.02}) {
     Brake brake = kBrake;
-    brake.effort = 1e9;  // linear
+    brake.effort = brake.hold_effort = 1e9;  // linear
     const double b = brake.stiffness * kStep * kStep / kFreeInertia;
     brake.damping = excess * (4 - b) / 2 * kFreeInertia / kStep;
     JointLaw law(brake, 1e9);
