@@ -10,8 +10,8 @@ RobotModel two_wheels() {
   robot.name = "small";
   robot.source = "small.urdf";
   robot.joints.resize(2);
-  robot.joints[0].name = "l";
-  robot.joints[1].name = "r";
+  robot.joints[0].name = "port";
+  robot.joints[1].name = "starboard";
   robot.wheels = {WheelModel{.joint = 0, .radius = 0.033},
                   WheelModel{.joint = 1, .radius = 0.033, .side = Side::kRight}};
   robot.wheel_base = 0.16;
@@ -20,8 +20,9 @@ RobotModel two_wheels() {
 }
 
 TEST(RobotReport, SaysWhatWasUnderstood) {
-  EXPECT_EQ(summary(two_wheels()),
-            "robot 'small' of small.urdf: left wheels l, right wheels r, radius 0.033 m, wheel base 0.16 m, 1 kg");
+  EXPECT_EQ(
+      summary(two_wheels()),
+      "robot 'small' of small.urdf: left wheels port, right wheels starboard, radius 0.033 m, wheel base 0.16 m, 1 kg");
   RobotModel skid = two_wheels();
   skid.wheel_base_multiplier = 1.5;
   EXPECT_NE(summary(skid).find("wheel base 0.16 m (effective 0.24 m)"), std::string::npos);
