@@ -14,6 +14,7 @@ constexpr double kPartOfLifting = 0.5;
 constexpr double kAlmostLifting = 0.9;
 constexpr double kLeastPart = 0.1;
 constexpr double kSlopeHeld = 10 * M_PI / 180;
+constexpr double kSlopeBraked = 5 * M_PI / 180;
 constexpr double kSettlingTilt = 3 * M_PI / 180;
 constexpr double kHoldSpeed = 0.03;  // m/s at the rim
 
@@ -40,7 +41,9 @@ Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantPara
   for (const WheelModel& other : robot.wheels) moved += other.inertia / (other.radius * other.radius);
   const double lifting = lifting_deceleration(robot);
   const double half = moved * kPartOfLifting * lifting;
-  const double slope = robot.mass * kGravity * std::sin(kSlopeHeld);
+  const double weight = robot.mass * kGravity;
+  const double slope = weight * std::sin(kSlopeHeld);
+  const double almost = std::min(slope, kAlmostLifting * moved * lifting);
   const double friction = robot.bodies->moved_by(joint.name)->joint.friction;
   const auto effort = [&](double force) {
     const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
@@ -49,7 +52,7 @@ Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantPara
   };
 
   Brake brake;
-  brake.effort = effort(std::max(half, std::min(slope, kAlmostLifting * robot.mass * lifting)));
+  brake.effort = effort(std::max({half, weight * std::sin(kSlopeBraked), almost}));
   brake.hold_effort = effort(std::max(half, slope));
   brake.damping = parameters.brake_damping.value_or(0.4 * wheel.inertia / step);
   brake.stiffness = parameters.brake_stiffness.value_or(0.06 * wheel.inertia / (step * step));

@@ -1,21 +1,20 @@
 #pragma once
 /// How hard a wheel brakes: what the user says, else what robot and time step bear.
 ///
-///   effort      B = min(effort limit, max(B₀ − f, B₀/10))
-///                 slowing  B₀ = max(a (m + Σ J/r²)/2, min(m g sin 10°, 0.9 a m)) r / n
-///                 holding  B₀ = max(a (m + Σ J/r²)/2, m g sin 10°) r / n
+///   effort      B = min(effort limit, max(B₀ − f, B₀/10)),  with F = a (m + Σ J/r²)
+///                 slowing  B₀ = max(F/2, m g sin 5°, min(0.9 F, m g sin 10°)) r / n
+///                 holding  B₀ = max(F/2, m g sin 10°) r / n
 ///   damping     d = 0.4 J/h
 ///   stiffness   k = 0.06 J/h²
 ///   hold speed  0.03 m/s / r
 ///
 /// n drive wheels, h time step, J a wheel's inertia about its axle, r its radius, f its joint's own dry friction, which
-/// brakes as well, m the robot's mass. a is the
-/// deceleration at which wheels lift: about a support at the horizontal distance d from the centre of gravity, which is
-/// at the height c, inertia m a c outweighs m g d from a = g d / c on. d is the distance to the foremost or rearmost
-/// support, whichever is less. Supports are the ground points (ground_points.h) that are on the ground, or come to
-/// it when the robot tilts by 3° about the centre of gravity's foot. The floor of 10° lets a top-heavy robot
-/// stand on slopes; slowing on them as well, as far as it then does not tip. More than the ground's friction carries is
-/// harmless, the wheel then slides.
+/// brakes as well, m the robot's mass. a is the deceleration at which wheels lift: about a support at the horizontal
+/// distance d from the centre of gravity, which is at the height c, inertia m a c outweighs m g d from a = g d / c on.
+/// d is the distance to the foremost or rearmost support, whichever is less. Supports are the ground points
+/// (ground_points.h) that are on the ground, or come to it when the robot tilts by 3° about the centre of gravity's
+/// foot. A robot that tips easily still stands on slopes of 10°; it slows down on them as far as it does not tip, and
+/// on 5° in any case. More than the ground's friction carries is harmless, the wheel then slides.
 ///
 /// d and k: see joint_law.h; a factor of four to its limits.
 

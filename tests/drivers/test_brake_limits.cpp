@@ -53,8 +53,15 @@ TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
   MadeRobot robot = four_wheels();
   robot.body_z = 1.0;  // centre of gravity at (16 · 1.1 + 4 · 0.1)/20 = 0.9 m, lifts at g/6
   const Brake brake = brake_of(robot.model(), 0, {}, kStep);
-  EXPECT_NEAR(brake.effort, 20 * 0.9 * kGravity * 0.15 / 0.9 * robot.radius / 4, 1e-9);
+  const double moved = 20 + 4 * robot.wheel_inertia() / std::pow(robot.radius, 2);
+  EXPECT_NEAR(brake.effort, moved * 0.9 * kGravity * 0.15 / 0.9 * robot.radius / 4, 1e-9);
   EXPECT_GT(brake.hold_effort, brake.effort);
+}
+
+// Right above its only axle the centre of gravity has no lever at all.
+TEST(BrakeOf, SlowsOnASlopeOfFiveDegreesWhateverTips) {
+  EXPECT_NEAR(brake_of(MadeRobot{}.model(), 0, {}, kStep).effort, 12 * kGravity * std::sin(5 * M_PI / 180) * 0.1 / 2,
+              1e-9);
 }
 
 TEST(BrakeOf, IsNeverStrongerThanTheDrive) {
