@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 
 #include "robot/body_joint.h"
@@ -22,8 +23,14 @@ namespace {
 
 class Lumper {
  public:
-  Lumper(const UrdfDocument& document, const RobotDescription& description, const std::set<std::string>& welded)
-      : document_(document), description_(description), welded_(welded), frames_(links_at_zero(kdl_tree(document))) {
+  /// `largest` in m: what radius of gyration a link may have.
+  Lumper(const UrdfDocument& document, const RobotDescription& description, const std::set<std::string>& welded,
+         double largest)
+      : document_(document),
+        description_(description),
+        welded_(welded),
+        largest_(largest),
+        frames_(links_at_zero(kdl_tree(document))) {
     result_.name = document.model->getName();
     result_.source = document.source;
     result_.link_order = document.link_order;
@@ -85,8 +92,15 @@ class Lumper {
   void add_mass(const urdf::Link& link, std::size_t body, const Eigen::Isometry3d& in_body) {
     RigidBody& target = result_.bodies[body];
     weighed_[body] = weighed_[body] || link.inertial;
-    const PointInertia both = sum({target.mass, target.centre_of_gravity, target.inertia},
-                                  inertia_of(link, in_body, document_.source, result_.notes));
+    PointInertia part = inertia_of(link, in_body, document_.source, result_.notes);
+    const double gyration = gyration_radius(link);
+    if (gyration > largest_) {
+      part.inertia *= std::pow(largest_ / gyration, 2);
+      note(RobotNote::Kind::kRepaired, link_element(link.name),
+           "a radius of gyration of " + number(gyration) + " m, the whole robot measures " + number(largest_) +
+               " m: inertia scaled down to that");
+    }
+    const PointInertia both = sum({target.mass, target.centre_of_gravity, target.inertia}, part);
     target.mass = both.mass;
     target.centre_of_gravity = both.centre;
     target.inertia = both.inertia;
@@ -94,7 +108,7 @@ class Lumper {
 
   void add_shapes(const urdf::Link& link, ShapeSource which, std::size_t body, const Eigen::Isometry3d& in_body) {
     std::vector<Shape> shapes = shapes_of(link, which, in_body, description_, result_.notes);
-    note_gyration(link, shapes, result_.notes);
+    if (gyration_radius(link) <= largest_) note_gyration(link, shapes, result_.notes);
     std::move(shapes.begin(), shapes.end(), std::back_inserter(result_.bodies[body].shapes));
   }
 
@@ -136,6 +150,7 @@ class Lumper {
   const UrdfDocument& document_;
   const RobotDescription& description_;
   const std::set<std::string>& welded_;
+  double largest_;
   std::map<std::string, Eigen::Isometry3d> frames_;
   bool collides_ = true;
   RigidBodies result_;
@@ -175,9 +190,14 @@ double total_mass(const RigidBodies& robot) {
 
 RigidBodies read_rigid_bodies(const RobotDescription& description) {
   const UrdfDocument document = parse_urdf(description);
-  LumpedBodies lumped = Lumper(document, description, {}).lump();
+  LumpedBodies lumped = Lumper(document, description, {}, std::numeric_limits<double>::infinity()).lump();
   const std::set<std::string> idle = idle_massless_joints(lumped);
-  if (!idle.empty()) lumped = Lumper(document, description, idle).lump();
+  const double size = robot_size(lumped.robot);
+  const auto& links = document.model->links_;
+  const auto too_large = [size](const auto& link) { return gyration_radius(*link.second) > size; };
+  if (!idle.empty() || std::any_of(links.begin(), links.end(), too_large)) {
+    lumped = Lumper(document, description, idle, size).lump();
+  }
   for (const std::string& joint : idle) {
     lumped.robot.notes.push_back({RobotNote::Kind::kAssumed, joint_element(joint),
                                   "what it moves has no <inertial>, and nothing rolls on it: taken as fixed"});

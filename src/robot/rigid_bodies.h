@@ -9,6 +9,7 @@
 ///   it rolls, or something that rolls hangs on it: takes kMasslessShare of its parent body's mass, as a solid wheel
 ///                                                  of its own shape or a ball of kBallRadius
 ///   else                                           is welded to its parent; its joint counts as fixed
+/// An inertia whose radius of gyration (gyration.h) exceeds the size of the whole robot is scaled down to that size.
 /// Shapes are those of <collision>. Where the robot has none at all, and for a turning body without one that is round
 /// about its joint, those of <visual>. All of this is noted.
 

@@ -91,6 +91,19 @@ TEST(Rockers, ThatTheUrdfTiesItselfAreLeftAlone) {
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), Not(HasSubstr("differential")));
 }
 
+// 10 g with 1 kg·m²: 10 m. The robot is the box about body and wheels.
+TEST(Inertia, BeyondTheRobotsOwnSizeIsScaledDownToIt) {
+  const std::string tensor = "ixx=\"1\" iyy=\"0.01\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
+  const std::string sensor = link("sensor", inertial("0.01", tensor)) +
+                             joint({.name = "mount", .child = "sensor", .type = "fixed", .axis = ""});
+  const double without = read_robot(robot_of(two_wheels()), {}).yaw_inertia;
+  const RobotModel robot = read_robot(robot_of(two_wheels() + sensor), {});
+  EXPECT_THAT(notes_of(robot, RobotNote::Kind::kRepaired),
+              HasSubstr("<link name=\"sensor\">: a radius of gyration of 10 m"));
+  EXPECT_GT(robot.yaw_inertia, without);
+  EXPECT_LT(robot.yaw_inertia, without + 0.01 * 1.5 * 1.5);
+}
+
 std::string axles(const std::vector<std::string>& positions) {
   std::string text = base();
   for (const std::string& x : positions) text += wheel("left" + x, x + " 0.25 0") + wheel("right" + x, x + " -0.25 0");
