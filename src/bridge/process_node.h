@@ -1,9 +1,7 @@
 #pragma once
 /// A Node whose work is a Process: everything that the four nodes of the loop have in common.
 
-#include <mutex>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bridge/node.h"
@@ -18,20 +16,12 @@ class ProcessNode : public Node {
   explicit ProcessNode(const Setup& setup)
       : setup_(setup), time_(setup.parameters.loop.clock), process_(setup.parameters, setup.robot, setup.bus) {}
 
-  void poll() override {
-    process_.poll();
-    std::vector<std::string> names = process_.missing();
-    const std::lock_guard lock(missing_mutex_);
-    missing_ = std::move(names);
-  }
+  void poll() override { process_.poll(); }
   bool finished() const override { return process_.finished(); }
   void stop() override { process_.stop(); }
 
   /// As of the last poll; any thread.
-  std::vector<std::string> missing() const override {
-    const std::lock_guard lock(missing_mutex_);
-    return missing_;
-  }
+  std::vector<std::string> missing() const override { return process_.last_missing(); }
 
   std::vector<std::string> realtime_messages() const override { return process_.realtime_messages(); }
 
@@ -46,8 +36,6 @@ class ProcessNode : public Node {
   Setup setup_;
   TimeMap time_;
   Work process_;
-  mutable std::mutex missing_mutex_;
-  std::vector<std::string> missing_;
 };
 
 }  // namespace robot_control

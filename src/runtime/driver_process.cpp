@@ -59,7 +59,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   cycle_->set_boot(mint_number());
   cycle_->begin_run(mint_number());
   if (!driver_->simulated()) return;
-  services_ = std::make_unique<SimulationServices>(hold_, *driver_, *cycle_, [this] { return missing(); });
+  services_ = std::make_unique<SimulationServices>(hold_, *driver_, *cycle_, [this] { return last_missing(); });
 }
 
 std::vector<std::string> DriverProcess::missing() const {
@@ -108,10 +108,11 @@ void DriverProcess::tick() noexcept {
   trace_.append(cycle_->trace(), stopping());
 }
 
-/// Waits while the loop is held. True if it was: time has passed, perhaps a new run begun.
+/// Waits while the loop is held. True if it was: time has passed, perhaps a new run begun. Once it is to end, a reset
+/// may still have machine and cycle.
 bool DriverProcess::await_turn() noexcept {
   bool held = false;
-  while (!hold_.may_tick(cycle_->next_cycle()) && !stopping().load(std::memory_order_relaxed)) {
+  while (!stopping().load(std::memory_order_relaxed) && !hold_.may_tick(cycle_->next_cycle())) {
     cycle_->publish_paused();
     hold_.stand(kStopCheck, stopping());
     held = true;
@@ -125,11 +126,12 @@ void DriverProcess::loop_wall() noexcept {
   Periodic schedule(monotonic_ns() + period_ns, period_ns, when_late);
   cycle_->set_start(schedule.deadline_ns());
   while (more()) {
-    if (await_turn()) {
+    const bool held = await_turn();
+    if (stopping().load(std::memory_order_relaxed)) return;
+    if (held) {
       schedule = Periodic(std::max(schedule.deadline_ns(), monotonic_ns()), period_ns, when_late);
       cycle_->set_due(schedule.deadline_ns());
     }
-    if (stopping().load(std::memory_order_relaxed)) return;
     sleep_until(schedule.deadline_ns());
     const std::int64_t slipped_before = schedule.slipped_ns();
     cycle_->skip(static_cast<std::uint64_t>(schedule.begin(monotonic_ns())));
@@ -171,12 +173,14 @@ void DriverProcess::loop_lockstep() noexcept {
     const double simulated_ns =
         static_cast<double>(cycle_->next_cycle()) * static_cast<double>(loop_parameters().period_ns());
     real_time_factor_.store(simulated_ns / static_cast<double>(before_ns - start_ns + 1));
-    if (await_turn()) {
+    const bool held = await_turn();
+    if (stopping().load(std::memory_order_relaxed)) return;
+    if (held) {
       start_ns += monotonic_ns() - before_ns;
       if (run != cycle_->run()) start_ns = monotonic_ns();
       run = cycle_->run();
-      continue;  // parked while the chain was not complete, it still is to be waited for
     }
+    if (held || !complete) continue;  // asked to park while the chain was not complete, it still is to be waited for
     tick();
   }
 }

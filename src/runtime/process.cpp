@@ -23,8 +23,17 @@ RealtimeParameters Process::thread_parameters() const {
 
 void Process::poll() {
   poll_channels();
-  if (thread_ != nullptr || !ready()) return;
-  thread_ = std::make_unique<RealtimeThread>(thread_parameters(), [this] { loop(); });
+  if (thread_ == nullptr && ready()) {
+    thread_ = std::make_unique<RealtimeThread>(thread_parameters(), [this] { loop(); });
+  }
+  std::vector<std::string> names = missing();
+  const std::lock_guard lock(missing_mutex_);
+  last_missing_ = std::move(names);
+}
+
+std::vector<std::string> Process::last_missing() const {
+  const std::lock_guard lock(missing_mutex_);
+  return last_missing_;
 }
 
 void Process::stop() noexcept {

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,11 @@ class Process {
   /// True once the loop has ended by itself (mujoco_plant after `cycles`).
   bool finished() const noexcept { return finished_.load(); }
 
-  /// Who this node is waiting for, by node name; empty when it has all it needs.
+  /// Who this node is waiting for, by node name; empty when it has all it needs. Only for the thread that polls.
   virtual std::vector<std::string> missing() const = 0;
+
+  /// The same as of the last `poll`; any thread.
+  std::vector<std::string> last_missing() const;
 
   /// What the real-time thread was granted and what not, in words; empty before it started.
   std::vector<std::string> realtime_messages() const;
@@ -65,6 +69,8 @@ class Process {
   std::atomic<bool> stopping_{false};
   std::atomic<bool> finished_{false};
   std::unique_ptr<RealtimeThread> thread_;
+  mutable std::mutex missing_mutex_;
+  std::vector<std::string> last_missing_;
 };
 
 /// A channel of another node, and the reader that the real-time thread uses.

@@ -25,6 +25,10 @@ std::string before(std::uint64_t cycle) {
   return "before cycle " + std::to_string(cycle);
 }
 
+ServiceAnswer ended() {
+  return {false, "the run has ended"};
+}
+
 }  // namespace
 
 std::uint64_t mint_number() {
@@ -91,7 +95,7 @@ ServiceAnswer SimulationServices::await_steps(const Steps& steps) {
   std::int64_t seen_ns = monotonic_ns();
   while (!hold_.stands(steps.number)) {
     sleep_ns(kLook);
-    if (!hold_.looping()) return {false, "the run has ended " + before(hold_.next_cycle())};
+    if (!hold_.looping()) return ended();
     if (const std::uint64_t next = hold_.next_cycle(); next != seen) {
       seen = next;
       seen_ns = monotonic_ns();
@@ -117,11 +121,12 @@ ServiceAnswer SimulationServices::reset() {
     asked_.step_until = 0;
     asked_.faults = {};
     number = ask();
+    if (asked_.parked == 0 && hold_.next_cycle() > 0) return ended();
     if (asked_.parked == 0) return {true, "no cycle has run yet" + waiting_for()};
   }
   ServiceAnswer answer{true, "a new run begins at cycle 0"};
   if (!hold_.await_stand(number, kPatience)) {
-    answer = {false, "the loop does not come to a stop" + waiting_for()};
+    answer = hold_.looping() ? ServiceAnswer{false, "the loop does not come to a stop" + waiting_for()} : ended();
   } else {
     try {
       cycle_.inject({});

@@ -26,7 +26,7 @@ std::uint64_t mint_number();
 
 class SimulationServices {
  public:
-  /// `missing`: who the loop waits for, by node name.
+  /// `missing`: who the loop waits for, by node name; any thread asks.
   SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
                      std::function<std::vector<std::string>()> missing);
 
