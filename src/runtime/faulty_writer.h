@@ -9,7 +9,8 @@
 ///   wrong                                 spoilt_frames.h
 ///
 /// Only the output fails: the law goes on beneath. Nothing here depends on the clock: a failing node does the same in
-/// `clock: wall` as in lockstep, and in one process as in four.
+/// `clock: wall` as in lockstep, and in one process as in four. A new run knows nothing of the last one: a fault that
+/// is there in its first cycle begins in that cycle.
 
 #include "hal/faulty_output.h"
 #include "rt/latest_frames.h"
@@ -25,6 +26,8 @@ class FaultyWriter {
 
   /// `frame`: complete but for its head; afterwards what was published. False: a token was. Real-time safe.
   bool publish(FrameWriter<Frame> channel, const FrameHead& head, const InjectedFaults& faults, Frame& frame) noexcept {
+    if (head.run != run_) output_.reset();
+    run_ = head.run;
     bool broken = false;
     const auto spoil_frame = [&broken](FaultKind kind, Frame& spoilt, FaultRandom& random) {
       spoil(kind, spoilt, random);
@@ -49,6 +52,7 @@ class FaultyWriter {
   static constexpr double kBrokenShare = 0.25;
 
   FaultComponent component_;
+  std::uint64_t run_ = 0;
   FaultyOutput<Frame> output_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <set>
 #include <string>
@@ -175,6 +176,21 @@ TEST_F(NodeFaults, AreTheSameInEveryRun) {
     const CommandFrame one = loop.newest_command();
     const CommandFrame two = other.newest_command();
     EXPECT_EQ(one.head.checksum, two.head.checksum) << i;
+  }
+}
+
+TEST_F(NodeFaults, OfANewRunBeginAnew) {
+  Loop other;
+  inject(FaultComponent::kController, FaultKind::kGarbage);
+  loop.steps(50);
+  inject(other, FaultComponent::kController, FaultKind::kGarbage);
+  loop.driver.begin_run(2);
+  other.driver.begin_run(2);
+  for (int i = 0; i < 50; ++i) {
+    loop.step();
+    other.step();
+    const CommandFrame one = loop.newest_command(), two = other.newest_command();
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(effort(one)), std::bit_cast<std::uint64_t>(effort(two))) << i;
   }
 }
 
