@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace robot_control {
 namespace {
@@ -49,10 +50,17 @@ class Words {
     std::string_view word = next();
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    // from_chars leaves `value` as it was where a double cannot hold it.
+    if (error == std::errc::result_out_of_range) value = is_tiny(word) ? 0 : std::numeric_limits<double>::infinity();
     return !word.empty() && end == word.data() + word.size() && error != std::errc::invalid_argument;
   }
 
  private:
+  static bool is_tiny(std::string_view word) {
+    const std::size_t exponent = word.find_first_of("eE");
+    return exponent != std::string_view::npos && word.substr(exponent + 1).starts_with('-');
+  }
+
   std::string_view rest_;
 };
 

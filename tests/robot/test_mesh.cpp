@@ -121,6 +121,14 @@ TEST_F(Mesh, InfinityIsNoPartOfIt) {
             kTriangle);
 }
 
+TEST_F(Mesh, NumbersThatADoubleCannotHoldAreZeroOrInfinity) {
+  const std::string tiny = replaced(kTextStl, "outer loop", "vertex 0 0 0", "vertex 1e-400 -1e-400 0");
+  EXPECT_EQ(read("tiny.stl", tiny), kTriangle);
+  const std::string far =
+      replaced(kTextStl, "endfacet", "endsolid", "vertex 1e400 0 0\n vertex 0 0 0\n vertex 0 0 0\nendsolid");
+  EXPECT_EQ(read("far.stl", far), kTriangle);
+}
+
 TEST_F(Mesh, AbsentFileIsRefused) {
   try {
     read_mesh(folder_.path() / "nowhere.stl");
