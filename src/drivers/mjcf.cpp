@@ -4,11 +4,11 @@
 
 #include "drivers/ground_points.h"
 #include "drivers/mjcf_shapes.h"
+#include "robot/gravity.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kGravity = 9.81;    // m/s²
 constexpr double kUnknownReach = 1;  // m
 constexpr double kSwivelPart = 0.02;
 constexpr double kSupports = 4;

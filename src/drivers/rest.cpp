@@ -4,12 +4,13 @@
 #include <cmath>
 #include <set>
 
+#include "robot/gravity.h"
+
 namespace robot_control {
 namespace {
 
 constexpr double kFallen = 30 * M_PI / 180;
 constexpr double kLeastLoad = 0.001;
-constexpr double kGravity = 9.81;  // m/s²
 
 }  // namespace
 

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "robot/gravity.h"
+
 namespace robot_control {
 namespace {
 
 using Vector = Eigen::Map<const Eigen::Vector3d>;
 
-constexpr double kGravity = 9.81;  // m/s²
 const char* const kRegion = "friction/";
 
 bool inside(const mjModel& model, const mjData& data, int region, const mjtNum* point) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "robot/wheel_drive.h"
+#include "robot/gravity.h"
 #include "robot/wording.h"
 
 namespace robot_control {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/gravity.h"
 #include "robot/overrides.h"
 #include "robot/wording.h"
 

@@ -22,7 +22,6 @@ inline constexpr double kImplausible = 10;
 inline constexpr double kLossSpeed = 1;  ///< m/s at the rim
 inline constexpr double kDriveShare = 0.05;
 inline constexpr double kCasterShare = 0.02;
-inline constexpr double kGravity = 9.81;  ///< m/s²
 
 struct DriveLimits {
   double effort = 0;    ///< N·m, above zero
