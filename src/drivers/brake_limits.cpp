@@ -5,11 +5,12 @@
 
 #include "drivers/ground_points.h"
 #include "hal/driver.h"
+#include "robot/gravity.h"
+#include "robot/wording.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s²
 constexpr double kPartOfLifting = 0.5;
 constexpr double kAlmostLifting = 0.9;
 constexpr double kLeastPart = 0.1;
@@ -44,7 +45,7 @@ Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantPara
   const double weight = robot.mass * kGravity;
   const double slope = weight * std::sin(kSlopeHeld);
   const double almost = std::min(slope, kAlmostLifting * moved * lifting);
-  const double friction = robot.bodies->moved_by(joint.name)->joint.friction;
+  const double friction = joint.friction + parameters.gear_ratio * parameters.motor_friction;
   const auto effort = [&](double force) {
     const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
     return std::min(parameters.brake_effort.value_or(std::max(share - friction, kLeastPart * share)),
@@ -64,10 +65,10 @@ Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantPara
 void check_brake(const Brake& brake, const std::string& joint, double inertia, double step) {
   const auto check = [&](const std::string& name, double value, double limit, const std::string& unit) {
     if (value > 0 && value <= limit) return;
-    throw DriverError("mujoco_plant/" + name + " = " + std::to_string(value) + " " + unit + ": joint " + joint +
-                      " has an inertia of only " + std::to_string(inertia) + " kg·m², a time step of " +
-                      std::to_string(step * 1000) + " ms bears values above 0 up to " + std::to_string(limit) + " " +
-                      unit + ". Set such a value, or leave it out.");
+    throw DriverError("mujoco_plant/" + name + " = " + number(value) + " " + unit + ": joint " + joint +
+                      " has an inertia of only " + number(inertia) + " kg·m², a time step of " + number(step * 1000) +
+                      " ms bears values above 0 up to " + number(limit) + " " + unit +
+                      ". Set such a value, or leave it out.");
   };
   check("brake_damping", brake.damping, 0.5 * inertia / step, "N·m·s/rad");
   check("brake_stiffness", brake.stiffness, 0.5 * inertia / (step * step), "N·m/rad");

@@ -8,13 +8,13 @@
 ///   stiffness   k = 0.06 J/h²
 ///   hold speed  0.03 m/s / r
 ///
-/// n drive wheels, h time step, J a wheel's inertia about its axle, r its radius, f its joint's own dry friction, which
-/// brakes as well, m the robot's mass. a is the deceleration at which wheels lift: about a support at the horizontal
-/// distance d from the centre of gravity, which is at the height c, inertia m a c outweighs m g d from a = g d / c on.
-/// d is the distance to the foremost or rearmost support, whichever is less. Supports are the ground points
-/// (ground_points.h) that are on the ground, or come to it when the robot tilts by 3° about the centre of gravity's
-/// foot. A robot that tips easily still stands on slopes of 10°; it slows down on them as far as it does not tip, and
-/// on 5° in any case. More than the ground's friction carries is harmless, the wheel then slides.
+/// n drive wheels, h time step, J a wheel's inertia about its axle, r its radius, f the dry friction of joint and
+/// motor, which brakes as well, m the robot's mass. a is the deceleration at which wheels lift: about a support at the
+/// horizontal distance d from the centre of gravity, which is at the height c, inertia m a c outweighs m g d from
+/// a = g d / c on. d is the distance to the foremost or rearmost support, whichever is less. Supports are the ground
+/// points (ground_points.h) that are on the ground, or come to it when the robot tilts by 3° about the centre of
+/// gravity's foot. A robot that tips easily still stands on slopes of 10°; it slows down on them as far as it does not
+/// tip, and on 5° in any case. More than the ground's friction carries is harmless, the wheel then slides.
 ///
 /// d and k: see joint_law.h; a factor of four to its limits.
 

@@ -64,6 +64,14 @@ TEST(BrakeOf, SlowsOnASlopeOfFiveDegreesWhateverTips) {
               1e-9);
 }
 
+TEST(BrakeOf, LeavesToTheMotorsFrictionWhatThatBrakes) {
+  MujocoPlantParameters parameters;
+  parameters.gear_ratio = 10;
+  parameters.motor_friction = 0.02;
+  const RobotModel robot = four_wheels().model();
+  EXPECT_NEAR(brake_of(robot, 0, parameters, kStep).effort, brake_of(robot, 0, {}, kStep).effort - 0.2, 1e-9);
+}
+
 TEST(BrakeOf, IsNeverStrongerThanTheDrive) {
   MadeRobot robot = four_wheels();
   robot.effort = 0.7;
@@ -117,6 +125,15 @@ TEST_F(CheckBrake, RefusesDampingThatALightWheelDoesNotBear) {
 TEST_F(CheckBrake, RefusesStiffnessThatALightWheelDoesNotBear) {
   brake_.stiffness = 2600;  // 2600 · 10⁻⁶ / 0.005 = 0.52
   EXPECT_THAT(refusal(), testing::HasSubstr("brake_stiffness"));
+}
+
+TEST(CheckBrakeOfATinyWheel, NamesItsNumbers) {
+  try {
+    check_brake({.effort = 1, .damping = 1, .stiffness = 1, .hold_speed = 1}, "tiny", 4e-7, kStep);
+    FAIL() << "accepted";
+  } catch (const DriverError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("4e-07 kg·m²"), testing::HasSubstr("up to 0.0002 ")));
+  }
 }
 
 TEST_F(CheckBrake, RefusesABrakeThatDoesNotHold) {
