@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "robot/link_inertia.h"
+
 namespace robot_control {
 namespace {
 
@@ -26,13 +28,10 @@ RigidBody& moved_by(RigidBodies& robot, const std::string& joint) {
 }
 
 void load(RigidBody& base, double mass, const Eigen::Vector3d& place) {
-  const auto shifted = [](double m, const Eigen::Vector3d& d) -> Eigen::Matrix3d {
-    return m * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
-  };
-  const Eigen::Vector3d centre = (base.mass * base.centre_of_gravity + mass * place) / (base.mass + mass);
-  base.inertia += shifted(base.mass, base.centre_of_gravity - centre) + shifted(mass, place - centre);
-  base.centre_of_gravity = centre;
-  base.mass += mass;
+  const PointInertia both = sum({base.mass, base.centre_of_gravity, base.inertia}, {.mass = mass, .centre = place});
+  base.mass = both.mass;
+  base.centre_of_gravity = both.centre;
+  base.inertia = both.inertia;
 }
 
 void load(RobotModel& robot, double mass, const Vector3& place) {
