@@ -29,6 +29,19 @@ std::string content(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// Two logs, line by line: where they part, in words; "" where they do not.
+std::string parting(const std::string& first, const std::string& second) {
+  std::istringstream a(first), b(second);
+  std::string row, other;
+  for (int line = 1;; ++line) {
+    const bool more = static_cast<bool>(std::getline(a, row));
+    const bool more_other = static_cast<bool>(std::getline(b, other));
+    if (!more && !more_other) return "";
+    if (more && more_other && row == other) continue;
+    return "line " + std::to_string(line) + ":\n" + (more ? row : "(end)") + "\n" + (more_other ? other : "(end)");
+  }
+}
+
 constexpr const char* kCurve = "1,0.5,0.2,\n1000,0.5,0.2,\n2000,0.5,0.2,\n3000,0.5,0.2,\n";
 
 /// Drives a curve in every run.
@@ -103,7 +116,7 @@ TEST_F(Services, InLockstepStepsAndResetsGiveTheBytesOfTheClosedLoop) {
   loop.reset();
   steps(kFirst);
   writer.close();
-  EXPECT_TRUE(four == content(folder_ / "one.csv"));
+  EXPECT_EQ(parting(four, content(folder_ / "one.csv")), "");
 }
 
 /// Rows of a log as numbers by column name; an empty cell is NaN.
