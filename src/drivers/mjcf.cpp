@@ -68,7 +68,7 @@ class Writer {
  private:
   void write_body(std::size_t index, const Eigen::Isometry3d& in_parent) {
     const RigidBody& body = robot_.bodies[index];
-    bodies_ += "<body" + attribute("name", escaped(body.name)) + mjcf_pose(in_parent) + ">\n";
+    bodies_ += "<body" + attribute("name", escaped(mjcf_body_name(body.name))) + mjcf_pose(in_parent) + ">\n";
     if (index == 0) {
       bodies_ += "<freejoint/>\n";
     } else {
@@ -176,6 +176,10 @@ class Writer {
 };
 
 }  // namespace
+
+std::string mjcf_body_name(const std::string& link) {
+  return link == "world" ? "robot_control/world" : link;
+}
 
 std::string mjcf_wheel_name(std::size_t wheel) {
   return "robot_control/wheel/" + std::to_string(wheel);

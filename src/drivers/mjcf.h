@@ -36,11 +36,14 @@
 
 namespace robot_control {
 
-/// Names inside the MuJoCo model; joints and bodies bear their URDF names.
+/// Names inside the MuJoCo model; joints and bodies bear their URDF names, but for what MuJoCo itself calls "world".
 inline constexpr const char* kMjcfImu = "robot_control/imu";
 inline constexpr const char* kMjcfGyro = "robot_control/gyro";
 inline constexpr const char* kMjcfAccelerometer = "robot_control/accelerometer";
 inline constexpr const char* kMjcfStart = "start";
+
+/// The body that the joint of this link moves.
+std::string mjcf_body_name(const std::string& link);
 
 /// The names of the rolling shapes: "robot_control/wheel/0" … in the order of RobotModel::wheels, then the casters'.
 std::string mjcf_wheel_name(std::size_t wheel);

@@ -97,7 +97,7 @@ void set_options(mjModel& model, double timestep, double slope, const std::array
 void find_addresses(MujocoModel& result) {
   const mjModel& model = *result.model;
   const RobotModel& robot = result.robot;
-  result.base_body = find(model, mjOBJ_BODY, robot.base_link);
+  result.base_body = find(model, mjOBJ_BODY, mjcf_body_name(robot.base_link));
   const int base_joint = model.body_jntadr[result.base_body];
   result.base_position = model.jnt_qposadr[base_joint];
   result.base_velocity = model.jnt_dofadr[base_joint];
@@ -129,7 +129,7 @@ MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& 
   const MjcfPlace place =
       place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
 
-  const std::string name = scene.stem().string() + "+" + robot.base_link + ".xml";
+  const std::string name = scene.stem().string() + "+robot.xml";
   VirtualFiles files;
   files.add(name, robot_mjcf(result.robot, parameters, place));
   // In the scene's directory, so that its own relative paths stay true.

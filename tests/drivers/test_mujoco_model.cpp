@@ -42,6 +42,20 @@ TEST_F(MujocoModelTest, FloatsOnSixAxesAndTurnsOnTwo) {
   EXPECT_EQ(compiled(kFlat).model->nv, 8);
 }
 
+// "world" is MuJoCo's own word; slashes come with prefixes of robots.
+TEST_F(MujocoModelTest, ALinkMayHaveAnyName) {
+  for (const std::string link : {"base_link", "left_wheel_link"}) {
+    for (const std::string name : {"world", "robot1/link", "../link", "a link"}) {
+      RobotDescription description = diffbot_urdf();
+      for (std::size_t at; (at = description.text.find('"' + link + '"')) != std::string::npos;) {
+        description.text.replace(at + 1, link.size(), name);
+      }
+      robot_ = read_robot(description, {});
+      EXPECT_NEAR(compiled(kFlat).model->body_subtreemass[1], 12.0, 1e-9) << link << ' ' << name;
+    }
+  }
+}
+
 TEST_F(MujocoModelTest, APeriodIsCutIntoStepsOfAtMostOneMillisecond) {
   for (const auto& [period, steps] : {std::pair{0.01, 10}, {0.002, 2}, {0.001, 1}, {0.0005, 1}, {1.0 / 300, 4}}) {
     const MujocoModel model = compiled(kFlat, period);
