@@ -44,24 +44,27 @@ class RealRobot : public testing::TestWithParam<const char*> {
     const std::vector<JointCommand> brakes(robot_.joints.size());
     for (int k = 0; k < steps; ++k) plant_->write(brakes);
   }
-  /// Ramps to `speed` (m/s) in two seconds and goes on for one, with wheel loops as the controller's.
-  void drive(double speed) {
-    std::vector<double> integral(robot_.wheels.size());
-    for (int k = 1; k <= 3000; ++k) {
-      std::vector<JointCommand> commands(robot_.joints.size());
-      SensorFrame sensors;
-      plant_->read(sensors);
-      for (const WheelModel& wheel : robot_.wheels) {
-        JointCommand& command = commands[wheel.joint];
-        command.mode = JointMode::kVelocity;
-        command.velocity = std::min(1.0, k / 2000.0) * speed / wheel.radius * wheel.sign;
-        command.damping = 0.4 * wheel.inertia / 0.001;
-        integral[wheel.joint] +=
-            command.damping / 0.1 * (command.velocity - sensors.joints[wheel.joint].velocity) * 0.001;
-        command.effort = integral[wheel.joint];
-      }
-      plant_->write(commands);
+  /// One cycle with the rims at these speeds (m/s), with wheel loops as the controller's.
+  void step(double left, double right) {
+    std::vector<JointCommand> commands(robot_.joints.size());
+    SensorFrame sensors;
+    plant_->read(sensors);
+    integral_.resize(robot_.wheels.size());
+    for (const WheelModel& wheel : robot_.wheels) {
+      JointCommand& command = commands[wheel.joint];
+      command.mode = JointMode::kVelocity;
+      command.velocity = (wheel.side == Side::kLeft ? left : right) / wheel.radius * wheel.sign;
+      command.damping = 0.4 * wheel.inertia / 0.001;
+      integral_[wheel.joint] +=
+          command.damping / 0.1 * (command.velocity - sensors.joints[wheel.joint].velocity) * 0.001;
+      command.effort = integral_[wheel.joint];
     }
+    plant_->write(commands);
+  }
+  /// Ramps the rims to these speeds (m/s) in two seconds and goes on for one.
+  void drive(double left, double right) {
+    integral_.clear();
+    for (int k = 1; k <= 3000; ++k) step(std::min(1.0, k / 2000.0) * left, std::min(1.0, k / 2000.0) * right);
   }
   double full_speed() const {
     double speed = 1;  // m/s, where the description knows none
@@ -81,6 +84,7 @@ class RealRobot : public testing::TestWithParam<const char*> {
 
   RobotModel robot_;
   std::unique_ptr<MujocoPlant> plant_;
+  std::vector<double> integral_;
 };
 
 TEST_P(RealRobot, WeighsWhatItsLinksWeigh) {
@@ -96,7 +100,7 @@ TEST_P(RealRobot, StandsStillForHalfAMinute) {
 
 TEST_P(RealRobot, StopsHardFromFullSpeedWithoutTipping) {
   for (const double direction : {1.0, -1.0}) {
-    drive(direction * full_speed());
+    drive(direction * full_speed(), direction * full_speed());
     double tipped = 0;
     for (int k = 0; k < 3000; ++k) {
       brake(1);
@@ -105,6 +109,21 @@ TEST_P(RealRobot, StopsHardFromFullSpeedWithoutTipping) {
     EXPECT_LT(tipped, 10 * M_PI / 180);
     EXPECT_NEAR(truth().twist_base.linear[0], 0, 0.001);
   }
+}
+
+// At 0.5 rad/s, or what the wheels' speed limits leave of it.
+TEST_P(RealRobot, TurnsWithoutHopping) {
+  const double rim = std::min(0.25 * robot_.effective_wheel_base(), 0.6 * full_speed());
+  drive(-rim, rim);
+  int grounded = 0;
+  for (int k = 0; k < 2000; ++k) {
+    step(-rim, rim);
+    const TruthFrame frame = truth();
+    const auto* first = frame.normal_force.begin();
+    grounded += std::all_of(first, first + robot_.wheels.size(), [](double force) { return force > 0; });
+  }
+  EXPECT_GT(grounded, 1980);
+  EXPECT_GT(truth().twist_base.angular[2], 0.8 * 2 * rim / robot_.effective_wheel_base()) << "it does turn";
 }
 
 INSTANTIATE_TEST_SUITE_P(Corpus, RealRobot,
