@@ -1,6 +1,6 @@
 """Descriptions of real robots drive as they are: nothing written by hand."""
 
-import time
+import os
 
 import corpus
 import numpy as np
@@ -28,6 +28,11 @@ def make(robot: CorpusRobot, **params) -> ClosedLoop:
     return ClosedLoop(urdf=robot.urdf, params=params or None)
 
 
+def processor_time() -> float:
+    """s, of this process and of those that read meshes for it."""
+    return sum(os.times()[:4])
+
+
 def rim_speeds(loop: ClosedLoop, log, side: str) -> np.ndarray:
     """Mean rim speed [m/s] of a side's wheels, forward positive, shape (cycles,)."""
     wheels = [wheel for wheel in loop.robot["wheels"] if wheel["side"] == side]
@@ -37,9 +42,9 @@ def rim_speeds(loop: ClosedLoop, log, side: str) -> np.ndarray:
 
 
 def test_is_understood_as_it_is_in_under_two_seconds(robot):
-    began = time.process_time()
+    began = processor_time()
     loop = make(robot)
-    assert time.process_time() - began < 2.0
+    assert processor_time() - began < 2.0
     truth, model = robot.truth, loop.robot
     for side in ("left", "right"):
         wheels = {wheel["joint"]: wheel for wheel in model["wheels"] if wheel["side"] == side}
