@@ -15,6 +15,7 @@
 #include "drivers/mujoco_errors.h"
 #include "drivers/true_robot.h"
 #include "hal/driver.h"
+#include "robot/wording.h"
 
 namespace robot_control {
 namespace {
@@ -43,7 +44,10 @@ class VirtualFiles {
 ModelPointer load(const std::string& path, const mjVFS* files, const std::string& blamed) {
   std::array<char, 1000> error{};
   ModelPointer model(mj_loadXML(path.c_str(), files, error.data(), static_cast<int>(error.size())));
-  if (!model) throw DriverError(blamed + ": MuJoCo does not compile it: " + error.data());
+  if (!model) {
+    throw DriverError(blamed + ": MuJoCo does not compile it: " + on_one_line(error.data()) +
+                      ". Mend the scene, or set another one (mujoco_plant/scene).");
+  }
   return model;
 }
 
@@ -124,6 +128,9 @@ std::string read_file(const std::filesystem::path& path) {
 MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
+  if (std::error_code error; !std::filesystem::is_regular_file(scene, error)) {
+    throw DriverError(scene.string() + ": there is no such file. Set mujoco_plant/scene to the path of an MJCF file.");
+  }
   MujocoModel result;
   result.robot = true_robot(robot, parameters);
   const MjcfPlace place =

@@ -40,4 +40,10 @@ bool says_right(const std::string& name) {
   return lower_case(name).find("right") != std::string::npos;
 }
 
+std::string on_one_line(std::string text) {
+  text.erase(text.find_last_not_of(" \n") + 1);
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at)) text.replace(at, 1, "; ");
+  return text;
+}
+
 }  // namespace robot_control

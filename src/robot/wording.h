@@ -21,4 +21,7 @@ bool says_right(const std::string& name);
 
 std::string lower_case(std::string text);
 
+/// The lines of a message, with "; " between them.
+std::string on_one_line(std::string text);
+
 }  // namespace robot_control

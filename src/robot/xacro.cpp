@@ -6,6 +6,7 @@
 
 #include "robot/other_process.h"
 #include "robot/urdf_document.h"
+#include "robot/wording.h"
 
 namespace robot_control {
 namespace {
@@ -31,13 +32,6 @@ std::string python() {
 std::string python_path() {
   const std::string sourced = environment("PYTHONPATH");
   return "PYTHONPATH=" + (sourced.empty() ? "" : sourced + ":") + ROBOT_CONTROL_PROJECT "/scripts";
-}
-
-/// A message of several lines as one.
-std::string on_one_line(std::string text) {
-  text.erase(text.find_last_not_of(" \n") + 1);
-  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at)) text.replace(at, 1, "; ");
-  return text;
 }
 
 }  // namespace
