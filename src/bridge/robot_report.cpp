@@ -2,24 +2,10 @@
 
 #include <sstream>
 
+#include "robot/wording.h"
+
 namespace robot_control {
 namespace {
-
-const char* word_of(RobotNote::Kind kind) {
-  switch (kind) {
-    case RobotNote::Kind::kAssumed:
-      return "assumed";
-    case RobotNote::Kind::kRepaired:
-      return "repaired";
-    case RobotNote::Kind::kIgnored:
-      return "ignored";
-    case RobotNote::Kind::kOverridden:
-      return "overridden";
-    case RobotNote::Kind::kSuspicious:
-      return "suspicious";
-  }
-  return "";
-}
 
 std::string names_of_side(const RobotModel& robot, Side side) {
   std::string names;
@@ -43,7 +29,7 @@ std::string summary(const RobotModel& robot) {
 }
 
 std::string sentence(const RobotNote& note) {
-  return std::string(word_of(note.kind)).append(": ").append(note.element).append(": ").append(note.text);
+  return std::string(name_of(note.kind)).append(": ").append(note.element).append(": ").append(note.text);
 }
 
 bool needs_a_look(const RobotNote& note) {

@@ -7,6 +7,7 @@
 
 #include "robot/mesh.h"
 #include "robot/rigid_bodies.h"
+#include "robot/wording.h"
 
 namespace py = pybind11;
 
@@ -26,11 +27,6 @@ const char* name_of(JointType type) {
 const char* name_of(ShapeType type) {
   constexpr std::array<const char*, 4> kNames{"sphere", "cylinder", "box", "mesh"};
   return kNames.at(static_cast<std::size_t>(type));
-}
-
-const char* name_of(RobotNote::Kind kind) {
-  constexpr std::array<const char*, 5> kNames{"assumed", "repaired", "ignored", "overridden", "suspicious"};
-  return kNames.at(static_cast<std::size_t>(kind));
 }
 
 std::vector<double> plain(const Eigen::Vector3d& vector) {

@@ -1,5 +1,5 @@
-/// Real robots, as their makers publish them, on the plant alone: they stand still and stop without tipping. Skipped
-/// where they are absent: a folder `shared/robots` above the repository, or the one named by ROBOT_CORPUS.
+/// Real robots, as their makers publish them, on the plant alone: they stand still and stop without tipping
+/// (support/corpus.h).
 
 #include <gtest/gtest.h>
 
@@ -7,24 +7,17 @@
 #include <filesystem>
 
 #include "plant_fixture.h"
+#include "support/corpus.h"
 
 namespace robot_control {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path corpus() {
-  if (const char* named = std::getenv("ROBOT_CORPUS")) return named;
-  for (fs::path folder = PROJECT_DIRECTORY; folder != folder.root_path(); folder = folder.parent_path()) {
-    if (fs::exists(folder / "shared/robots/TRUTH.json")) return folder / "shared/robots";
-  }
-  return {};
-}
-
 class RealRobot : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (corpus().empty()) GTEST_SKIP() << "no folder of real robots: set ROBOT_CORPUS";
+    if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
     const fs::path folder = corpus() / GetParam();
     setenv("ROS_PACKAGE_PATH", folder.c_str(), 1);
     MujocoPlantParameters parameters;

@@ -1,14 +1,13 @@
-/// Real robots against their truth (TRUTH.json, read as the YAML that it is). Skipped where the descriptions are
-/// absent: a folder `shared/robots` above the repository, or the one named by ROBOT_CORPUS.
+/// Real robots (support/corpus.h) against their truth: TRUTH.json, read as the YAML that it is.
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 
 #include "robot/robot_model.h"
+#include "support/corpus.h"
 
 namespace robot_control {
 namespace {
@@ -16,14 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kOnePercent = 0.01;
-
-fs::path corpus() {
-  if (const char* named = std::getenv("ROBOT_CORPUS")) return named;
-  for (fs::path folder = PROJECT_DIRECTORY; folder != folder.root_path(); folder = folder.parent_path()) {
-    if (fs::exists(folder / "shared/robots/TRUTH.json")) return folder / "shared/robots";
-  }
-  return {};
-}
 
 std::vector<std::string> robots() {
   std::vector<std::string> names;
@@ -37,7 +28,7 @@ std::vector<std::string> robots() {
 class RobotCorpus : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (corpus().empty()) GTEST_SKIP() << "no folder of real robots: set ROBOT_CORPUS";
+    if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
     truth_ = YAML::LoadFile((corpus() / "TRUTH.json").string())[GetParam()];
     const auto start = std::chrono::steady_clock::now();
     robot_ = read_robot(load_description((corpus() / GetParam() / "robot.urdf").string()), {});
@@ -92,7 +83,8 @@ TEST_P(RobotCorpus, TwoReadingsAreEqual) {
   EXPECT_EQ(again.notes.size(), robot_.notes.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, RobotCorpus, testing::ValuesIn(robots()), [](const auto& robot) { return robot.param; });
+INSTANTIATE_TEST_SUITE_P(Robots, RobotCorpus, testing::ValuesIn(robots()),
+                         [](const auto& robot) { return robot.param; });
 
 std::string refusal_of_robot(const std::string& name) {
   try {
@@ -104,12 +96,12 @@ std::string refusal_of_robot(const std::string& name) {
 }
 
 TEST(RobotCorpusRefusals, AnEmptyTemplateHasNoWheels) {
-  if (corpus().empty()) GTEST_SKIP() << "no folder of real robots: set ROBOT_CORPUS";
+  if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
   EXPECT_NE(refusal_of_robot("my_bot").find("no drive wheels found: no joint turns"), std::string::npos);
 }
 
 TEST(RobotCorpusRefusals, WheelsOnFixedJointsAreNone) {
-  if (corpus().empty()) GTEST_SKIP() << "no folder of real robots: set ROBOT_CORPUS";
+  if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
   EXPECT_NE(refusal_of_robot("p3dx_amr").find("left_wheel_joint: it is fixed"), std::string::npos);
 }
 
