@@ -30,6 +30,17 @@ RobotDescription chosen_description(const Parameters& parameters, bool urdf_aske
   return {published, name};
 }
 
+void forget_argument() {
+  ros::param::del("~urdf");
+}
+
+std::string unread_description(const RobotDescription& chosen, const std::string& published, const std::string& name,
+                               const std::string& asked_for) {
+  if (published.empty() || published == chosen.text) return "";
+  return name + " holds another robot and is not read: " + asked_for + " = " + chosen.source +
+         " goes before it, perhaps left over from an earlier launch: then `rosparam delete " + asked_for + "`";
+}
+
 PublishedDescription::PublishedDescription(const RobotModel& robot, const std::string& urdf) {
   ros::param::get(kDescription, description_before_);
   changed_description_ = description_before_ != robot.urdf;
@@ -38,7 +49,7 @@ PublishedDescription::PublishedDescription(const RobotModel& robot, const std::s
   ros::param::get(kUrdf, urdf_before_);
   changed_urdf_ = urdf_before_ != urdf;
   if (changed_urdf_) ros::param::set(kUrdf, urdf);
-  ros::param::del("~urdf");  // an argument of this start, not of the next one
+  forget_argument();
 }
 
 PublishedDescription::~PublishedDescription() {

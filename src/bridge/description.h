@@ -22,6 +22,14 @@ namespace robot_control {
 RobotDescription chosen_description(const Parameters& parameters, bool urdf_asked_for, const std::string& published,
                                     const std::string& name);
 
+/// Says that `asked_for` ("/robot/urdf"), perhaps left over from an earlier launch, went before another description on
+/// the server; empty where that is none or the same.
+std::string unread_description(const RobotDescription& chosen, const std::string& published, const std::string& name,
+                               const std::string& asked_for);
+
+/// Takes `~urdf` off the server: an argument of this start, refused or not, is not one of the next start.
+void forget_argument();
+
 /// What a plant leaves on the parameter server while it lives.
 class PublishedDescription {
  public:

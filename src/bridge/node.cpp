@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <clocale>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 
+#include "bridge/description.h"
 #include "bridge/diagnostics.h"
 #include "bridge/messages.h"
 #include "rt/clock.h"
@@ -131,6 +133,7 @@ class NodeLoop {
 
 int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
+  std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep their point
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
     catch_signals();
@@ -143,6 +146,7 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
     ros::NodeHandle handle;
     catch_signals();  // again: ROS puts a handler of its own
     for (const std::string& text : setup.overrides) ROS_INFO("%s", text.c_str());
+    if (!setup.unread_description.empty()) ROS_WARN("%s", setup.unread_description.c_str());
     node->connect(handle);
     ros::AsyncSpinner callbacks(kCallbackThreads);
     callbacks.start();
@@ -151,6 +155,7 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
     callbacks.stop();
     return 0;
   } catch (const std::exception& error) {
+    if (ros::isInitialized()) forget_argument();
     std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), error.what());
     return 1;
   }

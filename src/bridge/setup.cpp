@@ -41,12 +41,17 @@ std::vector<Overlay> server_overlays(const std::string& node) {
   return overlays;
 }
 
-RobotDescription description(const Parameters& parameters, const std::vector<Overlay>& overlays) {
+RobotDescription description(const Parameters& parameters, const std::vector<Overlay>& overlays, std::string& unread) {
   const std::string name = ros::names::resolve("robot_description");
   std::string published;
   ros::param::get(name, published);
-  const bool asked_for = std::ranges::any_of(overlays, [](const Overlay& o) { return o.path == "robot.urdf"; });
-  return chosen_description(parameters, asked_for, published, name);
+  std::string asked_for;  // the last one holds
+  for (const Overlay& overlay : overlays) {
+    if (overlay.path == "robot.urdf") asked_for = overlay.origin;
+  }
+  RobotDescription chosen = chosen_description(parameters, !asked_for.empty(), published, name);
+  if (asked_for == ros::names::resolve("robot/urdf")) unread = unread_description(chosen, published, name, asked_for);
+  return chosen;
 }
 
 void add(std::string& problems, const std::string& problem) {
@@ -88,7 +93,7 @@ void fill_setup(const std::string& node, Setup& setup) {
   ros::param::get("/use_sim_time", use_sim_time);
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
   try {
-    setup.robot = read_robot(description(setup.parameters, overlays), setup.parameters.robot);
+    setup.robot = read_robot(description(setup.parameters, overlays, setup.unread_description), setup.parameters.robot);
     std::string& base_frame = setup.parameters.report.base_frame;
     if (base_frame.empty()) base_frame = setup.robot.base_link;
   } catch (const RobotError& error) {

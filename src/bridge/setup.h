@@ -24,6 +24,7 @@ struct Setup {
   RobotModel robot;
   std::string bus;
   std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
+  std::string unread_description;      ///< that another robot_description stands on the server, or empty
 };
 
 /// `clock: wall` with /use_sim_time = true would stamp and time everything wrongly, `clock: lockstep` without it

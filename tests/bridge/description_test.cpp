@@ -39,6 +39,14 @@ TEST_F(ChosenDescription, KnowsTheFolderOfATextThatItHasRead) {
   EXPECT_EQ(chosen(false, chosen(false, "").text).source, parameters_.urdf);
 }
 
+TEST_F(ChosenDescription, SaysThatAnotherOneIsNotRead) {
+  const RobotDescription file = chosen(true, "<robot/>");
+  EXPECT_THAT(unread_description(file, "<robot/>", "/robot_description", "/robot/urdf"),
+              HasSubstr("rosparam delete /robot/urdf"));
+  EXPECT_EQ(unread_description(file, file.text, "/robot_description", "/robot/urdf"), "");
+  EXPECT_EQ(unread_description(file, "", "/robot_description", "/robot/urdf"), "");
+}
+
 TEST_F(ChosenDescription, NeedsNoFileWhereOneIsPublished) {
   parameters_.urdf = "/nowhere.urdf";
   EXPECT_EQ(chosen(false, "<robot/>").text, "<robot/>");
