@@ -143,7 +143,8 @@ class Search {
     std::erase_if(candidates_, [&](const RollingBody& candidate) {
       const double away = std::abs(candidate.wheel.centre_base[1] - middle);
       if (away > std::max(kFloorTolerance, 0.1 * candidate.wheel.radius)) return false;
-      reject(robot_.bodies[candidate.body].joint.name, "it stands on the middle line");
+      reject(robot_.bodies[candidate.body].joint.name,
+             "it stands on the middle line, y " + number(middle) + " m, halfway between the outermost wheels");
       return true;
     });
   }
