@@ -52,7 +52,7 @@ namespace robot_control {
 
 class MujocoPlant final : public Driver {
  public:
-  /// `period` in s. Throws DriverError: see compile_model and brake_of.
+  /// `period` in s. Throws DriverError: see compile_model, WheelContacts and brake_of.
   MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
   void start() override;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "hal/driver.h"
 #include "robot/gravity.h"
 
 namespace robot_control {
@@ -27,6 +28,15 @@ bool inside(const mjModel& model, const mjData& data, int region, const mjtNum* 
   return sum <= 1;
 }
 
+void check_region(const mjModel& model, int region, const std::string& scene) {
+  const int type = model.geom_type[region];
+  const bool known = type == mjGEOM_BOX || type == mjGEOM_SPHERE || type == mjGEOM_ELLIPSOID;
+  if (known && model.geom_contype[region] == 0 && model.geom_conaffinity[region] == 0) return;
+  throw DriverError(scene + ": shape \"" + mj_id2name(&model, mjOBJ_GEOM, region) +
+                    "\": a region of friction is a box, a sphere or an ellipsoid that collides with nothing. Give it "
+                    "such a type, contype=\"0\" and conaffinity=\"0\", or another name.");
+}
+
 }  // namespace
 
 WheelContacts::WheelContacts(const MujocoModel& model, const MujocoPlantParameters& parameters)
@@ -46,7 +56,9 @@ WheelContacts::WheelContacts(const MujocoModel& model, const MujocoPlantParamete
   }
   for (int geom = 0; geom < model_->ngeom; ++geom) {
     const char* name = mj_id2name(model_, mjOBJ_GEOM, geom);
-    if (name != nullptr && std::strncmp(name, kRegion, std::strlen(kRegion)) == 0) regions_.push_back(geom);
+    if (name == nullptr || std::strncmp(name, kRegion, std::strlen(kRegion)) != 0) continue;
+    check_region(*model_, geom, parameters.scene);
+    regions_.push_back(geom);
   }
   measure_tyres(model);
 }

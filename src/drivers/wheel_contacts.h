@@ -33,6 +33,7 @@ namespace robot_control {
 
 class WheelContacts {
  public:
+  /// Throws DriverError: a region that is none of the shapes above, or collides.
   WheelContacts(const MujocoModel& model, const MujocoPlantParameters& parameters);
 
   /// Nothing touches, all tyres are relaxed.

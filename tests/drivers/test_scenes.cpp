@@ -57,6 +57,20 @@ TEST_F(SceneTest, WheelsSpinOnTheIceAndGripBehindIt) {
   EXPECT_LT(truth(*plant).slip[0], 1e-3);
 }
 
+TEST_F(SceneTest, AnotherShapeIsNoRegionOfFriction) {
+  const auto with = [&](const std::string& region) {
+    return refusal(scene_file("region.xml", R"(<mujoco><worldbody><geom type="plane" size="9 9 1"/><site name="start"/>
+      <geom name="friction/ice" )" + region + R"( friction="0.1 0 0"/></worldbody></mujoco>)"));
+  };
+  const std::string through = R"( contype="0" conaffinity="0")";
+  EXPECT_EQ(with(R"(type="box" size="1 1 0.01" pos="3 0 0")" + through), "accepted");
+  for (const std::string& region :
+       {R"(type="cylinder" size="1 0.01" pos="3 0 0")" + through, R"(type="plane" size="1 1 1")" + through,
+        std::string(R"(type="box" size="1 1 0.01" pos="3 0 0")")}) {
+    EXPECT_THAT(with(region), testing::AllOf(testing::HasSubstr("region.xml"), testing::HasSubstr("friction/ice")));
+  }
+}
+
 TEST_F(SceneTest, WallsStopTheRobot) {
   auto plant = in("walls.xml");
   hold(*plant, both(velocity_command(5), velocity_command(5)), 8);
