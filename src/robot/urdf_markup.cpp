@@ -104,6 +104,17 @@ void check_percent(const RobotDescription& description, const TiXmlElement& elem
   }
 }
 
+void check_size(const RobotDescription& description, const TiXmlElement& robot) {
+  std::size_t links = 0;
+  for (const TiXmlElement* link = robot.FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link")) {
+    ++links;
+  }
+  if (links <= kMostLinks) return;
+  refuse(description.source, "<robot>", std::to_string(links) + " links",
+         "At most " + std::to_string(kMostLinks) + " are read; join those that never move against each other");
+}
+
 std::set<std::string> words(const std::string& text) {
   std::set<std::string> result;
   std::string word;
@@ -218,6 +229,7 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
        joint = joint->NextSiblingElement("joint")) {
     check_joint(description, *joint);
   }
+  check_size(description, *root);
   check_tree(description, *root);
   return *root;
 }

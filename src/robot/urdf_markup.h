@@ -10,6 +10,7 @@
 
 #include <tinyxml.h>
 
+#include <cstddef>
 #include <set>
 #include <string>
 
@@ -18,10 +19,12 @@
 namespace robot_control {
 
 inline constexpr int kDeepest = 100;
+inline constexpr std::size_t kMostLinks = 2000;  ///< what is built on them descends by recursion
 
 /// Fills `xml` and returns its `<robot>`. Throws RobotError with the line: not well-formed, another or a second root
 /// element, a joint whose type is unknown, floating or planar, a revolute joint without limits, a link with two
-/// parents, links in a ring, elements nested deeper than kDeepest, a percent sign outside file names.
+/// parents, links in a ring, elements nested deeper than kDeepest, more than kMostLinks links, a percent sign
+/// outside file names.
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml);
 
 /// The joints that something drives, in the words of ROS 1, ROS 2 and Gazebo: named by a <transmission>, given a

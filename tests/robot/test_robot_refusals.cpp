@@ -221,6 +221,17 @@ TEST(RobotRefusals, AMillionElementsInOneAnother) {
   EXPECT_THAT(refusal({deep, "diffbot.urdf"}), names("XML", "deep"));
 }
 
+TEST(RobotRefusals, AChainOfTooManyLinks) {
+  std::string text = two_wheels(), parent = "base_link";
+  for (int i = 0; i < 20000; ++i) {
+    const std::string name = "link" + std::to_string(i);
+    text +=
+        link(name, "") + joint({.name = "to_" + name, .child = name, .type = "fixed", .axis = "", .parent = parent});
+    parent = name;
+  }
+  EXPECT_THAT(refusal_of(robot_of(text)), HasSubstr("20003 links. At most 2000 are read"));
+}
+
 TEST(RobotRefusals, AnAxisWithoutDirection) {
   EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>")),
               names("left_wheel_joint", "axis"));
