@@ -263,6 +263,16 @@ def test_derived_gains_hold_the_commanded_motion_at_every_rate(rate):
     assert moved(drive(loop, 5.0, (0.0, 0.0))) < 1e-3
 
 
+@pytest.mark.parametrize(("gains", "cycles"), [({}, 2), ({"pid_kp": 1.0, "pid_ki": 5.0}, 10)])
+@pytest.mark.parametrize("where", ["actuator_delay", "sensor_delay"])
+def test_gains_bear_delays(gains, cycles, where):
+    """A limit cycle takes all of the 3.5 N·m."""
+    log = drive(ClosedLoop({"mujoco_plant": {where: cycles}, "diff_drive_controller": gains}), 4.0)
+    steady = log["time"] > 2.0
+    assert np.mean(log["truth_linear"][steady]) == pytest.approx(0.5, rel=0.01)
+    assert np.std(log["left_wheel_joint_effort"][steady]) < 0.35
+
+
 def test_refuses_wrong_parameters_all_at_once():
     with pytest.raises(ParameterError) as refusal:
         ClosedLoop({"robot": {"rate": 5}, "diff_drive_controller": {"pid_pk": 1, "max_linear_speed": math.nan}})
