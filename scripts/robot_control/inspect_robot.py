@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> None:
             from robot_control.robot_picture import draw_robot
 
             draw_robot(robot, options.picture)
-    except (RobotError, ParameterError, DriverError, OSError) as error:
+    except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:  # a format unknown to matplotlib
         sys.exit(f"inspect_robot.py: {error}")
     print(_json(robot) if options.json else report(robot))
     for written in (options.mjcf, options.picture):

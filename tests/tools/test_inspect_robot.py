@@ -184,3 +184,9 @@ def test_a_file_that_cannot_be_written_is_one_message(tmp_path):
     done = inspect(DIFFBOT, "--mjcf", tmp_path / "nowhere/bot.xml")
     assert done.returncode == 1
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_picture_in_no_known_format_is_one_message(tmp_path):
+    done = inspect(DIFFBOT, "--picture", tmp_path / "bot.jpgg")
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1
