@@ -87,9 +87,11 @@ void MujocoPlant::settle() {
                       ". Look at how low the wheels reach, and the <collision> shapes of the rest.");
   }
   if (rested < kRestTime && !at_rest(model_, *data_, kLastRestSpeed, kLastJointSpeed)) {
-    throw DriverError(where +
-                      "with its brakes on the robot does not come to rest at the site \"start\". Put the site "
-                      "on a plane, z upwards from it, less steep than brakes and friction can hold.");
+    throw DriverError(
+        where +
+        "with its brakes on the robot does not come to rest at the site \"start\". Put the site "
+        "on a plane, z upwards from it, less steep than brakes and friction can hold; where the centre of "
+        "gravity lies over the only axle, put it where casters carry a part of it.");
   }
   data_->time = 0;
   std::copy_n(data_->qpos + model_.base_position, 7, origin_.begin());
