@@ -57,6 +57,8 @@ class Writer {
     base.translation() = Eigen::Vector3d(place.pose[0], place.pose[1], place.pose[2]);
     base.linear() = Eigen::Quaterniond(place.pose[3], place.pose[4], place.pose[5], place.pose[6]).toRotationMatrix();
     write_body(0, base);
+    // A viewer opens with the robot in sight, not with all of the ground.
+    text += "<statistic extent=\"1\"" + attribute("center", mjcf_numbers(base.translation())) + "/>\n";
     text += "<asset>\n" + assets_ + "</asset>\n<worldbody>\n" + bodies_ + "</worldbody>\n";
     text += "<equality>\n" + equalities_ + "</equality>\n<sensor>\n";
     text += "<gyro" + attribute("name", kMjcfGyro) + attribute("site", kMjcfImu) + " noise=\"0\" cutoff=\"0\"/>\n";
