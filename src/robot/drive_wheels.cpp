@@ -81,6 +81,7 @@ class Search {
     for (std::vector<RollingBody> pairs : {driven, candidates_}) {
       if (pairs.empty()) continue;
       objection = sort_into_pairs(robot_, pairs);
+      if (objection.empty() && driven.empty()) objection = hanging_objection(pairs);
       if (objection.empty()) return pairs;
     }
     std::string text = "which wheels drive is not clear: " + objection + ". Candidates: ";
@@ -126,8 +127,21 @@ class Search {
       const double gap = lowest_point(candidate.wheel) - floor;
       if (gap <= kFloorTolerance + suspension_travel(robot_, candidate.body)) return false;
       reject(robot_.bodies[candidate.body].joint.name, "it ends " + number(gap) + " m above the lowest wheel");
+      hanging_.push_back(candidate);
       return true;
     });
+  }
+
+  /// Smaller wheels whose hubs are level with those of the drive wheels.
+  std::string hanging_objection(const std::vector<RollingBody>& wheels) const {
+    for (const RollingBody& hanging : hanging_) {
+      for (const RollingBody& wheel : wheels) {
+        if (std::abs(hanging.wheel.centre_base[2] - wheel.wheel.centre_base[2]) > kFloorTolerance) continue;
+        return "their radii differ by more than 1 %: " + described(robot_, hanging) + " and " +
+               described(robot_, wheel);
+      }
+    }
+    return "";
   }
 
   void drop_those_on_the_middle_line() {
@@ -151,7 +165,8 @@ class Search {
 
   const RigidBodies& robot_;
   std::vector<RollingBody> candidates_;
-  std::size_t rolling_ = 0;  // candidates at any height
+  std::vector<RollingBody> hanging_;  // above the floor
+  std::size_t rolling_ = 0;           // candidates at any height
   std::string rejected_;
 };
 

@@ -179,6 +179,12 @@ TEST(DriveWheels, PairsOfTwoRadiiAreNotGuessed) {
                     HasSubstr("robot/left_wheel_joints")));
 }
 
+TEST(DriveWheels, SmallerWheelsLevelWithTheDriveWheelsAreNotOverlooked) {
+  EXPECT_THAT(refusal_of(robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 0", "0.08") +
+                                  wheel("rear_right", "-0.3 -0.25 0", "0.08"))),
+              AllOf(HasSubstr("radii differ"), HasSubstr("rear_left (x -0.3 m")));
+}
+
 TEST(DriveWheels, AWheelWithoutItsCounterpartIsNotGuessed) {
   EXPECT_THAT(refusal_of(robot_of(base() + wheel("left", "0 0.25 0"))),
               AllOf(HasSubstr("there is only one. Candidates: left (x 0 m"), HasSubstr("robot/left_wheel_joints")));
