@@ -1,5 +1,6 @@
 #include "drivers/mujoco_plant.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -61,12 +62,25 @@ void MujocoPlant::start() {
   measure();
 }
 
+/// Where the base is, its heading in the plane it stands on; how it leans there is a part of its pose.
+void MujocoPlant::set_origin() {
+  const mjtNum* base = data_->qpos + model_.base_position;
+  const Eigen::Vector3d up(model_.up[0], model_.up[1], model_.up[2]);
+  const Eigen::Vector3d forward = Eigen::Quaterniond(base[3], base[4], base[5], base[6]) * Eigen::Vector3d::UnitX();
+  Eigen::Matrix3d axes;
+  axes.col(2) = up;
+  axes.col(0) = (forward - forward.dot(up) * up).normalized();
+  axes.col(1) = up.cross(axes.col(0));
+  const Eigen::Quaterniond orientation(axes);
+  origin_ = {base[0], base[1], base[2], orientation.w(), orientation.x(), orientation.y(), orientation.z()};
+}
+
 void MujocoPlant::settle() {
   const std::string where = model_.robot.source + " in scene " + parameters_.scene + ": ";
   const double step = model_.model->opt.timestep;
   mj_step1(model_.model.get(), data_.get());
   wheels_.observe(*data_);
-  std::copy_n(data_->qpos + model_.base_position, 7, origin_.begin());
+  set_origin();
   double rested = 0;
   for (double time = 0; time < kSettleTime && rested < kRestTime; time += model_.substeps * step) {
     simulate(brakes_);
@@ -94,9 +108,9 @@ void MujocoPlant::settle() {
         "gravity lies over the only axle, put it where casters carry a part of it.");
   }
   data_->time = 0;
-  std::copy_n(data_->qpos + model_.base_position, 7, origin_.begin());
+  set_origin();
   const double push[3] = {parameters_.push_x, parameters_.push_y, parameters_.push_z};
-  mju_rotVecQuat(push_.data(), push, origin_.data() + 3);
+  mju_rotVecQuat(push_.data(), push, data_->qpos + model_.base_position + 3);
   settled_ = true;
   collect();
 }

@@ -75,6 +75,7 @@ class MujocoPlant final : public Driver {
   std::span<const JointCommand> received(std::span<const JointCommand> commands) noexcept;
   void simulate(std::span<const JointCommand> commands) noexcept;
   bool advance(std::span<const JointCommand> commands) noexcept;
+  void set_origin();
   void settle();
   void push() noexcept;
   void collect() noexcept;
@@ -93,7 +94,7 @@ class MujocoPlant final : public Driver {
   SensorErrors sensor_errors_;
   SensorFaults sensor_faults_;
   std::vector<JointCommand> brakes_;
-  std::array<double, 7> origin_{};  ///< qpos of the base at time zero
+  std::array<double, 7> origin_{};  ///< of truth: position, quaternion w x y z
   std::array<double, 3> push_{};    ///< N, world axes
   bool settled_ = false;
 

@@ -12,7 +12,7 @@ namespace robot_control {
 
 struct TruthFrame {
   FrameHead head;
-  Pose pose_world;   ///< base_link in the world, minus its pose at cycle 0 (so that truth begins at 0)
+  Pose pose_world;   ///< base_link from where it was at cycle 0: x its heading there, z the normal of the ground
   Twist twist_base;  ///< of base_link in its own axes
   std::array<JointSample, kMaxJoints> joints{};     ///< before any sensor error
   std::array<double, kMaxContacts> normal_force{};  ///< N, per wheel, mean over [t_k-1, t_k)

@@ -46,6 +46,23 @@ TEST_F(Standing, OnItsBodyWithTheWheelsInTheAirIsRefused) {
   }
 }
 
+// A ball 0.3 m behind the axle ends 1 cm above the ground: the robot leans back on it by θ with
+// 0.3 sin θ + 0.04 cos θ = 0.05. Truth says so, and that the ground is level: nothing sinks as it drives.
+TEST_F(Standing, LeaningBackIsInTheTruthAndTheGroundStaysLevel) {
+  MadeRobot robot;
+  robot.body_x = -0.1;
+  robot.more = part("skid", ball(0.05), "base_link", "type=\"fixed\"><origin xyz=\"-0.3 0 -0.04\"/>");
+  auto plant = stood(robot);
+  const double lean = std::asin(0.05 / std::hypot(0.3, 0.04)) - std::atan2(0.04, 0.3);
+  const TruthFrame rest = truth(*plant);
+  EXPECT_EQ(rest.pose_world.position, Vector3{});
+  EXPECT_NEAR(rest.pose_world.orientation[1], -std::sin(lean / 2), 1e-4);  // the contact gives way by micrometres
+  speed_up(*plant, 5, 5);
+  const TruthFrame driven = truth(*plant);
+  EXPECT_GT(driven.pose_world.position[0], 0.5);
+  EXPECT_NEAR(driven.pose_world.position[2], 0, 1e-4);
+}
+
 // A pendulum without friction never comes to rest; the robot below it does.
 TEST_F(Standing, WhileSomethingOnItSwings) {
   MadeRobot robot;
