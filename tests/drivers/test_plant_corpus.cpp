@@ -148,10 +148,10 @@ class RealRobotOnIce : public RealRobot {
 TEST_P(RealRobotOnIce, SlidesOnLockedWheelsWithFrictionTimesTheirLoad) {
   drive(full_speed(), full_speed());
   const std::vector<JointCommand> locked = locks();
-  for (int k = 0; k < 150; ++k) plant_->write(locked);  // until suspensions have dived
+  for (int k = 0; k < 100; ++k) plant_->write(locked);  // until suspensions have dived
   const double before = truth().twist_base.linear[0];
   double load = 0;
-  constexpr int kCycles = 100;
+  constexpr int kCycles = 60;
   for (int k = 0; k < kCycles; ++k) {
     plant_->write(locked);
     const TruthFrame frame = truth();
