@@ -8,14 +8,15 @@ import sys
 from pathlib import Path
 
 from robot_control._robot_control import DriverError, ParameterError, RobotError
-from robot_control.robot_description import Description, describe, mjcf
+from robot_control.robot_description import Description, describe, mjcf, stand
 from robot_control.robot_report import report
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Prints the report; exits with 1 and one message when the robot is refused."""
+    """Prints the report; exits with 1 and one message when the robot is refused, or does not stand."""
     options = _parser().parse_args(arguments)
 
+    fallen = None
     try:
         robot = describe(options.file, options.params)
         if options.mjcf is not None:
@@ -24,12 +25,18 @@ def main(arguments: list[str] | None = None) -> None:
             from robot_control.robot_picture import draw_robot
 
             draw_robot(robot, options.picture)
+        try:
+            robot["standing"] = stand(options.file, options.params)
+        except DriverError as error:
+            fallen = error
     except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:  # a format unknown to matplotlib
         sys.exit(f"inspect_robot.py: {error}")
     print(_json(robot) if options.json else report(robot))
     for written in (options.mjcf, options.picture):
         if written is not None:
             print(f"wrote {written}", file=sys.stderr)
+    if fallen is not None:
+        sys.exit(f"inspect_robot.py: understood, but it does not stand: {fallen}")
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -34,6 +34,18 @@ def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -
     return text
 
 
+def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> dict[str, float]:
+    """How the robot stands in the scene, brakes on: `lean` [rad], and `carried`, the part of its weight that the drive
+    wheels carry.
+
+    Raises:
+        RobotError, ParameterError: as `describe`.
+        DriverError: it falls over, does not come to rest, or its wheels do not reach the ground.
+    """
+    standing: dict[str, float] = _robot_control.stand(*_arguments(urdf, params))
+    return standing
+
+
 def _arguments(urdf: str | PathLike[str], params: str | PathLike[str] | None) -> tuple[str, list[tuple[str, str]]]:
     path = share_file("config/robot_params.yaml") if params is None else fspath(params)
     return path, [("robot.urdf", str(Path(urdf).absolute()))]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from typing import Any
 
@@ -36,7 +37,15 @@ def _body(robot: dict[str, Any]) -> list[str]:
         f"mass               {robot['mass']:.5g} kg, yaw inertia {robot['yaw_inertia']:.4g} kg·m²",
         f"centre of gravity  {_vector((x, y, z))}, {z - ground_height(robot):.4g} m above the floor",
         f"IMU                {place}",
+        *_standing(robot),
     ]
+
+
+def _standing(robot: dict[str, Any]) -> list[str]:
+    if "standing" not in robot:
+        return []
+    lean, carried = robot["standing"]["lean"], robot["standing"]["carried"]
+    return [f"stands             leaning {math.degrees(lean):.2f}°, {100 * carried:.0f} % on the drive wheels"]
 
 
 def _wheels(robot: dict[str, Any]) -> list[str]:

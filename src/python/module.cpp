@@ -6,11 +6,13 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "drivers/mujoco_model.h"
+#include "drivers/mujoco_plant.h"
 #include "hal/driver.h"
 #include "python/describe.h"
 #include "simulation/closed_loop.h"
@@ -80,6 +82,24 @@ RobotModel robot_of(const Parameters& parameters) {
   return read_robot(load_description(parameters.urdf), parameters.robot);
 }
 
+/// The robot set down in the scene and at rest: how far it leans, rad, and which part of its weight the drive wheels
+/// carry.
+py::dict stand(const Parameters& parameters) {
+  const RobotModel robot = robot_of(parameters);
+  MujocoPlant plant(robot, parameters.plant, parameters.loop.period());
+  plant.start();
+  TruthFrame truth;
+  plant.truth(truth);
+  double load = 0;
+  for (std::size_t wheel = 0; wheel < robot.wheels.size(); ++wheel) load += truth.normal_force[wheel];
+  const Quaternion& q = truth.pose_world.orientation;
+  const mjModel& model = *plant.model().model;
+  py::dict result;
+  result["lean"] = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
+  result["carried"] = load / (model.body_subtreemass[plant.model().base_body] * mju_norm3(model.opt.gravity));
+  return result;
+}
+
 Parameters parameters_from(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
   std::vector<Overlay> overlays;
   for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
@@ -105,6 +125,12 @@ PYBIND11_MODULE(_robot_control, module) {
       [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
         const Parameters parameters = parameters_from(path, values);
         return exported_mjcf(robot_of(parameters), parameters.plant, parameters.loop.period());
+      },
+      py::arg("path"), py::arg("values"));
+  module.def(
+      "stand",
+      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+        return stand(parameters_from(path, values));
       },
       py::arg("path"), py::arg("values"));
   py::class_<ClosedLoop>(module, "ClosedLoop")

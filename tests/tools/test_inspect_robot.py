@@ -167,6 +167,9 @@ def test_our_own_robot_is_understood(tmp_path):
         ("right_wheel_joint", "right"),
     ]
     assert robot["mass"] == pytest.approx(12)
+    # The centre of gravity is 0.0603 m behind the axle, the caster 0.25 m.
+    assert robot["standing"]["carried"] == pytest.approx(1 - 0.06027 / 0.25, abs=1e-3)
+    assert robot["standing"]["lean"] == pytest.approx(0, abs=1e-4)
     assert "<mujoco" in (tmp_path / "bot.xml").read_text()
     assert (tmp_path / "bot.png").stat().st_size > 10_000
 
@@ -178,6 +181,18 @@ def test_a_refused_robot_is_one_message_and_an_exit_code(tmp_path):
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
     assert "torn.urdf" in done.stderr
+
+
+def test_a_robot_that_does_not_stand_is_reported_all_the_same(tmp_path):
+    sled = """<link name="sled"><collision><origin xyz="0 0 -0.12"/><geometry><box size="0.6 0.6 0.04"/></geometry>
+      </collision></link><joint name="sled" type="fixed"><parent link="base_link"/><child link="sled"/></joint>"""
+    (tmp_path / "sled.urdf").write_text(DIFFBOT.read_text().replace("</robot>", sled + "</robot>"))
+    done = inspect(tmp_path / "sled.urdf")
+    assert done.returncode == 1
+    assert "left_wheel_joint" in done.stdout
+    assert "does not stand" in done.stderr
+    assert "wheels bear no load" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
 
 
 def test_a_file_that_cannot_be_written_is_one_message(tmp_path):
