@@ -8,6 +8,7 @@
 
 #include "drivers/mujoco_errors.h"
 #include "drivers/rest.h"
+#include "robot/wording.h"
 
 namespace robot_control {
 namespace {
@@ -76,7 +77,9 @@ void MujocoPlant::set_origin() {
 }
 
 void MujocoPlant::settle() {
-  const std::string where = model_.robot.source + " in scene " + parameters_.scene + ": ";
+  std::string where = model_.robot.source + " in scene " + parameters_.scene;
+  if (parameters_.payload > 0) where.append(" with a payload of ").append(number(parameters_.payload)).append(" kg");
+  where += ": ";
   const double step = model_.model->opt.timestep;
   mj_step1(model_.model.get(), data_.get());
   wheels_.observe(*data_);

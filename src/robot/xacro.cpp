@@ -61,7 +61,9 @@ std::string expand_xacro(const std::string& path) {
            "Run scripts/setup or `pip install xacro`, " + std::string(kByHand));
   }
   if (result.code != 0) {
-    refuse(path, "xacro", on_one_line(result.errors), "Mend the file, or set ROS_PACKAGE_PATH so that $(find …) works");
+    refuse(path, "xacro", on_one_line(result.errors),
+           "Mend the file; set ROS_PACKAGE_PATH so that $(find …) works; give arguments without default by hand: "
+           "xacro FILE name:=value > robot.urdf");
   }
   return result.output;
 }

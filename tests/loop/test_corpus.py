@@ -36,9 +36,7 @@ def processor_time() -> float:
 def rim_speeds(loop: ClosedLoop, log, side: str) -> np.ndarray:
     """Mean rim speed [m/s] of a side's wheels, forward positive, shape (cycles,)."""
     wheels = [wheel for wheel in loop.robot["wheels"] if wheel["side"] == side]
-    return np.mean(
-        [wheel["sign"] * wheel["radius"] * log[f"{wheel['joint']}_velocity"] for wheel in wheels], axis=0
-    )
+    return np.mean([wheel["sign"] * wheel["radius"] * log[f"{wheel['joint']}_velocity"] for wheel in wheels], axis=0)
 
 
 def test_is_understood_as_it_is_in_under_two_seconds(robot):
@@ -66,8 +64,11 @@ def test_stands_still(robot):
 
 def test_tracks_a_straight_line_and_a_turn(robot):
     loop = make(robot)
-    limits = [0.6 * joint["velocity_limit"] * robot.truth["radius_collision"] for joint in loop.robot["joints"]
-              if joint["role"] == "wheel" and joint["velocity_limit"] > 0]
+    limits = [
+        0.6 * joint["velocity_limit"] * robot.truth["radius_collision"]
+        for joint in loop.robot["joints"]
+        if joint["role"] == "wheel" and joint["velocity_limit"] > 0
+    ]
     speed = min([SPEED, *limits])
     log = loop.run(RAMP + 4.0, (speed, 0.0))
     steady = log["time"] >= RAMP

@@ -89,15 +89,16 @@ class LaunchTest(unittest.TestCase):
         self.addCleanup(launch.end)
         return launch
 
-    def run_lockstep(self, cycles: int) -> None:
-        """Ends by itself, with a row for every cycle."""
+    def run_lockstep(self, cycles: int, *arguments: str) -> list[str]:
+        """Ends by itself, with a row for every cycle; returns the names of the log's columns."""
         script = self.out.parents[2] / "script.csv"
         script.write_text("cycle,linear,angular\n0,0.5,0.2\n1000,0.5,0.2\n")
-        launch = self.launch("clock:=lockstep", f"cycles:={cycles}", f"command_script:={script}")
+        launch = self.launch("clock:=lockstep", f"cycles:={cycles}", f"command_script:={script}", *arguments)
         self.assertEqual(launch.wait(), 0, launch.output)
         lines = (self.out / "run.csv").read_text().splitlines()
         rows = [line for line in lines if line[0].isdigit()]
         self.assertEqual(len(rows), cycles, launch.output)
+        return next(line for line in lines if line.startswith("run,")).split(",")
 
     def record(self, namespace: str) -> set[str]:
         """Topics in the bag of a launch that ran until the recorder had heard all that is told."""
@@ -128,6 +129,11 @@ class LaunchTest(unittest.TestCase):
         self.assertEqual((rospy.get_param("/use_sim_time"), rospy.get_param("/robot/clock")), (True, "lockstep"))
         rospy.set_param("/use_sim_time", False)
         self.assertIn("`rosparam delete /robot/clock`", refusal(MONITOR))
+
+    def test_drives_the_urdf_it_is_given(self) -> None:
+        urdf = self.out.parents[2] / "other.urdf"
+        urdf.write_text((repository() / "urdf" / "diffbot.urdf").read_text().replace("left_wheel_joint", "port_joint"))
+        self.assertIn("port_joint_velocity", self.run_lockstep(200, f"urdf:={urdf}"))
 
     def test_records_every_topic_that_has_messages(self) -> None:
         topics = self.record("")
