@@ -10,7 +10,7 @@ export PATH=/usr/bin:/bin:/usr/sbin:/sbin:$PATH
 PYTHON=/usr/bin/python3
 unset PYTHONHOME
 LINTERS=$REPOSITORY/build/linters  # venv with ruff and mypy
-XACRO=$REPOSITORY/build/xacro      # venv with xacro; src/robot/xacro.h looks for it
+XACRO=$REPOSITORY/build/xacro      # venv with xacro; src/description/xacro.h looks for it
 
 say() { printf '== %s\n' "$*"; }
 usage() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }  # the comment at the head of the script

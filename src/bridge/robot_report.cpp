@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "robot/wording.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "description/wording.h"
 #include "drivers/ground_points.h"
 #include "hal/driver.h"
 #include "robot/gravity.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

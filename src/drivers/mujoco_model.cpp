@@ -10,12 +10,12 @@
 #include <fstream>
 #include <iterator>
 
+#include "description/wording.h"
 #include "drivers/ground_points.h"
 #include "drivers/mjcf.h"
 #include "drivers/mujoco_errors.h"
 #include "drivers/true_robot.h"
 #include "hal/driver.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <limits>
 
+#include "description/wording.h"
 #include "drivers/mujoco_errors.h"
 #include "drivers/rest.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

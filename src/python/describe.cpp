@@ -5,9 +5,9 @@
 #include <array>
 #include <vector>
 
-#include "robot/mesh.h"
+#include "description/mesh.h"
+#include "description/wording.h"
 #include "robot/rigid_bodies.h"
-#include "robot/wording.h"
 
 namespace py = pybind11;
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "robot/urdf_document.h"
-#include "robot/wording.h"
+#include "description/urdf_document.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

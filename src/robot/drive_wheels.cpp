@@ -5,11 +5,11 @@
 #include <limits>
 #include <set>
 
+#include "description/urdf_document.h"
+#include "description/wording.h"
 #include "robot/named_wheels.h"
-#include "robot/urdf_document.h"
 #include "robot/wheel.h"
 #include "robot/wheel_pairs.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

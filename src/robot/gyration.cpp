@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "robot/wording.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

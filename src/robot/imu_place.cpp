@@ -1,7 +1,7 @@
 #include "robot/imu_place.h"
 
-#include "robot/urdf_document.h"
-#include "robot/wording.h"
+#include "description/urdf_document.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "robot/urdf_document.h"
+#include "description/urdf_document.h"
 
 namespace robot_control {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-#include "robot/urdf_document.h"
-#include "robot/wording.h"
+#include "description/urdf_document.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

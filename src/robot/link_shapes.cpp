@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "description/mesh.h"
+#include "description/resource.h"
+#include "description/urdf_document.h"
+#include "description/wording.h"
 #include "robot/link_inertia.h"
-#include "robot/mesh.h"
-#include "robot/resource.h"
-#include "robot/urdf_document.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

@@ -1,9 +1,9 @@
 #include "robot/massless.h"
 
+#include "description/urdf_document.h"
+#include "description/wording.h"
 #include "robot/link_inertia.h"
-#include "robot/urdf_document.h"
 #include "robot/wheel.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

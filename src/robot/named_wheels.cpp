@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/urdf_document.h"
+#include "description/urdf_document.h"
+#include "description/wording.h"
 #include "robot/wheel.h"
 #include "robot/wheel_pairs.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/urdf_document.h"
-#include "robot/wording.h"
+#include "description/urdf_document.h"
+#include "description/wording.h"
 
 namespace robot_control {
 

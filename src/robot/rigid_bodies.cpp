@@ -8,15 +8,15 @@
 #include <limits>
 #include <set>
 
+#include "description/urdf_document.h"
+#include "description/wording.h"
 #include "robot/body_joint.h"
 #include "robot/gyration.h"
 #include "robot/kdl_tree.h"
 #include "robot/link_inertia.h"
 #include "robot/link_shapes.h"
 #include "robot/massless.h"
-#include "robot/urdf_document.h"
 #include "robot/wheel.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

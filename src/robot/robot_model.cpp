@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
+#include "description/urdf_document.h"
+#include "description/wording.h"
 #include "robot/drive_wheels.h"
 #include "robot/imu_place.h"
 #include "robot/joint_roles.h"
@@ -13,10 +13,7 @@
 #include "robot/rigid_bodies.h"
 #include "robot/rockers.h"
 #include "robot/suspension.h"
-#include "robot/urdf_document.h"
 #include "robot/wheel_drive.h"
-#include "robot/wording.h"
-#include "robot/xacro.h"
 #include "signals/joint.h"
 
 namespace robot_control {
@@ -183,21 +180,11 @@ std::vector<RobotNote> merged(const std::vector<RobotNote>& notes) {
   return result;
 }
 
-bool ends_with_xacro(const std::string& path) {
-  const std::string ending = ".xacro";
-  return path.size() >= ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 }  // namespace
 
-RobotDescription load_description(const std::string& path) {
-  if (ends_with_xacro(path)) return {expand_xacro(path), path};
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    refuse(path, "URDF", "it cannot be read or is empty", "Give the path of a URDF file");
-  }
-  return {text.str(), path};
+const char* name_of(RobotNote::Kind kind) {
+  constexpr std::array<const char*, 5> kNames{"assumed", "repaired", "ignored", "overridden", "suspicious"};
+  return kNames.at(static_cast<std::size_t>(kind));
 }
 
 RobotModel read_robot(const RobotDescription& description, const RobotParameters& parameters) {

@@ -7,19 +7,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "description/robot_description.h"
 #include "signals/geometry.h"
 
 namespace robot_control {
-
-/// One message: what is wrong, in which file and element, and what to do about it.
-class RobotError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// What a user may say about the robot beside its URDF (the `robot:` block). It is what estimator and controller
 /// believe; a simulated plant stays as the URDF says. Where both speak and differ by more than 1 %, a note says so.
@@ -34,12 +28,6 @@ struct RobotParameters {
   std::optional<double> mass;                   ///< kg
   std::optional<Vector3> centre_of_gravity;     ///< m, base axes
   std::string imu_link;                         ///< empty: found by its name, else the IMU is in the base (imu_place.h)
-};
-
-/// A URDF text and where it was read, for messages ("urdf/diffbot.urdf", "/robot_description").
-struct RobotDescription {
-  std::string text;
-  std::string source;
 };
 
 enum class JointRole {
@@ -91,6 +79,9 @@ struct RobotNote {
   std::string text;     ///< a sentence with value and unit, without a full stop
 };
 
+/// "assumed", "repaired", "ignored", "overridden", "suspicious"
+const char* name_of(RobotNote::Kind kind);
+
 struct RigidBodies;
 
 struct RobotModel {
@@ -122,9 +113,6 @@ struct RobotModel {
   /// m
   double effective_wheel_base() const noexcept { return wheel_base * wheel_base_multiplier; }
 };
-
-/// Reads a file; throws RobotError naming it. A name that ends in .xacro is expanded first (xacro.h).
-RobotDescription load_description(const std::string& path);
 
 /// Throws RobotError: what read_rigid_bodies, find_drive_train and imu_link_of refuse, overrides that are not above
 /// zero, more than kMaxJoints moving joints, numbers beyond all bounds.

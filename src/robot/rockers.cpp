@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "description/wording.h"
 #include "robot/wheel.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

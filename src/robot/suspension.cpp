@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "description/wording.h"
 #include "robot/gravity.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "description/wording.h"
 #include "robot/gravity.h"
 #include "robot/overrides.h"
-#include "robot/wording.h"
 
 namespace robot_control {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/wording.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

@@ -9,16 +9,19 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-CORE = {"signals", "rt", "robot", "estimation", "control", "safety", "hal", "drivers", "parameters", "runtime"}
+CORE = {
+    "signals", "rt", "description", "robot", "estimation", "control", "safety", "hal", "drivers", "parameters", "runtime"
+}  # fmt: skip
 MAY_INCLUDE = {
     "signals": set(),
     "rt": {"signals"},
-    "robot": {"signals"},
+    "description": set(),
+    "robot": {"signals", "description"},
     "estimation": {"signals", "robot"},
     "control": {"signals", "robot"},
     "safety": {"signals", "robot"},
     "hal": {"signals", "rt", "robot"},
-    "drivers": {"signals", "hal", "robot", "rt"},
+    "drivers": {"signals", "hal", "description", "robot", "rt"},
     # The schema fills in the parameter structs that the laws define.
     "parameters": {"signals", "rt", "robot", "estimation", "control", "safety", "drivers"},
     "telemetry": {"signals"},

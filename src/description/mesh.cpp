@@ -1,4 +1,4 @@
-#include "robot/mesh.h"
+#include "description/mesh.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,9 +7,9 @@
 #include <string>
 #include <tuple>
 
-#include "robot/assimp_mesh.h"
-#include "robot/stl.h"
-#include "robot/urdf_document.h"
+#include "description/assimp_mesh.h"
+#include "description/robot_description.h"
+#include "description/stl.h"
 
 namespace robot_control {
 namespace {

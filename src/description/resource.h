@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "robot/robot_model.h"
+#include "description/robot_description.h"
 
 namespace robot_control {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "robot/mesh.h"
+#include "description/mesh.h"
 
 namespace robot_control {
 namespace {

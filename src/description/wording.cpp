@@ -1,4 +1,4 @@
-#include "robot/wording.h"
+#include "description/wording.h"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +12,6 @@ std::string link_element(const std::string& name) {
 
 std::string joint_element(const std::string& name) {
   return "<joint name=\"" + name + "\">";
-}
-
-const char* name_of(RobotNote::Kind kind) {
-  constexpr std::array<const char*, 5> kNames{"assumed", "repaired", "ignored", "overridden", "suspicious"};
-  return kNames.at(static_cast<std::size_t>(kind));
 }
 
 std::string number(double value) {

@@ -1,4 +1,4 @@
-#include "robot/urdf_document.h"
+#include "description/urdf_document.h"
 
 #include <console_bridge/console.h>
 #include <tinyxml.h>
@@ -6,8 +6,8 @@
 
 #include <mutex>
 
-#include "robot/urdf_markup.h"
-#include "robot/wording.h"
+#include "description/urdf_markup.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {
@@ -63,12 +63,6 @@ std::vector<std::string> names_of(const TiXmlElement& robot, const char* kind) {
 }
 
 }  // namespace
-
-void refuse(const std::string& source, const std::string& element, const std::string& what, const std::string& remedy) {
-  // TinyXML's sentences bring their full stop along.
-  const std::string sentence = what.substr(0, what.find_last_not_of('.') + 1);
-  throw RobotError(source + ": " + element + ": " + sentence + ". " + remedy + ".");
-}
 
 UrdfDocument parse_urdf(const RobotDescription& description) {
   TiXmlDocument xml;

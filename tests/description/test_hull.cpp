@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "robot/mesh.h"
+#include "description/mesh.h"
 
 namespace robot_control {
 namespace {

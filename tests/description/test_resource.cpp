@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "robot/resource.h"
+#include "description/resource.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

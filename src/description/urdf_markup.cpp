@@ -1,11 +1,11 @@
-#include "robot/urdf_markup.h"
+#include "description/urdf_markup.h"
 
 #include <algorithm>
 #include <map>
 #include <sstream>
 
-#include "robot/urdf_document.h"
-#include "robot/wording.h"
+#include "description/urdf_document.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

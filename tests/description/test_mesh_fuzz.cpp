@@ -4,10 +4,10 @@
 
 #include <random>
 
+#include "description/assimp_mesh.h"
+#include "description/mesh.h"
+#include "description/stl.h"
 #include "mesh_texts.h"
-#include "robot/assimp_mesh.h"
-#include "robot/mesh.h"
-#include "robot/stl.h"
 
 namespace robot_control {
 namespace {

@@ -14,7 +14,7 @@
 #include <set>
 #include <string>
 
-#include "robot/robot_model.h"
+#include "description/robot_description.h"
 
 namespace robot_control {
 

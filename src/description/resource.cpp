@@ -1,4 +1,4 @@
-#include "robot/resource.h"
+#include "description/resource.h"
 
 #include <tinyxml.h>
 
@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "robot/urdf_document.h"
+#include "description/robot_description.h"
 
 namespace robot_control {
 namespace {

@@ -1,4 +1,4 @@
-#include "robot/assimp_mesh.h"
+#include "description/assimp_mesh.h"
 
 #include <assimp/BaseImporter.h>
 #include <assimp/config.h>
@@ -8,7 +8,7 @@
 #include <assimp/Importer.hpp>
 #include <memory>
 
-#include "robot/other_process.h"
+#include "description/other_process.h"
 
 namespace robot_control {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "robot/mesh_faces.h"
+#include "description/mesh_faces.h"
 
 namespace robot_control {
 

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <limits>
 
+#include "description/mesh.h"
+#include "description/robot_description.h"
 #include "mesh_texts.h"
-#include "robot/mesh.h"
-#include "robot/robot_model.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

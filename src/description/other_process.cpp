@@ -1,4 +1,4 @@
-#include "robot/other_process.h"
+#include "description/other_process.h"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/robot_model.h"
+#include "description/robot_description.h"
 
 namespace robot_control {
 
@@ -23,9 +23,5 @@ struct UrdfDocument {
 /// Throws RobotError: what parse_markup refuses, or whatever urdfdom objects to, in its own words. What urdfdom would
 /// print on the console goes into the message.
 UrdfDocument parse_urdf(const RobotDescription& description);
-
-/// "<source>: <element>: <what>. <remedy>."
-[[noreturn]] void refuse(const std::string& source, const std::string& element, const std::string& what,
-                         const std::string& remedy);
 
 }  // namespace robot_control

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "robot/mesh_faces.h"
+#include "description/mesh_faces.h"
 
 namespace robot_control {
 

@@ -1,12 +1,12 @@
-#include "robot/xacro.h"
+#include "description/xacro.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
-#include "robot/other_process.h"
-#include "robot/urdf_document.h"
-#include "robot/wording.h"
+#include "description/other_process.h"
+#include "description/robot_description.h"
+#include "description/wording.h"
 
 namespace robot_control {
 namespace {

@@ -1,4 +1,4 @@
-#include "robot/stl.h"
+#include "description/stl.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,18 +1,13 @@
 #pragma once
-/// How messages and notes name things: `<link name="…">`, kinds of notes, numbers with six digits.
+/// How messages and notes name things: `<link name="…">`, numbers with six digits.
 
 #include <string>
 #include <vector>
-
-#include "robot/robot_model.h"
 
 namespace robot_control {
 
 std::string link_element(const std::string& name);
 std::string joint_element(const std::string& name);
-
-/// "assumed", "repaired", "ignored", "overridden", "suspicious"
-const char* name_of(RobotNote::Kind kind);
 
 /// Six significant digits: "0.1", "1e-09".
 std::string number(double value);

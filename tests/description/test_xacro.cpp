@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "robot/other_process.h"
-#include "robot/robot_model.h"
-#include "robot/xacro.h"
+#include "description/other_process.h"
+#include "description/robot_description.h"
+#include "description/xacro.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
