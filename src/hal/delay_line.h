@@ -10,13 +10,13 @@
 
 namespace robot_control {
 
-template <class Value, std::size_t kLongest>
+template <class Value, std::size_t Longest>
 class DelayLine {
  public:
-  /// Throws std::invalid_argument: longer than kLongest.
+  /// Throws std::invalid_argument: longer than Longest.
   explicit DelayLine(std::size_t delay) : delay_(delay) {
-    if (delay > kLongest) {
-      throw std::invalid_argument("delay of " + std::to_string(delay) + " steps, at most " + std::to_string(kLongest));
+    if (delay > Longest) {
+      throw std::invalid_argument("delay of " + std::to_string(delay) + " steps, at most " + std::to_string(Longest));
     }
   }
 
@@ -40,7 +40,7 @@ class DelayLine {
  private:
   std::size_t delay_;
   std::size_t next_ = 0;
-  std::array<Value, kLongest> values_{};
+  std::array<Value, Longest> values_{};
 };
 
 }  // namespace robot_control

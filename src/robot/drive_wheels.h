@@ -9,17 +9,18 @@
 ///   is not on the middle line, halfway between the outermost candidates.
 /// Of the candidates those are the drive wheels that the URDF says are driven, where these make pairs; else all,
 /// where they do. A pair: one left and one right of the middle line, on one axle (Δx), equally far out (Δ|y|) and of
-/// one radius, each within kPairTolerance of the wheel base or radius. All pairs have one radius, and nothing level with
-/// them hangs in the air because its own is smaller. Anything else is not guessed: the candidates are named, and what to set.
+/// one radius, each within kPairTolerance of the wheel base or radius. All pairs have one radius, and nothing level
+/// with them hangs in the air because its own is smaller. Anything else is not guessed: the candidates are named, and
+/// what to set.
 ///
 /// More than kMaxWheels candidates, of which the URDF drives none, are the rollers of a track: refused.
 ///
 /// Left and right are told by position: names lie. What a name says otherwise is noted.
 ///
 /// All else that rolls near the floor is a caster. Its swivel turns it into the direction of travel by its trail, the
-/// distance by which the wheel follows the swivel's axis, across the axle. Without a swivel the robot could turn only by
-/// dragging it sideways: it is taken for an omni wheel (WheelModel::omni). With a trail below kLeastTrail of the radius
-/// it is no caster, but slides. Both are noted.
+/// distance by which the wheel follows the swivel's axis, across the axle. Without a swivel the robot could turn only
+/// by dragging it sideways: it is taken for an omni wheel (WheelModel::omni). With a trail below kLeastTrail of the
+/// radius it is no caster, but slides. Both are noted.
 
 #include <string>
 #include <vector>

@@ -14,7 +14,7 @@ namespace robot_control {
 namespace {
 
 constexpr std::uint64_t kRun = 7;
-constexpr std::int64_t kDuration = 700'000'000;      // ns, at least
+constexpr std::int64_t kDuration = 700'000'000;     // ns, at least
 constexpr std::int64_t kPatience = 60'000'000'000;  // ns; how many frames fit into a time is the machine's affair
 constexpr std::uint64_t kFrames = 100;              // at least
 
