@@ -165,7 +165,7 @@ std::string exported_mjcf(const RobotModel& robot, const MujocoPlantParameters& 
   close(file);
   std::array<char, 1000> error{};
   const bool saved = mj_saveLastXML(path.c_str(), compiled.model.get(), error.data(), error.size()) != 0;
-  const std::string text = read_file(path);
+  std::string text = read_file(path);
   std::filesystem::remove(path);
   if (!saved) throw DriverError(robot.source + ": MuJoCo does not write it: " + error.data());
   return text;

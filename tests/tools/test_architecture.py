@@ -9,9 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-CORE = {
-    "signals", "rt", "description", "robot", "estimation", "control", "safety", "hal", "drivers", "parameters", "runtime"
-}  # fmt: skip
+CORE = set("signals rt description robot estimation control safety hal drivers parameters runtime".split())
 MAY_INCLUDE = {
     "signals": set(),
     "rt": {"signals"},
