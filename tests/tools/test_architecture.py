@@ -9,7 +9,21 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-CORE = set("signals rt description robot estimation control safety hal drivers parameters runtime".split())
+CORE = set(
+    [
+        "signals",
+        "rt",
+        "description",
+        "robot",
+        "estimation",
+        "control",
+        "safety",
+        "hal",
+        "drivers",
+        "parameters",
+        "runtime",
+    ]
+)
 MAY_INCLUDE = {
     "signals": set(),
     "rt": {"signals"},
