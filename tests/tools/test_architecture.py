@@ -9,21 +9,8 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-CORE = set(
-    [
-        "signals",
-        "rt",
-        "description",
-        "robot",
-        "estimation",
-        "control",
-        "safety",
-        "hal",
-        "drivers",
-        "parameters",
-        "runtime",
-    ]
-)
+CORE = {"signals", "rt", "description", "robot", "estimation", "control", "safety"}
+CORE |= {"hal", "drivers", "parameters", "runtime"}
 MAY_INCLUDE = {
     "signals": set(),
     "rt": {"signals"},
