@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "description/wording.h"
 #include "robot/gravity.h"
 
 namespace robot_control {
@@ -43,9 +44,7 @@ std::string bodies_on_ground(const MujocoModel& model, const mjData& data) {
       names.insert(mj_id2name(model.model.get(), mjOBJ_BODY, body));
     }
   }
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
+  return names.empty() ? "" : list({names.begin(), names.end()});
 }
 
 bool fallen(const MujocoModel& model, const mjData& data) noexcept {

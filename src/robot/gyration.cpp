@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "description/wording.h"
+#include "robot/link_inertia.h"
 
 namespace robot_control {
 namespace {
@@ -23,11 +24,8 @@ double extent(const Shape& shape) {
 
 double gyration_radius(const urdf::Link& link) {
   if (!link.inertial || !(link.inertial->mass > 0)) return 0;
-  const urdf::Inertial& given = *link.inertial;
-  Eigen::Matrix3d tensor;
-  tensor << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz, given.izz;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[2] / given.mass));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(eigen_inertia(*link.inertial), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[2] / link.inertial->mass));
 }
 
 double robot_size(const RigidBodies& robot) {

@@ -16,6 +16,12 @@ std::string moments(const Eigen::Matrix3d& inertia) {
 
 }  // namespace
 
+Eigen::Matrix3d eigen_inertia(const urdf::Inertial& given) {
+  Eigen::Matrix3d tensor;
+  tensor << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz, given.izz;
+  return tensor;
+}
+
 Eigen::Isometry3d eigen_pose(const urdf::Pose& pose) {
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
   const auto& q = pose.rotation;
@@ -51,8 +57,7 @@ PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body
            "Give the mass in kg");
   }
   if (given.mass == 0) return result;
-  Eigen::Matrix3d tensor;
-  tensor << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz, given.iyz, given.izz;
+  const Eigen::Matrix3d tensor = eigen_inertia(given);
   const Eigen::Matrix3d possible = possible_inertia(tensor, given.mass);
   if (possible != tensor) {
     notes.push_back({RobotNote::Kind::kRepaired, link_element(link.name),

@@ -37,5 +37,6 @@ PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body
 PointInertia sum(const PointInertia& a, const PointInertia& b);
 
 Eigen::Isometry3d eigen_pose(const urdf::Pose& pose);
+Eigen::Matrix3d eigen_inertia(const urdf::Inertial& given);
 
 }  // namespace robot_control
