@@ -36,6 +36,12 @@ enum class JointRole {
   kHeld,     ///< driven by somebody else (arm, lift, gripper): braked, always
 };
 
+/// rad or m, lower < upper.
+struct JointRange {
+  double lower = 0;
+  double upper = 0;
+};
+
 /// A moving joint, in the order of the frames' joint arrays: wheels first, in the order of RobotModel::wheels, then
 /// the others as they stand in the file.
 struct JointModel {
@@ -44,8 +50,9 @@ struct JointModel {
   double effort_limit = 0;    ///< N·m or N; 0 for passive joints, above 0 for wheels
   double velocity_limit = 0;  ///< rad/s or m/s; 0: none known
   JointRole role = JointRole::kWheel;
-  double damping = 0;   ///< N·m·s/rad or N·s/m, of its bearing and gear
-  double friction = 0;  ///< N·m or N, dry
+  double damping = 0;                              ///< N·m·s/rad or N·s/m, of its bearing and gear
+  double friction = 0;                             ///< N·m or N, dry
+  std::optional<JointRange> range = std::nullopt;  ///< end stops; none: turns without end
 };
 
 enum class Side { kLeft, kRight };

@@ -26,7 +26,7 @@ inline constexpr std::size_t kFrameSlots = 8;
 inline constexpr int kReadTries = 4;
 
 inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
-inline constexpr std::uint64_t kLayoutVersion = 1;
+inline constexpr std::uint64_t kLayoutVersion = 2;
 
 /// First bytes of every shared object: of a LatestFrames as of a Ring. `magic` to `retired` keep their places
 /// in every layout version, so that a process can judge and retire an object that it cannot read.

@@ -1,15 +1,61 @@
 #pragma once
 /// What a user sets of the safety monitor.
+///
+/// A condition: a fact, measured from raw sensors and the command, beyond `limit` without a break for `persistence`
+/// → a reaction. What each limit means stands with its fact: wheel_facts.h, body_facts.h, conditions.h.
 
 #include <cstdint>
+#include <optional>
 
 namespace robot_control {
+
+/// From mild to severe; the severest of all that are true wins.
+enum class Reaction : std::uint8_t {
+  kOff,    ///< not even looked at
+  kWarn,   ///< told
+  kSlow,   ///< told, and no rim faster than slow_speed as long as it is true, and kWarningHold after
+  kRamp,   ///< latched, stop category 1 of IEC 60204-1: ramp under supervision, then brake
+  kBrake,  ///< latched, stop category 0: brake at once
+};
+
+struct Condition {
+  std::optional<double>
+      limit;               ///< absent: derived from the robot where it can be (derived_limits.h), else no condition
+  double persistence = 0;  ///< s; 0: the first cycle counts
+  Reaction reaction = Reaction::kBrake;
+};
 
 struct SafetyParameters {
   std::uint64_t loss_cycles = 20;  ///< cycles without a command or a state before the stop latches
   double heartbeat_timeout = 0;    ///< s; 0 = no operator heartbeat is asked for
   double ramp_time = 2.0;          ///< s, longest category-1 ramp before the brake
   double standstill_speed = 0.05;  ///< rad/s, wheels slower than this are standing
+
+  double slow_speed = 0.3;   ///< m/s, of the rims, under Reaction::kSlow
+  double clearance = 0;      ///< m, free way ahead from the start on, until the topic says otherwise; 0: unlimited
+  double stop_delay = 0.03;  ///< s, from the fact to the brake torque
+  double stop_deceleration = 1.0;  ///< m/s², that braking or ramping reaches on any ground the robot drives on
+
+  Condition wheel_speed{{}, 0.03, Reaction::kBrake};         ///< rad/s; derived
+  Condition wheel_acceleration{{}, 0.01, Reaction::kBrake};  ///< rad/s²; derived
+  Condition wheel_effort{1.05, 0.02, Reaction::kBrake};      ///< of the joint's effort limit
+  Condition power{{}, 0.1, Reaction::kBrake};                ///< W, mechanical, all wheels; derived
+  Condition stall{0.3, 0, Reaction::kBrake};                 ///< rad that a standing wheel should have turned
+  Condition runaway{{}, 0.05, Reaction::kBrake};             ///< rad/s beyond the target; derived
+  Condition wrong_direction{1.5, 0.05, Reaction::kBrake};    ///< rad/s against the target
+  Condition not_stopping{1.0, 0, Reaction::kBrake};          ///< s of motion after the target became zero
+  Condition yaw_rate{1.0, 0.2, Reaction::kRamp};             ///< rad/s between gyro and wheels
+  Condition tilt{0.35, 0.05, Reaction::kBrake};              ///< rad from the vertical
+  Condition tip_over{1.5, 0.02, Reaction::kBrake};           ///< rad/s, outwards, when tilted by half the tilt limit
+  Condition free_fall{3.0, 0.05, Reaction::kBrake};          ///< m/s², specific force below it
+  Condition lift{0.2, 0.1, Reaction::kBrake};                ///< of the weight on the wheels; contact sensors only
+  Condition impact{60, 0, Reaction::kBrake};                 ///< m/s² beside gravity
+  Condition encoders_lost{0, 0.01, Reaction::kBrake};        ///< limit unused
+  Condition imu_lost{0, 0.1, Reaction::kSlow};               ///< limit unused
+  Condition imu_stuck{0, 0.25, Reaction::kSlow};             ///< limit unused
+  Condition overruns{50, 1.0, Reaction::kWarn};              ///< per second
+  Condition battery_low{{}, 1.0, Reaction::kSlow};           ///< V
+  Condition battery_empty{{}, 1.0, Reaction::kRamp};         ///< V
 };
 
 }  // namespace robot_control

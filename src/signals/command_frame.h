@@ -26,6 +26,7 @@ enum CommandReason : std::uint64_t {
   kReasonNoState = 1u << 11,       ///< The state of this cycle was missing, held or invalid.
   kReasonBadSensors = 1u << 12,    ///< Joint samples missing or not finite: brake.
   kReasonHolding = 1u << 13,       ///< Standing with zero command: brake law holds the position.
+  kReasonPermitSlow = 1u << 14,    ///< The permit's speed limit.
 };
 
 /// The gate executes a command in at most this many ticks: at tick k those of cycles k-kCommandLife … k-1.

@@ -29,6 +29,11 @@ enum GateReason : std::uint64_t {
   kGateWrongJointCount = 1u << 11,  ///< The command is for another number of joints.
   kGateControllerBrake = 1u << 12,  ///< The command itself asks the brake of every joint.
   kGateUnknownMode = 1u << 13,      ///< A mode outside JointMode, or a permit action outside PermitAction.
+  kGateRampTooLong = 1u << 14,      ///< Under ramp permits for longer than any ramp may last.
+  kGateRateClamped = 1u << 15,      ///< The effort changed faster than the joint's effort rate.
+  kGateSpeedClamped = 1u << 16,     ///< Effort towards more speed, or a speed wanted, near or above the speed limit.
+  kGatePositionClamped = 1u << 17,  ///< Near or at an end stop of the joint.
+  kGateBadSensors = 1u << 18,       ///< The joints' samples that the clamps need are missing or not finite.
 };
 
 struct GateReport {

@@ -13,6 +13,8 @@
 #include <string>
 #include <string_view>
 
+#include "signals/bit_name.h"
+#include "signals/cause_names.h"
 #include "signals/command_frame.h"
 #include "signals/gate_report.h"
 #include "signals/injected_fault.h"
@@ -22,40 +24,7 @@
 
 namespace robot_control {
 
-struct BitName {
-  std::uint64_t bit;
-  std::string_view name;      ///< snake_case, for logs and topics
-  std::string_view sentence;  ///< what is the case
-  std::string_view remedy;    ///< what an operator does about it
-};
-
 // clang-format off
-inline constexpr auto kStopCauseNames = std::to_array<BitName>({
-    {kCauseEmergencyStopTopic, "e_stop_topic", "the topic e_stop said true",
-     "publish false on e_stop, then call e_stop_reset"},
-    {kCauseEmergencyStopService, "e_stop_service", "e_stop_trigger was called", "call e_stop_reset"},
-    {kCauseEmergencyStopInput, "e_stop_input", "the emergency stop button is pressed",
-     "release the button, then call e_stop_reset"},
-    {kCauseDriverLost, "driver_lost", "the driver published no sensors for 20 periods",
-     "look whether the driver node runs and gets its core, then call e_stop_reset"},
-    {kCauseDriverFault, "driver_fault", "the driver reports a fault",
-     "read the driver's fault, repair it, restart or reset the driver, then call e_stop_reset"},
-    {kCauseControllerLost, "controller_lost", "the controller published no command for loss_cycles cycles",
-     "look whether diff_drive_controller runs, then call e_stop_reset"},
-    {kCauseEstimatorLost, "estimator_lost", "the estimator published no state for loss_cycles cycles",
-     "look whether state_estimator runs, then call e_stop_reset"},
-    {kCauseHeartbeatLost, "heartbeat_lost", "the operator's heartbeat stopped",
-     "publish heartbeat again, then call e_stop_reset"},
-    {kCauseMonitorRestarted, "monitor_restarted", "the safety monitor was restarted while the driver ran on",
-     "call e_stop_reset"},
-    {kCauseCorruptFrame, "corrupt_frame", "frames with a wrong checksum were read",
-     "look for two builds on one bus or failing memory, then call e_stop_reset"},
-    {kCauseNotFinite, "not_finite", "sensors or command held NaN or infinity",
-     "look at the sensors and at the controller's log, then call e_stop_reset"},
-    {kCauseMonitorLate, "monitor_late", "the safety monitor missed more than loss_cycles cycles",
-     "look what keeps safety_monitor from its core, then call e_stop_reset"},
-});
-
 inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalCauseActive, "cause_active", "a cause of the stop persists", "remove the cause"},
     {kRefusalCommand, "command", "a motion is still being asked for",
@@ -92,6 +61,12 @@ inline constexpr auto kGateReasonNames = std::to_array<BitName>({
     {kGateControllerBrake, "controller_brake", "the controller asks the brake of every joint", ""},
     {kGateUnknownMode, "unknown_mode", "a joint mode or a permit action is unknown",
      "look for two builds on one bus"},
+    {kGateRampTooLong, "ramp_too_long", "ramp permits have lasted longer than any ramp may",
+     "read the cause in safety_status"},
+    {kGateRateClamped, "rate_clamped", "an effort changed faster than its joint's effort rate", ""},
+    {kGateSpeedClamped, "speed_clamped", "a joint is near or above its speed limit", ""},
+    {kGatePositionClamped, "position_clamped", "a joint is near or at an end stop", ""},
+    {kGateBadSensors, "bad_sensors", "joint samples are missing or not finite", "look at the driver's faults"},
 });
 
 inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
@@ -110,6 +85,7 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonNoState, "no_state", "the state of this cycle is missing, held or invalid", "start state_estimator"},
     {kReasonBadSensors, "bad_sensors", "joint samples are missing or not finite", "look at the driver's faults"},
     {kReasonHolding, "holding", "standing with zero command: the brake holds the position", ""},
+    {kReasonPermitSlow, "permit_slow", "the safety monitor limits the speed", "read the warning in safety_status"},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({
@@ -269,7 +245,8 @@ constexpr bool in_bit_order(std::span<const BitName> table) noexcept {
   }
   return true;
 }
-static_assert(in_bit_order(kStopCauseNames) && in_bit_order(kResetRefusalNames) && in_bit_order(kMissingNodeNames));
+static_assert(in_bit_order(kStopCauseNames) && kStopCauseNames.size() == kStopCauses);
+static_assert(in_bit_order(kResetRefusalNames) && in_bit_order(kMissingNodeNames));
 static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames));
 static_assert(in_bit_order(kDriverFaultNames) && in_bit_order(kStateFlagNames) && in_bit_order(kDigitalInputNames));
 

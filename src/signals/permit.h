@@ -1,9 +1,12 @@
 #pragma once
 /// safety_monitor → gate, controller: may the robot move?
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "signals/frame_head.h"
+#include "signals/joint.h"
 
 namespace robot_control {
 
@@ -12,6 +15,9 @@ enum class PermitAction : std::uint64_t {
   kRamp = 1,   ///< Stop category 1: ramp down under supervision until `ramp_until`, then brake.
   kDrive = 2,
 };
+
+/// Permit::speed_limit where nothing slows the robot down; m/s.
+inline constexpr double kNoSpeedLimit = 1.0e9;
 
 /// A permit is alive for this many cycles after its own; then it has expired.
 inline constexpr std::uint64_t kPermitLife = 4;
@@ -25,7 +31,7 @@ enum class SupervisorState : std::uint64_t {
   kFault = 5,     ///< Latched brake whose cause needs a repair (driver fault).
 };
 
-/// Bits of Permit::causes.
+/// Bits of Permit::causes, active and warnings; what each means, from which fact and by which limit: safety/.
 enum StopCause : std::uint64_t {
   kCauseEmergencyStopTopic = 1u << 0,
   kCauseEmergencyStopService = 1u << 1,
@@ -39,7 +45,41 @@ enum StopCause : std::uint64_t {
   kCauseCorruptFrame = 1u << 9,      ///< A checksum was wrong in three cycles in a row.
   kCauseNotFinite = 1u << 10,        ///< NaN or infinity in sensors or command, three cycles in a row.
   kCauseMonitorLate = 1u << 11,      ///< The monitor itself missed more than loss_cycles cycles.
+  kCauseEncodersLost = 1u << 12,     ///< Joint samples missing or invalid.
+  kCauseImuLost = 1u << 13,          ///< Gyro or accelerometer, once there, is missing.
+  kCauseImuStuck = 1u << 14,         ///< Gyro or accelerometer repeats one sample while the robot moves.
+  kCauseCommandStale = 1u << 15,     ///< The commands descend from an old state.
+  kCauseWheelSpeed = 1u << 16,
+  kCauseWheelAcceleration = 1u << 17,
+  kCauseWheelEffort = 1u << 18,
+  kCausePower = 1u << 19,
+  kCauseStall = 1u << 20,           ///< A wheel stands though it was told to turn.
+  kCauseRunaway = 1u << 21,         ///< A wheel is faster than it was told.
+  kCauseWrongDirection = 1u << 22,  ///< A wheel turns against what it was told.
+  kCauseNotStopping = 1u << 23,     ///< Told to stand, the robot still moves.
+  kCauseYawRate = 1u << 24,         ///< Gyro and wheels disagree on how fast the robot turns.
+  kCauseTilt = 1u << 25,
+  kCauseTipOver = 1u << 26,  ///< Tilted, and tilting further fast.
+  kCauseFreeFall = 1u << 27,
+  kCauseLift = 1u << 28,  ///< The wheels carry too little of the weight.
+  kCauseImpact = 1u << 29,
+  kCauseGateRefuses = 1u << 30,   ///< The gate brakes in spite of the permit, or refuses frames.
+  kCauseGateDisobeys = 1u << 31,  ///< The gate let a command pass in spite of the permit.
+  kCauseOverruns = std::uint64_t{1} << 32,
+  kCauseBatteryLow = std::uint64_t{1} << 33,
+  kCauseBatteryEmpty = std::uint64_t{1} << 34,
 };
+inline constexpr std::size_t kStopCauses = 35;
+
+/// By what a cause was told: `value` beyond `limit`, in the unit of its row in cause_names.h.
+struct CauseEvidence {
+  std::uint64_t cause = 0;           ///< one bit; 0: unused
+  std::uint64_t cycle = 0;           ///< in which it became active
+  std::uint64_t joint = kMaxJoints;  ///< index into RobotModel::joints; kMaxJoints: of no single one
+  double value = 0;
+  double limit = 0;
+};
+inline constexpr std::size_t kMaxEvidence = 8;
 
 /// Why a reset was refused; bits of Permit::reset_refusal.
 enum ResetRefusal : std::uint64_t {
@@ -63,11 +103,14 @@ struct Permit {
   std::uint64_t causes = 0;          ///< latched since the last accepted reset
   std::uint64_t active = 0;          ///< true in this very cycle
   std::uint64_t first_cause = 0;     ///< one bit: what stopped the robot first
+  std::uint64_t warnings = 0;        ///< true now or a moment ago, told or slowed down for, not latched
   std::uint64_t since_cycle = 0;     ///< in which `state` was entered (of this run; 0 after a new run)
   std::uint64_t missing = 0;         ///< who has not been seen in this run
   std::uint64_t boot = 0;            ///< SensorFrame::boot of the driver it was issued for
   std::uint64_t resets_handled = 0;  ///< counter of the last reset request that was answered
   std::uint64_t reset_refusal = 0;   ///< why that one was refused; 0 = accepted
+  double speed_limit = 0;            ///< m/s, of every wheel's rim over the ground; kNoSpeedLimit: none
+  std::array<CauseEvidence, kMaxEvidence> evidence{};  ///< latched causes in the order they came, then warnings
 };
 
 }  // namespace robot_control

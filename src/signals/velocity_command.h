@@ -22,6 +22,8 @@ struct OperatorInput {
   std::uint64_t e_stop_services = 0;  ///< calls of `e_stop_trigger`
   std::uint64_t resets = 0;           ///< calls of `e_stop_reset`
   std::uint64_t heartbeats = 0;       ///< messages on `heartbeat`
+  std::uint64_t clearances = 0;       ///< messages on `clearance`
+  double clearance = 0;               ///< m, last value on topic `clearance`; as received, judged by the monitor
 };
 
 }  // namespace robot_control

@@ -1,0 +1,47 @@
+#pragma once
+/// The conditions that are active in one cycle, by the reaction they ask for, with what was measured of each.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "safety/condition_watch.h"
+#include "signals/permit.h"
+
+namespace robot_control {
+
+class ActiveCauses {
+ public:
+  void clear() noexcept { *this = {}; }
+
+  void add(StopCause cause, Reaction reaction, const Finding& finding = {}) noexcept {
+    bits_[static_cast<std::size_t>(reaction)] |= cause;
+    if (count_ == findings_.size()) return;
+    findings_[count_] = {.cause = cause, .joint = finding.joint, .value = finding.value, .limit = finding.limit};
+    ++count_;
+  }
+
+  /// Nothing while it is not active.
+  void add(const ConditionWatch& watch) noexcept {
+    if (watch.active()) add(watch.cause(), watch.reaction(), watch.finding());
+  }
+
+  /// StopCause bits.
+  std::uint64_t with(Reaction reaction) const noexcept { return bits_[static_cast<std::size_t>(reaction)]; }
+
+  /// What latches.
+  std::uint64_t stopping() const noexcept { return with(Reaction::kRamp) | with(Reaction::kBrake); }
+
+  /// In the order added; `cycle` is 0.
+  std::span<const CauseEvidence> findings() const noexcept { return {findings_.data(), count_}; }
+
+ private:
+  static constexpr std::size_t kReactions = 5;
+
+  std::array<std::uint64_t, kReactions> bits_{};
+  std::size_t count_ = 0;
+  std::array<CauseEvidence, kStopCauses> findings_{};
+};
+
+}  // namespace robot_control

@@ -1,0 +1,88 @@
+#pragma once
+/// Stop causes in words: what is the case, what is done about it, by whom.
+///
+///   operator     who drives the robot now
+///   integrator   who set it up: nodes, parameters, URDF, network
+///   technician   who repairs the machine: sensors, motors, cables, battery
+
+#include <array>
+
+#include "signals/bit_name.h"
+#include "signals/permit.h"
+
+namespace robot_control {
+
+// clang-format off
+inline constexpr auto kStopCauseNames = std::to_array<BitName>({
+    {kCauseEmergencyStopTopic, "e_stop_topic", "the topic e_stop said true",
+     "publish false on e_stop, then call e_stop_reset", "operator"},
+    {kCauseEmergencyStopService, "e_stop_service", "e_stop_trigger was called", "call e_stop_reset", "operator"},
+    {kCauseEmergencyStopInput, "e_stop_input", "the emergency stop button is pressed",
+     "release the button, then call e_stop_reset", "operator"},
+    {kCauseDriverLost, "driver_lost", "the driver published no sensors for 20 periods",
+     "look whether the driver node runs and gets its core, then call e_stop_reset", "integrator", "periods"},
+    {kCauseDriverFault, "driver_fault", "the driver reports a fault",
+     "read the driver's fault, repair it, restart or reset the driver, then call e_stop_reset", "technician"},
+    {kCauseControllerLost, "controller_lost", "the controller published no command for loss_cycles cycles",
+     "look whether diff_drive_controller runs, then call e_stop_reset", "integrator", "cycles"},
+    {kCauseEstimatorLost, "estimator_lost", "the estimator published no state for loss_cycles cycles",
+     "look whether state_estimator runs, then call e_stop_reset", "integrator", "cycles"},
+    {kCauseHeartbeatLost, "heartbeat_lost", "the operator's heartbeat stopped",
+     "publish heartbeat again, then call e_stop_reset", "operator", "s"},
+    {kCauseMonitorRestarted, "monitor_restarted", "the safety monitor was restarted while the driver ran on",
+     "call e_stop_reset", "operator"},
+    {kCauseCorruptFrame, "corrupt_frame", "frames with a wrong checksum were read",
+     "look for two builds on one bus or failing memory, then call e_stop_reset", "integrator", "cycles"},
+    {kCauseNotFinite, "not_finite", "sensors or command held NaN or infinity",
+     "look at the sensors and at the controller's log, then call e_stop_reset", "technician", "cycles"},
+    {kCauseMonitorLate, "monitor_late", "the safety monitor missed more than loss_cycles cycles",
+     "look what keeps safety_monitor from its core, then call e_stop_reset", "integrator", "cycles"},
+    {kCauseEncodersLost, "encoders_lost", "the wheel encoders report nothing",
+     "look at the encoders' cables and power, then call e_stop_reset", "technician", "s"},
+    {kCauseImuLost, "imu_lost", "gyro or accelerometer report nothing any more",
+     "look at the IMU's cable and power", "technician", "s"},
+    {kCauseImuStuck, "imu_stuck", "gyro or accelerometer repeat one sample while the wheels turn",
+     "restart the IMU or its driver", "technician", "s"},
+    {kCauseCommandStale, "command_stale", "the controller's commands descend from an old state",
+     "look what keeps diff_drive_controller and state_estimator from their core, then call e_stop_reset",
+     "integrator", "cycles"},
+    {kCauseWheelSpeed, "wheel_speed", "a wheel is faster than allowed",
+     "look at load, slope, encoder and motor of that wheel, then call e_stop_reset", "technician", "rad/s"},
+    {kCauseWheelAcceleration, "wheel_acceleration", "a wheel's speed changes faster than its motor can make it",
+     "look at the encoder of that wheel, then call e_stop_reset", "technician", "rad/s²"},
+    {kCauseWheelEffort, "wheel_effort", "a motor gives more torque than it may",
+     "look at the drive of that wheel, then call e_stop_reset", "technician", "of its limit"},
+    {kCausePower, "power", "the motors draw more mechanical power than allowed",
+     "look at load and drives, then call e_stop_reset", "technician", "W"},
+    {kCauseStall, "stall", "a wheel stands though it was told to turn",
+     "free the wheel, or look at its motor and encoder, then call e_stop_reset", "technician", "rad"},
+    {kCauseRunaway, "runaway", "a wheel is faster than it was told",
+     "look at slope and load, motor and encoder of that wheel, then call e_stop_reset", "technician", "rad/s"},
+    {kCauseWrongDirection, "wrong_direction", "a wheel turns against what it was told",
+     "look at the wiring of its motor and encoder, then call e_stop_reset", "technician", "rad/s"},
+    {kCauseNotStopping, "not_stopping", "the robot still moves though it was told to stand",
+     "look who pushes it, at slope, motors and encoders, then call e_stop_reset", "technician", "s"},
+    {kCauseYawRate, "yaw_rate", "gyro and wheels disagree on how fast the robot turns",
+     "look at gyro, encoders and grip of the wheels, then call e_stop_reset", "technician", "rad/s"},
+    {kCauseTilt, "tilt", "the robot is tilted too far",
+     "set it upright on level ground, then call e_stop_reset", "operator", "rad"},
+    {kCauseTipOver, "tip_over", "the robot was tipping over",
+     "set it upright, lower load or speed, then call e_stop_reset", "operator", "rad/s"},
+    {kCauseFreeFall, "free_fall", "the robot was falling",
+     "look at the robot, then call e_stop_reset", "operator", "m/s²"},
+    {kCauseLift, "lift", "the wheels carry too little of the robot's weight",
+     "set it down on its wheels, then call e_stop_reset", "operator", "of its weight"},
+    {kCauseImpact, "impact", "the robot hit something",
+     "look what it hit, then call e_stop_reset", "operator", "m/s²"},
+    {kCauseGateRefuses, "gate_refuses", "the gate brakes in spite of the permit, or refuses frames",
+     "read the gate's reasons in /diagnostics, then call e_stop_reset", "integrator", "cycles"},
+    {kCauseGateDisobeys, "gate_disobeys", "the gate let a command pass in spite of the permit",
+     "use the hardware emergency stop; repair the driver, then call e_stop_reset", "integrator", "cycles"},
+    {kCauseOverruns, "overruns", "the driver often ends its cycle too late",
+     "grant real-time privileges, keep other work off its core", "integrator", "1/s"},
+    {kCauseBatteryLow, "battery_low", "the battery is low", "charge it soon", "operator", "V"},
+    {kCauseBatteryEmpty, "battery_empty", "the battery is empty", "charge it, then call e_stop_reset", "operator", "V"},
+});
+// clang-format on
+
+}  // namespace robot_control
