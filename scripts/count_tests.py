@@ -3,9 +3,9 @@
 
 usage: count_tests.py FOLDER…
 
-JUnit files of gtest, pytest and rosunit count case by case. CTest's own Test.xml counts a whole entry, and only when
-it failed without any failed case in a JUnit file of its name: a program that crashed, hung or never started.
-Exit code 0 if and only if something passed and nothing failed.
+What was skipped stands above it by name, one line per reason. JUnit files of gtest, pytest and rosunit count case by
+case. CTest's own Test.xml counts a whole entry, and only when it failed without any failed case in a JUnit file of its
+name: a program that crashed, hung or never started. Exit code 0 if and only if something passed and nothing failed.
 """
 
 import sys
@@ -23,6 +23,20 @@ def outcome(case: ET.Element) -> str:
     if case.find("skipped") is not None or case.get("status") == "notrun" or case.get("result") == "skipped":
         return SKIPPED
     return PASSED
+
+
+def skips(root: ET.Element) -> list[tuple[str, str]]:
+    """Reason and name of every skipped <testcase>. gtest writes the source's place into the message, a line before."""
+    found = []
+    for case in root.iter("testcase"):
+        if outcome(case) != SKIPPED:
+            continue
+        note = case.find("skipped")
+        text = "" if note is None else note.get("message") or note.text or ""
+        lines = [line.strip() for line in text.splitlines() if line.strip() and ".cpp:" not in line]
+        suite = case.get("classname", "")
+        found.append((" ".join(lines) or "no reason given", f"{suite}.{case.get('name', '')}".lstrip(".")))
+    return found
 
 
 def count_junit(root: ET.Element) -> Counter[str]:
@@ -45,12 +59,13 @@ def ros_name(stem: str) -> str:
     return stem.removeprefix("rostest-").removeprefix("rosunit-").removesuffix("_test")
 
 
-def count(folders: list[Path]) -> tuple[Counter[str], list[str]]:
-    """All cases, and the CTest entries and files that failed as a whole."""
+def count(folders: list[Path]) -> tuple[Counter[str], list[str], dict[str, list[str]]]:
+    """All cases; the CTest entries and files that failed as a whole; names of the skipped cases by reason."""
     total: Counter[str] = Counter()
     wholly_failed: list[str] = []
     explained: set[str] = set()
     entries: set[str] = set()
+    skipped: dict[str, list[str]] = {}
     for path in sorted(file for folder in folders for file in folder.rglob("*.xml")):
         try:
             root = ET.parse(path).getroot()
@@ -65,6 +80,9 @@ def count(folders: list[Path]) -> tuple[Counter[str], list[str]]:
         cases = count_junit(root)
         if is_summary_of_nodes(path):
             cases = Counter({FAILED: cases[FAILED]})
+        else:
+            for reason, name in skips(root):
+                skipped.setdefault(reason, []).append(name)
         if cases[FAILED]:
             explained.add(path.stem)
         total += cases
@@ -72,12 +90,14 @@ def count(folders: list[Path]) -> tuple[Counter[str], list[str]]:
         entry for entry in sorted(entries) if not any(stem == entry or ros_name(stem) in entry for stem in explained)
     ]
     total[FAILED] += len(wholly_failed)
-    return total, wholly_failed
+    return total, wholly_failed, skipped
 
 
 def main(folders: list[str]) -> int:
-    """Prints what failed as a whole, then the line."""
-    total, wholly_failed = count([Path(folder) for folder in folders])
+    """Prints what was skipped, what failed as a whole, then the line."""
+    total, wholly_failed, skipped = count([Path(folder) for folder in folders])
+    for reason, names in sorted(skipped.items()):
+        print(f"skipped: {reason}: {', '.join(sorted(set(names)))}")
     for name in wholly_failed:
         print(f"failed as a whole: {name}")
     print(f"{total[PASSED]} passed, {total[FAILED]} failed, {total[SKIPPED]} skipped")

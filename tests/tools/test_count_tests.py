@@ -9,7 +9,8 @@ PROGRAM = Path(__file__).parents[2] / "scripts/count_tests.py"
 GTEST = """<testsuites><testsuite name="Gate">
   <testcase name="Passes" status="run" result="completed"/>
   <testcase name="Fails" status="run" result="completed"><failure message="no"/></testcase>
-  <testcase name="Skips" status="run" result="skipped"><skipped message="why"/></testcase>
+  <testcase name="Skips" classname="Gate" status="run" result="skipped">
+    <skipped message="gate_test.cpp:7&#x0A;why"/></testcase>
   <testcase name="DISABLED_Rests" status="notrun" result="suppressed"/>
 </testsuite></testsuites>"""
 PASSED = '<testsuites><testsuite name="a"><testcase name="b"/></testsuite></testsuites>'
@@ -18,18 +19,34 @@ CTEST = """<Site><Testing><TestList><Test>./test_gate</Test></TestList>
 
 
 @pytest.fixture
-def count(tmp_path):
+def output(tmp_path):
     def run(**files):
         for name, text in files.items():
             (tmp_path / f"{name}.xml").write_text(text)
         done = subprocess.run([sys.executable, "-I", PROGRAM, tmp_path], capture_output=True, text=True, check=False)
-        return done.returncode, done.stdout.splitlines()[-1]
+        return done.returncode, done.stdout.splitlines()
+
+    return run
+
+
+@pytest.fixture
+def count(output):
+    def run(**files):
+        code, lines = output(**files)
+        return code, lines[-1]
 
     return run
 
 
 def test_cases_are_counted_by_outcome(count):
     assert count(test_gate=GTEST) == (1, "1 passed, 1 failed, 2 skipped")
+
+
+def test_what_was_skipped_is_named_with_its_reason(output):
+    skipping = PASSED.replace("/></testsuite>", "><skipped>no root here</skipped></testcase></testsuite>")
+    lines = output(test_gate=GTEST, pytest=skipping)[1]
+    assert "skipped: why: Gate.Skips" in lines
+    assert "skipped: no root here: b" in lines
 
 
 def test_all_passed_is_success(count):
