@@ -1,0 +1,41 @@
+#include "safety/derived_limits.h"
+
+#include <algorithm>
+
+namespace robot_control {
+namespace {
+
+void fill(Condition& condition, double limit) {
+  if (!condition.limit) condition.limit = limit;
+}
+
+double wheel_speed_limit(const RobotModel& robot, double commanded) {
+  double bearable = 1.25 * commanded;
+  for (const WheelModel& wheel : robot.wheels) {
+    const double limit = robot.joints[wheel.joint].velocity_limit;
+    if (limit <= 0) continue;
+    commanded = std::min(commanded, limit);
+    bearable = std::min(bearable, limit);
+  }
+  return std::max({1.1 * commanded, commanded + kSpeedMargin, std::min(1.25 * commanded, bearable)});
+}
+
+}  // namespace
+
+SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed) {
+  SafetyParameters limits = given;
+  fill(limits.wheel_speed, wheel_speed_limit(robot, commanded_wheel_speed));
+  const double speed = *limits.wheel_speed.limit;
+  double acceleration = 0, power = 0;
+  for (const WheelModel& wheel : robot.wheels) {
+    const double effort = robot.joints[wheel.joint].effort_limit;
+    acceleration = std::max(acceleration, 2 * effort / wheel.inertia + speed / kSpeedWindow);
+    power += effort * speed;
+  }
+  fill(limits.wheel_acceleration, acceleration);
+  fill(limits.power, power);
+  fill(limits.runaway, std::max(0.2 * speed, kLeastRunaway));
+  return limits;
+}
+
+}  // namespace robot_control

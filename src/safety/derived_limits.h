@@ -1,0 +1,33 @@
+#pragma once
+/// Limits that a user leaves out, from the robot and from what its controller may ask of it. What is given stays.
+///
+/// With ω = commanded_wheel_speed, the fastest that the controller's speed limits ask of any wheel, but no more than
+/// the slowest wheel's own velocity limit ω_m, at which the controller saturates (ω_m is left out where the robot knows
+/// none); τ a wheel's effort limit, J its inertia, T = 20 ms the window over which wheel speeds are measured:
+///
+///   wheel_speed         Ω = max(1.1 ω, ω + kSpeedMargin, min(1.25 ω, ω_m))
+///                       a quarter for overshoot, slopes and wheels that spin for a moment, where the wheel bears it
+///   wheel_acceleration  max over wheels of 2 τ/J + Ω/T
+///                       τ/J is what motor or brake give the wheel in the air, where it is lightest; twice, for
+///                       friction that helps to brake and an inertia that is not known well. The ground can stop a
+///                       wheel at once (a wall, a kerb, a landing): Ω within one window
+///   power               Σ τ Ω: every motor at both its limits
+///   runaway             max(0.2 Ω, kLeastRunaway)
+///                       kLeastRunaway: a wheel loop that is being pushed, and 20 quanta of a wheel speed measured with
+///                       4096 counts over T (0.077 rad/s)
+///
+/// Battery limits stay absent: no URDF tells a battery.
+
+#include "robot/robot_model.h"
+#include "safety/safety_parameters.h"
+
+namespace robot_control {
+
+inline constexpr double kSpeedMargin = 1.0;   ///< rad/s, 13 quanta as above: for robots that are driven slowly
+inline constexpr double kLeastRunaway = 2.0;  ///< rad/s
+inline constexpr double kSpeedWindow = 0.02;  ///< s, T
+
+/// `commanded_wheel_speed` rad/s, > 0.
+SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed);
+
+}  // namespace robot_control

@@ -1,0 +1,98 @@
+/// What a limit becomes that nobody gave. Two wheels of 3.5 N·m, 0.005 kg·m² and 30 rad/s, told at most 15 rad/s.
+
+#include "safety/derived_limits.h"
+
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+constexpr double kRounding = 1e-12;
+constexpr double kCommanded = 15;
+
+class DerivedLimits : public testing::Test {
+ protected:
+  DerivedLimits() {
+    robot_.joints.resize(2);
+    robot_.wheels.resize(2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      robot_.joints[i].effort_limit = 3.5;
+      robot_.joints[i].velocity_limit = 30;
+      robot_.wheels[i].joint = i;
+      robot_.wheels[i].inertia = 0.005;
+    }
+  }
+
+  SafetyParameters limits(double commanded = kCommanded) const { return derived_limits(given_, robot_, commanded); }
+  double wheel_speed(double commanded = kCommanded) const { return limits(commanded).wheel_speed.limit.value(); }
+
+  RobotModel robot_;
+  SafetyParameters given_;
+};
+
+TEST_F(DerivedLimits, LeaveAQuarterAboveTheFastestCommand) {
+  EXPECT_NEAR(wheel_speed(), 18.75, kRounding);
+}
+
+TEST_F(DerivedLimits, OfSpeedAreThoseOfTheSlowestWheelWhereItBearsLess) {
+  robot_.joints[1].velocity_limit = 17;
+  EXPECT_NEAR(wheel_speed(), 17, kRounding);
+}
+
+TEST_F(DerivedLimits, LeaveATenthEvenWhereTheCommandReachesTheWheelsOwnLimit) {
+  robot_.joints[1].velocity_limit = 15;
+  EXPECT_NEAR(wheel_speed(), 16.5, kRounding);
+}
+
+TEST_F(DerivedLimits, ExpectNoCommandBeyondTheWheelsOwnLimit) {
+  robot_.joints[1].velocity_limit = 12;
+  EXPECT_NEAR(wheel_speed(), 13.2, kRounding) << "the controller saturates at 12";
+}
+
+TEST_F(DerivedLimits, OfSpeedNeedNoVelocityLimit) {
+  for (JointModel& joint : robot_.joints) joint.velocity_limit = 0;
+  EXPECT_NEAR(wheel_speed(), 18.75, kRounding);
+}
+
+TEST_F(DerivedLimits, LeaveASlowRobotRoomForWhatEncodersCannotTell) {
+  EXPECT_NEAR(wheel_speed(0.2), 0.2 + kSpeedMargin, kRounding);
+}
+
+TEST_F(DerivedLimits, OfAccelerationAreTwiceTheMotorsAndAStopWithinTheWindow) {
+  EXPECT_NEAR(limits().wheel_acceleration.limit.value(), 2 * 3.5 / 0.005 + 18.75 / 0.02, 1e-9);
+  robot_.wheels[1].inertia = 0.001;
+  EXPECT_NEAR(limits().wheel_acceleration.limit.value(), 2 * 3.5 / 0.001 + 18.75 / 0.02, 1e-9)
+      << "the lightest wheel's";
+}
+
+TEST_F(DerivedLimits, OfPowerAreAllMotorsAtBothTheirLimits) {
+  EXPECT_NEAR(limits().power.limit.value(), 2 * 3.5 * 18.75, kRounding);
+}
+
+TEST_F(DerivedLimits, OfRunawayAreAFifthOfTheSpeedLimitButNeverLessThanTwo) {
+  EXPECT_NEAR(limits().runaway.limit.value(), 3.75, kRounding);
+  EXPECT_NEAR(limits(1).runaway.limit.value(), kLeastRunaway, kRounding);
+}
+
+TEST_F(DerivedLimits, FollowASpeedLimitThatIsGiven) {
+  given_.wheel_speed.limit = 40;
+  EXPECT_EQ(wheel_speed(), 40);
+  EXPECT_NEAR(limits().power.limit.value(), 2 * 3.5 * 40, kRounding);
+  EXPECT_NEAR(limits().runaway.limit.value(), 8, kRounding);
+}
+
+TEST_F(DerivedLimits, LeaveWhatIsGiven) {
+  for (Condition* condition : {&given_.wheel_acceleration, &given_.power, &given_.runaway}) condition->limit = 1.5;
+  const SafetyParameters result = limits();
+  EXPECT_EQ(result.wheel_acceleration.limit, 1.5);
+  EXPECT_EQ(result.power.limit, 1.5);
+  EXPECT_EQ(result.runaway.limit, 1.5);
+}
+
+TEST_F(DerivedLimits, InventNoBattery) {
+  EXPECT_FALSE(limits().battery_low.limit);
+  EXPECT_FALSE(limits().battery_empty.limit);
+}
+
+}  // namespace
+}  // namespace robot_control
