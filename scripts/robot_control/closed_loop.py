@@ -111,7 +111,7 @@ class ClosedLoop:
 
         Args:
             component: left_encoder right_encoder gyro accelerometer left_motor right_motor controller estimator
-                monitor
+                monitor battery e_stop_button
             kind: ok (heals) off stuck garbage wrong slow delayed intermittent
 
         Raises:

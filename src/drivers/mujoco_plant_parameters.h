@@ -57,6 +57,11 @@ struct MujocoPlantParameters {
   double accelerometer_bias = 0.196;        ///< m/s², standard deviation of each axis' draw
   double accelerometer_bias_walk = 6.5e-5;  ///< m/s²/√s
   std::uint64_t sensor_delay = 0;           ///< cycles
+  bool contact_sensors = false;             ///< true: forces at wheels and casters (SensorFrame::contact_forces)
+
+  // The battery (battery.h); it does not run down.
+  double battery_voltage = 0;       ///< V, without load; 0: none is reported
+  double battery_resistance = 0.1;  ///< Ω, of cells and cables
 
   // A push at the base's origin, base axes turned into the world at its start.
   double push_x = 0, push_y = 0, push_z = 0;  ///< N

@@ -19,8 +19,10 @@ enum class FaultComponent : std::size_t {
   kController,
   kEstimator,
   kMonitor,
+  kBattery,
+  kEStopButton,
 };
-inline constexpr std::size_t kFaultComponents = 9;
+inline constexpr std::size_t kFaultComponents = 11;
 
 enum class FaultKind : std::uint64_t {
   kOk,            ///< healthy again
@@ -41,6 +43,7 @@ inline FaultKind fault_of(const InjectedFaults& faults, FaultComponent component
 }
 
 /// All of them in one number, for the log: Σ kind · 8^component, in octal one digit per component. 0: healthy.
+static_assert(3 * kFaultComponents <= 53, "the log's numbers are doubles");
 constexpr std::uint64_t fault_code(const InjectedFaults& faults) noexcept {
   std::uint64_t code = 0;
   for (std::size_t i = 0; i < kFaultComponents; ++i) code |= (static_cast<std::uint64_t>(faults[i]) & 7u) << (3 * i);

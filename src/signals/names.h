@@ -146,8 +146,8 @@ constexpr std::string_view name_of(JointMode mode) noexcept {
 
 /// In the order of FaultComponent and of FaultKind: the words of the service inject_fault.
 inline constexpr std::array<std::string_view, kFaultComponents> kFaultComponentNames{
-    "left_encoder", "right_encoder", "gyro",      "accelerometer", "left_motor",
-    "right_motor",  "controller",    "estimator", "monitor"};
+    "left_encoder", "right_encoder", "gyro",    "accelerometer", "left_motor",   "right_motor",
+    "controller",   "estimator",     "monitor", "battery",       "e_stop_button"};
 inline constexpr std::array<std::string_view, kFaultKinds> kFaultKindNames{"ok",    "off",  "stuck",   "garbage",
                                                                            "wrong", "slow", "delayed", "intermittent"};
 

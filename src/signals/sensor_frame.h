@@ -55,9 +55,11 @@ struct SensorFrame {
   std::uint64_t joint_count = 0;
   std::array<JointSample, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
   ImuSample imu;
-  std::array<Vector3, kMaxContacts> contact_forces{};  ///< N, base axes, mean over [t_k-1, t_k)
+
+  /// N, on the wheels, base axes, mean over [t_k-1, t_k): of RobotModel::wheels, then casters, as far as there is room.
+  std::array<Vector3, kMaxContacts> contact_forces{};
   std::uint64_t digital_inputs = 0;
-  double battery_voltage = 0;    ///< V
+  double battery_voltage = 0;    ///< V, at the terminals
   double battery_current = 0;    ///< A, positive when discharging
   GateReport gate;               ///< of tick k-1
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
