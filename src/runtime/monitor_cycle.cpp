@@ -6,7 +6,7 @@ namespace robot_control {
 
 MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
                            const Channels& channels, CommandScript script, Now now)
-    : monitor_(parameters, period, robot.wheels.size()),
+    : monitor_(parameters, robot, period),
       clock_(now),
       channels_(channels),
       script_(std::move(script)),

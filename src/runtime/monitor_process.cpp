@@ -1,5 +1,7 @@
 #include "runtime/monitor_process.h"
 
+#include "runtime/safety_limits.h"
+
 namespace robot_control {
 
 MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
@@ -7,7 +9,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
                       {LoopPriority::kMonitor, "safety_monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
       command_(bus, ChannelNames::kCommand),
-      cycle_(parameters.safety, robot_, parameters.loop.period(),
+      cycle_(safety_limits(parameters, robot_), robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
              load_script(parameters.loop.command_script), clock_of(parameters.loop)) {}
 

@@ -34,9 +34,9 @@ bool asks_for_motion(const CommandFrame* command) noexcept {
 
 }  // namespace
 
-SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, double period, std::size_t wheels)
+SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period)
     : conditions_(checked(parameters, period), period),
-      standstill_(parameters.standstill_speed, wheels),
+      standstill_(parameters.standstill_speed, robot.wheels.size()),
       supervisor_(static_cast<std::uint64_t>(std::llround(parameters.ramp_time / period))) {}
 
 void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "robot/robot_model.h"
 #include "safety/conditions.h"
 #include "safety/monitor_input.h"
 #include "safety/safety_parameters.h"
@@ -23,9 +24,8 @@ namespace robot_control {
 
 class SafetyMonitor {
  public:
-  /// `wheels`: how many joints, from the first on, move the robot. Throws std::invalid_argument: a period, speed or
-  /// time out of range, loss_cycles 0.
-  SafetyMonitor(const SafetyParameters& parameters, double period, std::size_t wheels);
+  /// `period` s. Throws std::invalid_argument: a period, speed or time out of range, loss_cycles 0.
+  SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
   /// A new run: sightings and counts begin anew; latched causes stay. `operator_input` is the inbox now:
   /// resets and heartbeats in it are dropped, emergency stops that were not yet acted on are not.

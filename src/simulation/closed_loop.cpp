@@ -8,6 +8,7 @@
 #include "runtime/driver_cycle.h"
 #include "runtime/estimator_cycle.h"
 #include "runtime/monitor_cycle.h"
+#include "runtime/safety_limits.h"
 #include "runtime/start_check.h"
 #include "signals/names.h"
 
@@ -43,7 +44,7 @@ struct ClosedLoop::Parts {
         controller(given.controller, robot, given.loop.period(),
                    {&sensors.reader, &state.reader, &permit.reader, command.writer},
                    load_script(given.loop.command_script), nullptr),
-        monitor(given.safety, robot, given.loop.period(),
+        monitor(safety_limits(given, robot), robot, given.loop.period(),
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr) {
     plant.start();

@@ -123,7 +123,7 @@ int run(const std::string& path) {
                            .command = &drive.commands[k - 1]});
               }));
 
-  SafetyMonitor monitor(parameters.safety, period, robot.wheels.size());
+  SafetyMonitor monitor(parameters.safety, robot, period);
   Permit permit;
   add(rows, "monitor",
       measure([&] { monitor.reset({}); },

@@ -157,7 +157,7 @@ TEST_F(CausesTest, APausedDriverIsNotLost) {
 }
 
 TEST_F(CausesTest, ADriverThatWasNeverThereIsNotLost) {
-  SafetyMonitor monitor(parameters(), kPeriod, kWheels);
+  SafetyMonitor monitor(parameters(), robot(), kPeriod);
   monitor.driver_lost();
   monitor.step(input_, permit_);
   EXPECT_EQ(permit_.causes, 0u);
@@ -257,7 +257,7 @@ TEST_F(MonitorTest, AStandingRobotNeedsNoHeartbeat) {
 TEST_F(MonitorTest, HeartbeatTimeoutZeroAsksForNone) {
   SafetyParameters none = parameters();
   none.heartbeat_timeout = 0;
-  monitor_ = SafetyMonitor(none, kPeriod, kWheels);
+  monitor_ = SafetyMonitor(none, robot(), kPeriod);
   ask_for(0.5);
   steps(10 * kHeartbeat);
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
@@ -381,7 +381,7 @@ TEST(SafetyMonitorConstruction, RefusesParametersOutOfRange) {
   const auto refused = [](auto change, double period) {
     SafetyParameters parameters;
     change(parameters);
-    EXPECT_THROW(SafetyMonitor(parameters, period, 2), std::invalid_argument);
+    EXPECT_THROW(SafetyMonitor(parameters, RobotModel(), period), std::invalid_argument);
   };
   refused([](SafetyParameters&) {}, 0);
   refused([](SafetyParameters& p) { p.loss_cycles = 0; }, 1e-3);

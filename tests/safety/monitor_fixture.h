@@ -36,6 +36,18 @@ class MonitorTest : public testing::Test {
     return parameters;
   }
 
+  /// Two wheels of 0.1 m radius, 0.5 m apart.
+  static RobotModel robot() {
+    RobotModel robot;
+    robot.joints.assign(kWheels, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
+    robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
+                    {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
+    robot.wheels[1].side = Side::kRight;
+    robot.wheel_base = 0.5;
+    robot.mass = 12;
+    return robot;
+  }
+
   /// The next cycle.
   void step() {
     if (begun_) ++sensors_.head.cycle;
@@ -78,7 +90,7 @@ class MonitorTest : public testing::Test {
   SensorFrame sensors_;
   CommandFrame command_;
   MonitorInput input_;
-  SafetyMonitor monitor_{parameters(), kPeriod, kWheels};
+  SafetyMonitor monitor_{parameters(), robot(), kPeriod};
   Permit permit_;
   bool begun_ = false;
 };

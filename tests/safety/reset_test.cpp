@@ -155,7 +155,7 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     const auto chance = [&](unsigned one_in) { return random() % one_in == 0; };
-    monitor_ = SafetyMonitor(parameters(), kPeriod, kWheels);
+    monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
     new_run();
     std::uint64_t latched = 0;
     for (int i = 0; i < 2000; ++i) {

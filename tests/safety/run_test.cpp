@@ -170,7 +170,7 @@ class RestartTest : public RunTest {
   void restart() {
     const Permit last = permit_;
     input_.operator_input = {};
-    monitor_ = SafetyMonitor(parameters(), kPeriod, kWheels);
+    monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
     monitor_.resume(last);
     monitor_.reset(input_.operator_input);
   }
@@ -238,7 +238,7 @@ TEST_F(RestartTest, BesideANewDriverBeginsInInit) {
 TEST_F(RestartTest, WithoutItsLastPermitTheGateIsTheWitness) {
   drive();
   sensors_.gate.permit_cycle = cycle();
-  monitor_ = SafetyMonitor(parameters(), kPeriod, kWheels);
+  monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
   monitor_.reset(input_.operator_input);
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
@@ -267,7 +267,7 @@ TEST_F(RestartTest, SameFactsGiveTheSameBits) {
   Permit first;
   Permit second;
   for (Permit* permit : {&first, &second}) {
-    SafetyMonitor monitor(parameters(), kPeriod, kWheels);
+    SafetyMonitor monitor(parameters(), robot(), kPeriod);
     SensorFrame sensors = sensors_;
     MonitorInput input = input_;
     input.sensors = &sensors;
