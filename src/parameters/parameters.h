@@ -14,6 +14,7 @@
 #include "control/drive_controller.h"
 #include "drivers/mujoco_plant_parameters.h"
 #include "estimation/estimator.h"
+#include "hal/gate_parameters.h"
 #include "robot/robot_model.h"
 #include "rt/realtime_thread.h"
 #include "safety/safety_monitor.h"
@@ -32,7 +33,8 @@ struct LoopParameters {
   double rate = 1000;  ///< Hz, 100 … 2000
   ClockMode clock = ClockMode::kWall;
   RealtimePolicy realtime = RealtimePolicy::kPreferred;
-  std::int64_t core = 0;            ///< the one core the chain is pinned to; -1 = not pinned
+  std::int64_t core = 0;  ///< the one core the chain is pinned to; -1 = not pinned
+  FailAction fail_action = FailAction::kBrake;
   std::string bus;                  ///< empty: from master and namespace
   std::string command_script;       ///< CSV path; empty: none
   bool wait_for_nodes = false;      ///< cycle 0 begins when all four nodes hold their channels; always in lockstep

@@ -42,6 +42,7 @@ std::uint64_t model_hash(const std::string& urdf, const RobotParameters& paramet
   hash.add(parameters.wheel_radius);
   hash.add(parameters.wheel_effort_limit);
   hash.add(parameters.wheel_velocity_limit);
+  hash.add(parameters.wheel_effort_rate);
   hash.add(parameters.mass);
   hash.add(std::optional<double>(parameters.centre_of_gravity ? 1.0 : 0.0));
   for (const double value : parameters.centre_of_gravity.value_or(Vector3{})) hash.add(value);

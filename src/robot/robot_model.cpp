@@ -41,10 +41,28 @@ void read_geometry(const RigidBodies& robot, const RobotParameters& parameters, 
   }
 }
 
+std::optional<JointRange> range_of(const BodyJoint& joint) {
+  if (!(joint.lower < joint.upper)) return std::nullopt;
+  return JointRange{joint.lower, joint.upper};
+}
+
 void add_joint(const RigidBody& body, JointRole role, RobotModel& model) {
   const double effort = role == JointRole::kPassive ? 0 : body.joint.effort_limit;
-  model.joints.push_back(
-      {body.joint.name, body.name, effort, body.joint.velocity_limit, role, body.joint.damping, body.joint.friction});
+  model.joints.push_back({.name = body.joint.name,
+                          .child_link = body.name,
+                          .effort_limit = effort,
+                          .velocity_limit = body.joint.velocity_limit,
+                          .role = role,
+                          .damping = body.joint.damping,
+                          .friction = body.joint.friction,
+                          .range = range_of(body.joint),
+                          .prismatic = body.joint.type == JointType::kPrismatic});
+}
+
+/// Wheels turn without end, whatever their joints say.
+void free_wheels(RobotModel& model) {
+  for (const WheelModel& wheel : model.wheels) model.joints[wheel.joint].range.reset();
+  for (const WheelModel& caster : model.casters) model.joints[caster.joint].range.reset();
 }
 
 void read_joints(const RigidBodies& robot, const RobotParameters& parameters, DriveTrain& train, RobotModel& model) {
@@ -59,6 +77,8 @@ void read_joints(const RigidBodies& robot, const RobotParameters& parameters, Dr
     const DriveLimits limits = drive_limits(robot, train, wheel, parameters, model.notes);
     model.joints.back().effort_limit = limits.effort;
     model.joints.back().velocity_limit = limits.velocity;
+    const double given = overridden("wheel_effort_rate", "N·m/s", parameters.wheel_effort_rate, 0, robot, model.notes);
+    model.joints.back().effort_rate = given > 0 ? given : limits.effort / kEffortRise;
     model.wheels.push_back(wheel.wheel);
   }
   for (const std::string& name : robot.moving_joints) {
@@ -71,6 +91,7 @@ void read_joints(const RigidBodies& robot, const RobotParameters& parameters, Dr
     }
     add_joint(robot.bodies[body], roles[body], model);
   }
+  free_wheels(model);
 }
 
 struct MassSum {

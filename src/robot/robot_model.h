@@ -25,6 +25,7 @@ struct RobotParameters {
   std::optional<double> wheel_radius;           ///< m, every wheel
   std::optional<double> wheel_effort_limit;     ///< N·m, every wheel; holds for the simulated drive, too
   std::optional<double> wheel_velocity_limit;   ///< rad/s, every wheel
+  std::optional<double> wheel_effort_rate;      ///< N·m/s, every wheel; empty: kEffortRise
   std::optional<double> mass;                   ///< kg
   std::optional<Vector3> centre_of_gravity;     ///< m, base axes
   std::string imu_link;                         ///< empty: found by its name, else the IMU is in the base (imu_place.h)
@@ -35,6 +36,11 @@ enum class JointRole {
   kPassive,  ///< nobody drives it: swivel and wheel of a caster, suspension, rocker, follower of a mimic
   kHeld,     ///< driven by somebody else (arm, lift, gripper): braked, always
 };
+
+/// s from no torque to the effort limit, where nobody says how fast a wheel's torque may change. That is how long the
+/// current of a motor needs: inductance over resistance is 0.1 … 1 ms for brushed motors of 10 … 200 W (maxon
+/// catalogue, terminal inductance and resistance of the RE series), so no motor gets slower by it.
+inline constexpr double kEffortRise = 0.001;
 
 /// rad or m, lower < upper.
 struct JointRange {
@@ -53,6 +59,8 @@ struct JointModel {
   double damping = 0;                              ///< N·m·s/rad or N·s/m, of its bearing and gear
   double friction = 0;                             ///< N·m or N, dry
   std::optional<JointRange> range = std::nullopt;  ///< end stops; none: turns without end
+  bool prismatic = false;                          ///< m, m/s, N; else rad, rad/s, N·m
+  double effort_rate = 0;                          ///< N·m/s or N/s; 0: unlimited
 };
 
 enum class Side { kLeft, kRight };

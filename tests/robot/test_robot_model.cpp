@@ -175,6 +175,7 @@ TEST(RobotModel, EqualHashMeansEqualRobot) {
   EXPECT_TRUE(changed([](RobotParameters& p) { p.wheel_base_multiplier = 1.1; }));
   EXPECT_TRUE(changed([](RobotParameters& p) { p.wheel_effort_limit = 1; }));
   EXPECT_TRUE(changed([](RobotParameters& p) { p.wheel_velocity_limit = 1; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.wheel_effort_rate = 1; }));
   EXPECT_TRUE(changed([](RobotParameters& p) { p.mass = 13; }));
   EXPECT_TRUE(changed([](RobotParameters& p) { p.centre_of_gravity = Vector3{}; }));
   EXPECT_TRUE(changed([](RobotParameters& p) { p.imu_link = "base_link"; }));

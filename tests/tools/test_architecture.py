@@ -22,7 +22,7 @@ MAY_INCLUDE = {
     "hal": {"signals", "rt", "robot"},
     "drivers": {"signals", "hal", "description", "robot", "rt"},
     # The schema fills in the parameter structs that the laws define.
-    "parameters": {"signals", "rt", "robot", "estimation", "control", "safety", "drivers"},
+    "parameters": {"signals", "rt", "robot", "estimation", "control", "safety", "hal", "drivers"},
     "telemetry": {"signals"},
     # What each node does in one cycle, and the process around it.
     "runtime": {"signals", "rt", "robot", "parameters", "estimation", "control", "safety", "hal", "telemetry"},
