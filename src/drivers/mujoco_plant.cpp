@@ -20,6 +20,15 @@ constexpr double kLastJointSpeed = std::numeric_limits<double>::infinity();  // 
 constexpr double kRestTime = 0.1;   // s, so long at rest, not just at a turning point
 constexpr double kSettleTime = 20;  // s
 
+/// The battery alone must bear what is not a motor.
+void check_battery(double voltage, double resistance) {
+  const double most = voltage / (2 * kIdleCurrent);
+  if (voltage <= 0 || resistance <= most) return;
+  throw DriverError("mujoco_plant: battery_resistance is " + number(resistance) + " ohm; a battery of " +
+                    number(voltage) + " V (battery_voltage) with more than " + number(most) +
+                    " ohm cannot feed the robot's electronics. Set less.");
+}
+
 }  // namespace
 
 MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
@@ -36,6 +45,7 @@ MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& p
     motors_.emplace_back(model_.robot.joints[wheel].effort_limit, parameters.no_load_speed, parameters.gear_ratio);
   }
   brakes_.resize(robot.joints.size());
+  check_battery(parameters.battery_voltage, parameters.battery_resistance);
 }
 
 void MujocoPlant::start() {
@@ -46,7 +56,7 @@ void MujocoPlant::start() {
   data_ = set_down(model_);
   wheels_.reset();
   for (JointLaw& law : laws_) law.reset();
-  state_ = DriverState::kRunning;
+  state_ = DriverState::kStarting;
   faults_ = 0;
   fault_message_ = {};
   stopped_ = false;
@@ -59,6 +69,7 @@ void MujocoPlant::start() {
   actuator_delay_.fill({});
   settled_ = false;
   settle();
+  state_ = DriverState::kRunning;
   cycle_ = 0;
   measure();
 }
@@ -127,15 +138,22 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
     lost_ = sensor_faults_.step(injected_, cycle_, handed_out_);
     read_ = true;
   }
-  sensors.valid = good ? (kValidJoints | kValidGyro | kValidAccelerometer) & ~lost_ : 0;
+  sensors.valid = good ? equipped() & ~lost_ : 0;
   sensors.joint_count = brakes_.size();
   sensors.joints = handed_out_.joints;
   sensors.imu = handed_out_.imu;
-  sensors.contact_forces = {};
-  sensors.digital_inputs = 0;
-  sensors.battery_voltage = 0;
-  sensors.battery_current = 0;
+  sensors.contact_forces = handed_out_.contact_forces;
+  sensors.digital_inputs = handed_out_.digital_inputs;
+  sensors.battery_voltage = handed_out_.battery.voltage;
+  sensors.battery_current = handed_out_.battery.current;
   sensors.injected = injected_;
+}
+
+std::uint64_t MujocoPlant::equipped() const noexcept {
+  std::uint64_t devices = kValidJoints | kValidGyro | kValidAccelerometer;
+  if (parameters_.contact_sensors) devices |= kValidContacts;
+  if (parameters_.battery_voltage > 0) devices |= kValidBattery;
+  return devices;
 }
 
 void MujocoPlant::write(std::span<const JointCommand> commands) noexcept {
@@ -159,6 +177,8 @@ void MujocoPlant::simulate(std::span<const JointCommand> commands) noexcept {
   effort_sum_ = {};
   normal_force_sum_ = {};
   acceleration_sum_ = {};
+  if (parameters_.contact_sensors) force_sum_.fill(Eigen::Vector3d::Zero());
+  power_sum_ = 0;
   for (int i = 0; i < model_.substeps; ++i) {
     if (!advance(commands)) return;
   }
@@ -202,6 +222,7 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     const double effort = motor_faults_.effort(wheel, commands[wheel].mode, wanted, position, velocity);
     data_->qfrc_applied[dof] = effort;
     effort_sum_[wheel] += effort;
+    power_sum_ += effort * velocity;
   }
   wheels_.apply(*data_);
   if (settled_ && parameters_.push_duration > 0) push();
@@ -219,6 +240,9 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     acceleration_sum_[axis] += data_->sensordata[static_cast<std::size_t>(model_.accelerometer) + axis];
   }
   for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) normal_force_sum_[wheel] += wheels_.normal_force(wheel);
+  if (parameters_.contact_sensors) {
+    for (std::size_t i = 0; i < std::min(wheels_.count(), kMaxContacts); ++i) force_sum_[i] += wheels_.force(i);
+  }
   return true;
 }
 
@@ -244,6 +268,15 @@ void MujocoPlant::collect() noexcept {
   std::copy_n(data_->sensordata + model_.gyro, 3, exact_.imu.angular_velocity.begin());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     exact_.imu.linear_acceleration[axis] = acceleration_sum_[axis] / model_.substeps;
+  }
+  if (parameters_.contact_sensors) {
+    for (std::size_t i = 0; i < kMaxContacts; ++i) {
+      Eigen::Map<Eigen::Vector3d>(exact_.contact_forces[i].data()) = force_sum_[i] / model_.substeps;
+    }
+  }
+  if (parameters_.battery_voltage > 0) {
+    exact_.battery =
+        battery_under_load(parameters_.battery_voltage, parameters_.battery_resistance, power_sum_ / model_.substeps);
   }
   collect_truth();
 }

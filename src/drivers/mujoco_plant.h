@@ -15,7 +15,8 @@
 /// 20 s; where it then rests is time zero and the origin of truth. It rests when its base has moved slower than
 /// 1 µm/s and 1 µrad/s, its joints than 1 mrad/s (a swivel nobody loads takes long, and matters not), for 0.1 s;
 /// or at last when the base is slower than 30 µm/s and 30 µrad/s. A robot that tilts by more than 30° falls over, and
-/// is refused. Same model and commands, same bits, also after another `start`.
+/// is refused; the driver then stays in state kStarting. Same model and commands, same bits, also after another
+/// `start`.
 ///
 /// A push acts on the base's origin from push_start for push_duration after time zero.
 ///
@@ -31,7 +32,9 @@
 /// (motor.h). Between state and `read`: sensor errors and delay (sensor_errors.h), injected faults (sensor_faults.h).
 /// Truth stands before all of them. `start` takes all injected faults back.
 ///
-/// Sensors: encoders of all joints, gyro and accelerometer at the IMU. No battery, no contact sensors.
+/// Sensors: encoders of all joints, gyro and accelerometer at the IMU; where the parameters say so, the forces of the
+/// ground on wheels and casters (wheel_contacts.h), and a battery (battery.h) that feeds all wheels. An e-stop button
+/// that nobody presses, unless its fault does.
 
 #include <array>
 #include <string>
@@ -82,6 +85,7 @@ class MujocoPlant final : public Driver {
   void collect_truth() noexcept;
   void measure() noexcept;
   bool finite() const noexcept;
+  std::uint64_t equipped() const noexcept;
   void fail(std::uint64_t fault, const char* message) noexcept;
 
   MujocoModel model_;
@@ -107,6 +111,8 @@ class MujocoPlant final : public Driver {
   std::array<double, kMaxJoints> effort_sum_{};
   std::array<double, kMaxWheels> normal_force_sum_{};
   std::array<double, 3> acceleration_sum_{};
+  std::array<Eigen::Vector3d, kMaxContacts> force_sum_{};
+  double power_sum_ = 0;
 
   using Commands = std::array<JointCommand, kMaxJoints>;
   Commands received_{};

@@ -6,7 +6,8 @@
 ///   n(k) = round(q(k)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
 ///
 /// the velocity as a drive derives it, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); 0 in the first sample.
-/// N = 0: exact. Joints that are no wheels are exact, and so are efforts: a drive measures its own current.
+/// N = 0: exact. Joints that are no wheels are exact, and so are contact forces, battery and inputs, and efforts: a
+/// drive measures its own current.
 ///
 /// Gyro and accelerometer, each axis, with σ = noise, s = walk, and w, v, u independent standard normal numbers:
 ///
@@ -30,6 +31,7 @@
 #include <random>
 #include <vector>
 
+#include "drivers/battery.h"
 #include "drivers/mujoco_plant_parameters.h"
 #include "hal/delay_line.h"
 #include "robot/robot_model.h"
@@ -43,6 +45,9 @@ inline constexpr std::size_t kLongestDelay = 100;  ///< cycles, of sensors as of
 struct Measurement {
   std::array<JointSample, kMaxJoints> joints{};
   ImuSample imu;
+  std::array<Vector3, kMaxContacts> contact_forces{};
+  BatterySample battery;
+  std::uint64_t digital_inputs = 0;  ///< DigitalInput bits
 };
 
 /// Independent standard normal numbers: G. Marsaglia's polar method (SIAM Review 6, 1964, p. 260), a quarter of the

@@ -22,6 +22,29 @@ bool step_axes(FaultyOutput<Vector3>& output, FaultKind kind, std::uint64_t cycl
   return false;
 }
 
+bool step_battery(FaultyOutput<BatterySample>& output, FaultKind kind, std::uint64_t cycle,
+                  BatterySample& battery) noexcept {
+  const auto spoil = [](FaultKind how, BatterySample& spoilt, FaultRandom& random) {
+    if (how == FaultKind::kWrong) {
+      spoilt.voltage *= SensorFaults::kWrongVoltage;
+    } else {
+      spoilt.voltage *= 2 * random.unit();
+      spoilt.current = random.within(SensorFaults::kGarbageCurrent);
+    }
+  };
+  if (output.step(kind, cycle, battery, spoil) == Emission::kValue || kind == FaultKind::kSlow) return true;
+  battery = {.voltage = kNaN, .current = kNaN};
+  return false;
+}
+
+bool pressed(FaultyOutput<bool>& button, FaultKind kind, std::uint64_t cycle) noexcept {
+  bool pressed = kind == FaultKind::kStuck;
+  const auto spoil = [](FaultKind how, bool& value, FaultRandom& random) {
+    value = how == FaultKind::kWrong || random.unit() < 0.5;
+  };
+  return (button.step(kind, cycle, pressed, spoil) == Emission::kNothing && kind != FaultKind::kSlow) || pressed;
+}
+
 }  // namespace
 
 SensorFaults::SensorFaults(const RobotModel& robot, std::uint64_t seed)
@@ -29,13 +52,17 @@ SensorFaults::SensorFaults(const RobotModel& robot, std::uint64_t seed)
       right_{wheel_joints(robot, Side::kRight),
              FaultyOutput<Readings>(fault_seed(seed, FaultComponent::kRightEncoder))},
       gyro_(fault_seed(seed, FaultComponent::kGyro)),
-      accelerometer_(fault_seed(seed, FaultComponent::kAccelerometer)) {}
+      accelerometer_(fault_seed(seed, FaultComponent::kAccelerometer)),
+      battery_(fault_seed(seed, FaultComponent::kBattery)),
+      button_(fault_seed(seed, FaultComponent::kEStopButton)) {}
 
 void SensorFaults::reset() noexcept {
   left_.output.reset();
   right_.output.reset();
   gyro_.reset();
   accelerometer_.reset();
+  battery_.reset();
+  button_.reset();
   failing_ = false;
 }
 
@@ -80,6 +107,13 @@ std::uint64_t SensorFaults::step(const InjectedFaults& faults, std::uint64_t cyc
   if (!step_axes(accelerometer_, fault_of(faults, FaultComponent::kAccelerometer), cycle, kAccelerometerRange,
                  imu.linear_acceleration)) {
     lost |= kValidAccelerometer;
+  }
+  const bool has_battery = measurement.battery.voltage > 0;
+  if (has_battery && !step_battery(battery_, fault_of(faults, FaultComponent::kBattery), cycle, measurement.battery)) {
+    lost |= kValidBattery;
+  }
+  if (pressed(button_, fault_of(faults, FaultComponent::kEStopButton), cycle)) {
+    measurement.digital_inputs |= kInputEmergencyStop;
   }
   return lost;
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// Encoders, gyro and accelerometer that fail as told; what they report, by component and kind:
+/// Encoders, gyro, accelerometer, battery gauge and e-stop button that fail as told; what they report, by component and
+/// kind:
 ///
 ///                 encoders of a side (all its wheels)           gyro, accelerometer
 ///   off           position and velocity NaN: the drive          not valid (SensorFrame::valid), NaN
@@ -12,6 +13,16 @@
 ///   slow          a sample every 10 cycles, held in between
 ///   delayed       the sample of 10 cycles ago
 ///   intermittent  as off, and healthy, at random
+///
+///                 battery, where there is one                   e-stop button, which nobody presses
+///   off           not valid, NaN                                pressed: its contacts open like a cut wire (ISO 13850)
+///   stuck         voltage and current stay                      pressed, jammed
+///   garbage       voltage within twice, current within          pressed or not, anew in every cycle
+///                 ±kGarbageCurrent, uniform
+///   wrong         kWrongVoltage of the voltage                  pressed
+///   slow          a sample every 10 cycles, held in between     not pressed
+///   delayed       the sample of 10 cycles ago                   not pressed
+///   intermittent  as off, and healthy, at random                pressed and not, at random: a loose wire
 ///
 /// When and how long, see hal/faulty_output.h. Efforts and temperatures stay: the drive itself is well. All else of a
 /// frame is untouched. What is valid stays so in every kind but off: no device knows that it lies.
@@ -33,6 +44,8 @@ class SensorFaults {
   static constexpr double kGarbageSpeed = 100;          ///< rad/s
   static constexpr double kGyroRange = 34.9;            ///< rad/s
   static constexpr double kAccelerometerRange = 235.4;  ///< m/s²
+  static constexpr double kGarbageCurrent = 100;        ///< A
+  static constexpr double kWrongVoltage = 0.6;          ///< below that of any charged battery
 
   SensorFaults(const RobotModel& robot, std::uint64_t seed);
 
@@ -60,6 +73,8 @@ class SensorFaults {
   bool failing_ = false;  ///< in the last step
   Encoders left_, right_;
   FaultyOutput<Vector3> gyro_, accelerometer_;
+  FaultyOutput<BatterySample> battery_;
+  FaultyOutput<bool> button_;
 };
 
 }  // namespace robot_control

@@ -28,6 +28,13 @@ bool inside(const mjModel& model, const mjData& data, int region, const mjtNum* 
   return sum <= 1;
 }
 
+/// N, world axes, on the second shape: the rows behind the normal's, along the other axes of the contact's frame.
+Eigen::Vector3d native_friction(const mjData& data, const mjContact& contact) {
+  if (contact.efc_address < 0 || contact.dim < 3) return Eigen::Vector3d::Zero();
+  const mjtNum* force = data.efc_force + contact.efc_address;
+  return force[1] * Vector(contact.frame + 3) + force[2] * Vector(contact.frame + 6);
+}
+
 void check_region(const mjModel& model, int region, const std::string& scene) {
   const int type = model.geom_type[region];
   const bool known = type == mjGEOM_BOX || type == mjGEOM_SPHERE || type == mjGEOM_ELLIPSOID;
@@ -42,6 +49,8 @@ void check_region(const mjModel& model, int region, const std::string& scene) {
 WheelContacts::WheelContacts(const MujocoModel& model, const MujocoPlantParameters& parameters)
     : model_(model.model.get()),
       brush_(parameters.tyre == TyreModel::kBrush),
+      sense_(parameters.contact_sensors),
+      base_body_(model.base_body),
       ground_friction_(parameters.ground_friction),
       wheel_of_(static_cast<std::size_t>(model_->ngeom), -1) {
   for (std::size_t i = 0; i < model.wheel_shape.size(); ++i) {
@@ -95,6 +104,7 @@ void WheelContacts::reset() noexcept {
   for (Wheel& wheel : wheels_) {
     wheel.contacts = {};
     wheel.normal_force = wheel.slip = 0;
+    wheel.force.setZero();
   }
 }
 
@@ -131,6 +141,7 @@ void WheelContacts::observe(Wheel& wheel, const mjData& data, int index) noexcep
   slot->other = other;
   slot->touches = true;
   slot->address = index;
+  slot->side = contact.geom2 == wheel.shape ? 1 : -1;
 
   const int ground = model_->geom_bodyid[other];
   TyreInput& input = slot->input;
@@ -193,6 +204,7 @@ void WheelContacts::apply(mjData& data) noexcept {
       const TyreForce tyre = step_tyre(wheel.tyre, contact.state, contact.input, model_->opt.timestep);
       const mjtNum* point = data.contact[contact.address].pos;
       const Eigen::Vector3d torque = tyre.torque * contact.input.normal;
+      contact.friction = tyre.force;
       push(data, wheel.body, point, tyre.force, torque);
       push(data, model_->geom_bodyid[contact.other], point, -tyre.force, -torque);
     }
@@ -209,7 +221,19 @@ void WheelContacts::weigh(const mjData& data) noexcept {
       contact.normal_force = row < 0 ? 0 : data.efc_force[row];
       wheel.normal_force += contact.normal_force;
     }
+    if (sense_) sense(wheel, data);
   }
+}
+
+void WheelContacts::sense(Wheel& wheel, const mjData& data) const noexcept {
+  using Rotation = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const Contact& contact : wheel.contacts) {
+    if (!contact.touches) continue;
+    force += contact.side * contact.normal_force * contact.input.normal + contact.friction;
+    if (!brush_) force += contact.side * native_friction(data, data.contact[contact.address]);
+  }
+  wheel.force = Rotation(data.xmat + 9 * base_body_).transpose() * force;
 }
 
 }  // namespace robot_control

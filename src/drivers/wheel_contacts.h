@@ -15,6 +15,8 @@
 /// A caster that nothing turns into the direction of travel (WheelModel::omni) has friction along its rolling direction
 /// alone.
 ///
+/// Where contact sensors are asked for, `weigh` also finds the whole force on each wheel, friction included.
+///
 /// With native friction `apply` does nothing, MuJoCo's own forces act; regions then have no effect.
 ///
 /// m of a tyre: 1/λ, λ = Σⱼ |Aᵢⱼ|, A = J M⁻¹ Jᵀ the accelerations that unit forces at the lowest points j of all the
@@ -45,6 +47,10 @@ class WheelContacts {
 
   /// N: sum over the contacts of drive wheel `wheel`, of the last `weigh`.
   double normal_force(std::size_t wheel) const noexcept { return wheels_[wheel].normal_force; }
+  /// N, base axes: on `wheel`, of the last `weigh`; drive wheels, then casters. Zero without contact sensors.
+  const Eigen::Vector3d& force(std::size_t wheel) const noexcept { return wheels_[wheel].force; }
+  /// Drive wheels and casters.
+  std::size_t count() const noexcept { return wheels_.size(); }
   /// m/s: the fastest contact's, of the last `observe`.
   double slip(std::size_t wheel) const noexcept { return wheels_[wheel].slip; }
 
@@ -56,8 +62,10 @@ class WheelContacts {
     bool touches = false;
     int address = 0;  ///< into mjData::contact
     double normal_force = 0;
+    double side = 1;  ///< +1: the contact's normal points to the wheel, else −1
     TyreInput input;
     TyreState state;
+    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< N, world axes, of the tyre
   };
   struct Wheel {
     int shape = 0, body = 0, dof = 0;
@@ -66,6 +74,7 @@ class WheelContacts {
     TyreParameters tyre;
     std::array<Contact, kContacts> contacts;
     double normal_force = 0;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
     double slip = 0;
   };
 
@@ -75,10 +84,13 @@ class WheelContacts {
   Eigen::Vector3d velocity(const mjData& data, int body, const mjtNum* point) const noexcept;
   void push(mjData& data, int body, const mjtNum* point, const Eigen::Vector3d& force,
             const Eigen::Vector3d& torque) const noexcept;
+  void sense(Wheel& wheel, const mjData& data) const noexcept;
   void measure_tyres(const MujocoModel& model);
 
   const mjModel* model_;
   bool brush_;
+  bool sense_;
+  int base_body_;
   std::optional<double> ground_friction_;
   std::vector<int> wheel_of_;  ///< per geom; -1: none
   std::vector<int> regions_;   ///< geoms

@@ -181,6 +181,28 @@ TEST_F(PlantErrors, AMotorIsHealthyAgainAfterOk) {
   EXPECT_EQ(truth(*plant).joints[0].effort, 0.5);
 }
 
+TEST_F(PlantErrors, ReachBatteryAndButton) {
+  parameters_.battery_voltage = 24;
+  parameters_.battery_resistance = 0;
+  auto plant = erring();
+  inject(*plant, FaultComponent::kBattery, FaultKind::kWrong);
+  EXPECT_NEAR(cycle(*plant, brakes_).battery_voltage, SensorFaults::kWrongVoltage * 24, 1e-9);
+  inject(*plant, FaultComponent::kBattery, FaultKind::kOff);
+  EXPECT_EQ(cycle(*plant, brakes_).valid & kValidBattery, 0u);
+  inject(*plant, FaultComponent::kEStopButton, FaultKind::kWrong);
+  EXPECT_EQ(cycle(*plant, brakes_).digital_inputs, kInputEmergencyStop);
+  inject(*plant, FaultComponent::kEStopButton, FaultKind::kOk);
+  EXPECT_EQ(cycle(*plant, brakes_).digital_inputs, 0u);
+}
+
+TEST_F(PlantErrors, OfABatteryThatIsNotThereAreNone) {
+  auto plant = erring();
+  inject(*plant, FaultComponent::kBattery, FaultKind::kOff);
+  const SensorFrame frame = cycle(*plant, brakes_);
+  EXPECT_EQ(frame.valid & kValidBattery, 0u);
+  EXPECT_EQ(frame.battery_voltage, 0);
+}
+
 TEST_F(PlantErrors, NeverAllocate) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   parameters_.actuator_delay = parameters_.sensor_delay = 20;

@@ -1,5 +1,6 @@
 /// Every sensor × every kind: what comes out of it. In cycle k the healthy left wheel is at k mrad and turns with
-/// k mrad/s, the right one at −k and −k, gyro and accelerometer read (k, 2k, 3k)·10⁻³.
+/// k mrad/s, the right one at −k and −k, gyro and accelerometer read (k, 2k, 3k)·10⁻³, the battery gives 24 V + k mV
+/// and k mA, nobody presses the e-stop button.
 
 #include "drivers/sensor_faults.h"
 
@@ -25,6 +26,7 @@ Measurement healthy(std::uint64_t cycle) {
   measurement.joints[kSwivel] = {.position = 7, .velocity = 8};
   measurement.imu.angular_velocity = {value, 2 * value, 3 * value};
   measurement.imu.linear_acceleration = {value, 2 * value, 3 * value};
+  measurement.battery = {.voltage = 24 + value, .current = value};
   return measurement;
 }
 
@@ -57,6 +59,9 @@ class SensorFaultsTest : public testing::Test {
     EXPECT_EQ(seen_.joints[kSwivel].position, expected.joints[kSwivel].position);
     EXPECT_EQ(seen_.imu.angular_velocity, expected.imu.angular_velocity);
     EXPECT_EQ(seen_.imu.linear_acceleration, expected.imu.linear_acceleration);
+    EXPECT_EQ(seen_.battery.voltage, expected.battery.voltage);
+    EXPECT_EQ(seen_.battery.current, expected.battery.current);
+    EXPECT_EQ(seen_.digital_inputs, 0u);
     EXPECT_EQ(lost_, 0u);
   }
 
@@ -259,6 +264,117 @@ TEST_P(InertialFaults, IntermittentIsValidAndNot) {
 INSTANTIATE_TEST_SUITE_P(Devices, InertialFaults,
                          testing::Values(FaultComponent::kGyro, FaultComponent::kAccelerometer),
                          [](const auto& device) { return std::string(name_of(device.param)); });
+
+class BatteryFaults : public SensorFaultsTest {
+ protected:
+  void inject(FaultKind kind, std::uint64_t cycle) {
+    step(FaultComponent::kBattery, kind, cycle);
+    EXPECT_EQ(left().position, left_at(cycle).position);
+    EXPECT_EQ(seen_.imu.angular_velocity, axes_at(cycle));
+    EXPECT_EQ(seen_.digital_inputs, 0u);
+  }
+  const BatterySample& battery() const { return seen_.battery; }
+  static BatterySample battery_at(std::uint64_t cycle) { return healthy(cycle).battery; }
+};
+
+TEST_F(BatteryFaults, OffIsNotValid) {
+  inject(FaultKind::kOff, kOnset);
+  EXPECT_EQ(lost_, kValidBattery);
+  EXPECT_TRUE(std::isnan(battery().voltage));
+  EXPECT_TRUE(std::isnan(battery().current));
+}
+
+TEST_F(BatteryFaults, StuckStays) {
+  for (std::uint64_t cycle = kOnset; cycle < kOnset + 50; ++cycle) {
+    inject(FaultKind::kStuck, cycle);
+    EXPECT_EQ(battery().voltage, battery_at(kOnset).voltage);
+    EXPECT_EQ(battery().current, battery_at(kOnset).current);
+    EXPECT_EQ(lost_, 0u);
+  }
+}
+
+TEST_F(BatteryFaults, WrongLooksEmpty) {
+  inject(FaultKind::kWrong, kOnset);
+  EXPECT_EQ(battery().voltage, SensorFaults::kWrongVoltage * battery_at(kOnset).voltage);
+  EXPECT_EQ(battery().current, battery_at(kOnset).current);
+  EXPECT_EQ(lost_, 0u);
+}
+
+TEST_F(BatteryFaults, GarbageIsAnythingUpToTwiceTheVoltage) {
+  double lowest = 100, highest = 0;
+  for (std::uint64_t cycle = kOnset; cycle < kOnset + 1000; ++cycle) {
+    inject(FaultKind::kGarbage, cycle);
+    const double part = battery().voltage / battery_at(cycle).voltage;
+    lowest = std::min(lowest, part);
+    highest = std::max(highest, part);
+    EXPECT_GE(part, 0);
+    EXPECT_LE(part, 2);
+    EXPECT_LE(std::abs(battery().current), SensorFaults::kGarbageCurrent);
+  }
+  // As for the encoders: 1000 numbers do not all miss the outer tenth.
+  EXPECT_LT(lowest, 0.2);
+  EXPECT_GT(highest, 1.8);
+}
+
+TEST_F(BatteryFaults, SlowIsSampledEveryTenthCycle) {
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    inject(FaultKind::kSlow, kOnset + i);
+    EXPECT_EQ(battery().voltage, battery_at(kOnset + i - i % kFaultCycles).voltage);
+    EXPECT_EQ(lost_, 0u);
+  }
+}
+
+TEST_F(BatteryFaults, DelayedIsTenCyclesLate) {
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    inject(FaultKind::kDelayed, kOnset + i);
+    EXPECT_EQ(battery().voltage, battery_at(kOnset + (i < kFaultCycles ? 0 : i - kFaultCycles)).voltage);
+  }
+}
+
+TEST_F(BatteryFaults, AreOverAfterOk) {
+  for (std::size_t kind = 1; kind < kFaultKinds; ++kind) {
+    step(FaultComponent::kBattery, static_cast<FaultKind>(kind), 500);
+    step(FaultComponent::kBattery, FaultKind::kOk, 501);
+    expect_rest_healthy(501);
+  }
+}
+
+class ButtonFaults : public SensorFaultsTest {
+ protected:
+  /// Of 500 cycles.
+  int pressed(FaultKind kind) {
+    int count = 0;
+    for (std::uint64_t cycle = kOnset; cycle < kOnset + 500; ++cycle) {
+      step(FaultComponent::kEStopButton, kind, cycle);
+      count += seen_.digital_inputs == kInputEmergencyStop ? 1 : 0;
+      seen_.digital_inputs = 0;
+      expect_rest_healthy(cycle);
+    }
+    return count;
+  }
+};
+
+TEST_F(ButtonFaults, PressItWhereItsWireIsCutOrItJams) {
+  for (const FaultKind kind : {FaultKind::kOff, FaultKind::kStuck, FaultKind::kWrong}) EXPECT_EQ(pressed(kind), 500);
+}
+
+TEST_F(ButtonFaults, LeaveItAloneWhereTheyAreLate) {
+  for (const FaultKind kind : {FaultKind::kSlow, FaultKind::kDelayed}) EXPECT_EQ(pressed(kind), 0);
+}
+
+TEST_F(ButtonFaults, PressAndReleaseItAtRandom) {
+  for (const FaultKind kind : {FaultKind::kGarbage, FaultKind::kIntermittent}) {
+    const int count = pressed(kind);
+    EXPECT_GT(count, 50);
+    EXPECT_LT(count, 450);
+  }
+}
+
+TEST_F(ButtonFaults, ReleaseItWhenTheyAreOver) {
+  pressed(FaultKind::kStuck);
+  step(FaultComponent::kEStopButton, FaultKind::kOk, 700);
+  EXPECT_EQ(seen_.digital_inputs, 0u);
+}
 
 TEST_F(SensorFaultsTest, NeverAllocate) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";

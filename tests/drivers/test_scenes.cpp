@@ -101,6 +101,19 @@ TEST_F(SceneTest, ARobotThatFallsOverIsRefused) {
   EXPECT_THAT(refusal("flat.xml"), testing::HasSubstr("falls over"));
 }
 
+TEST_F(SceneTest, ARobotThatWasRefusedDoesNotRun) {
+  MadeRobot made;
+  made.body_x = 0.05;
+  made.body_z = 0.2;
+  parameters_.scene = kFlat;
+  MujocoPlant plant(made.model(), parameters_, period_);
+  EXPECT_THROW(plant.start(), DriverError);
+  plant.write(both(effort_command(1), effort_command(1)));
+  const SensorFrame frame = sensors(plant);
+  EXPECT_EQ(frame.driver_state, DriverState::kStarting);
+  EXPECT_EQ(frame.valid, 0u);
+}
+
 // F t / (m + Σ J/r²): wheels that roll freely; the push is over before the robot has moved a millimetre.
 TEST_F(SceneTest, APushGivesItsMomentum) {
   parameters_.push_x = 60;
