@@ -1,6 +1,9 @@
 #include "parameters/parameter_tree.h"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
+
+#include <sstream>
 
 #include "parameters/text_file.h"
 
@@ -54,6 +57,17 @@ void for_each_key(const YAML::Node& map, const std::string& prefix, const std::s
   }
 }
 
+// The value, and of a map each of its values: no parameter nests deeper.
+template <class Put>
+void put_value(const std::string& path, const YAML::Node& value, const std::string& origin, const std::string& source,
+               ProblemList& problems, Put put) {
+  put(path, entry_of(value), origin);
+  if (!value.IsMap()) return;
+  for_each_key(value, path + ".", source, problems, [&](const auto& name, const auto& inner, const YAML::Node& node) {
+    put(path + "." + name, entry_of(node), inner);
+  });
+}
+
 void read_document(const YAML::Node& root, const std::string& source, const std::filesystem::path& folder,
                    ParameterTree& tree, ProblemList& problems) {
   if (!root.IsMap()) {
@@ -68,14 +82,43 @@ void read_document(const YAML::Node& root, const std::string& source, const std:
           {printable(block), "", "must be a block of keys", block_origin, "indent `key: value` lines below it"});
       return;
     }
-    for_each_key(keys, block + ".", source, problems,
-                 [&](const auto& name, const auto& origin, const YAML::Node& value) {
-                   Entry entry = entry_of(value);
-                   entry.origin = origin;
-                   entry.folder = folder;
-                   tree.entries.emplace(block + "." + name, std::move(entry));
-                 });
+    for_each_key(
+        keys, block + ".", source, problems, [&](const auto& name, const auto& origin, const YAML::Node& value) {
+          put_value(block + "." + name, value, origin, source, problems,
+                    [&](const std::string& path, Entry entry, const std::string& at) {
+                      entry.origin = at;
+                      entry.folder = folder;
+                      const auto [old, fresh] = tree.entries.emplace(path, std::move(entry));
+                      if (fresh) return;
+                      problems.add({printable(path), "", "given twice, first at " + old->second.origin, at, ""});
+                    });
+        });
   });
+}
+
+class Unheard : public YAML::EventHandler {
+  using Mark = YAML::Mark;
+  using Style = YAML::EmitterStyle::value;
+  using Anchor = YAML::anchor_t;
+  void OnDocumentStart(const Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const Mark&, Anchor) override {}
+  void OnAlias(const Mark&, Anchor) override {}
+  void OnScalar(const Mark&, const std::string&, Anchor, const std::string&) override {}
+  void OnSequenceStart(const Mark&, const std::string&, Anchor, Style) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const Mark&, const std::string&, Anchor, Style) override {}
+  void OnMapEnd() override {}
+};
+
+// 0, 1, or 2 for more. YAML::LoadAll finds documents without end in a text that begins with a comma.
+std::size_t documents_in(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  Unheard events;
+  std::size_t count = 0;
+  while (count < 2 && parser.HandleNextDocument(events)) ++count;
+  return count;
 }
 
 void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& problems) {
@@ -84,33 +127,35 @@ void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& p
   const auto text = read_text_file(yaml_path, "name a YAML file like config/robot_params.yaml", problems);
   if (!text) return;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(*text);
-    if (documents.size() != 1) {
-      problems.add({yaml_path, "", "must hold one YAML document, not " + std::to_string(documents.size()), "", ""});
+    const std::size_t documents = documents_in(*text);
+    if (documents != 1) {
+      const std::string found = documents == 0 ? "none" : "more";
+      problems.add({yaml_path, "", "must hold one YAML document, not " + found, "", ""});
       return;
     }
-    read_document(documents.front(), yaml_path, path.parent_path(), tree, problems);
+    read_document(YAML::Load(*text), yaml_path, path.parent_path(), tree, problems);
   } catch (const YAML::Exception& error) {
     problems.add({yaml_path, "", "is not YAML: " + printable(error.msg), at_line(yaml_path, error.mark), ""});
   }
 }
 
 void lay_over(const Overlay& overlay, ParameterTree& tree, ProblemList& problems) {
-  Entry entry;
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::current_path(ignored);
   try {
-    const YAML::Node node = YAML::Load(overlay.text);
-    entry = entry_of(node);
+    put_value(overlay.path, YAML::Load(overlay.text), overlay.origin, overlay.origin, problems,
+              [&](const std::string& path, Entry entry, const std::string&) {
+                // An empty string has no other spelling on a server.
+                if (overlay.text.empty()) entry.kind = Entry::Kind::kQuoted;
+                entry.origin = overlay.origin;
+                entry.folder = folder;
+                entry.overlay = true;
+                tree.entries.insert_or_assign(path, std::move(entry));
+              });
   } catch (const YAML::Exception& error) {
     problems.add(
         {printable(overlay.path), printable(overlay.text), "is not YAML: " + printable(error.msg), overlay.origin, ""});
-    return;
   }
-  if (overlay.text.empty()) entry.kind = Entry::Kind::kQuoted;  // an empty string has no other spelling on a server
-  entry.origin = overlay.origin;
-  std::error_code ignored;
-  entry.folder = std::filesystem::current_path(ignored);
-  entry.overlay = true;
-  tree.entries.insert_or_assign(overlay.path, std::move(entry));
 }
 
 }  // namespace

@@ -27,12 +27,13 @@ struct BlockEntry {
 };
 
 struct ParameterTree {
-  std::map<std::string, Entry> entries;  ///< by path "block.key"
+  std::map<std::string, Entry> entries;  ///< by path: "block.key" and, of a map, its keys' "block.key.inner", too
   std::vector<BlockEntry> blocks;        ///< those of the file
 };
 
 /// Reads the file (none if `yaml_path` is empty), then lays the overlays over it, the last one on top.
-/// Unreadable and malformed YAML, duplicate keys and blocks that are no maps become problems.
+/// Unreadable and malformed YAML, duplicate keys and blocks that are no maps become problems. An overlay that is a map
+/// is laid over key by key: what it does not name stays.
 ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems);
 
 }  // namespace robot_control

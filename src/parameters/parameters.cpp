@@ -25,6 +25,7 @@ class TreeReader {
     for (const Block& block : schema()) {
       for (const Key& key : block.keys) check_against_others(block, key);
     }
+    check_contradictions();
     return std::move(parameters_);
   }
 
@@ -54,24 +55,75 @@ class TreeReader {
       blocks.emplace(block.name);
       for (const Key& key : block.keys) paths.insert(path_of(block, key));
     }
+    // What stands in a map where none belongs, or in an unknown one, is told with that map.
+    const auto told_with_its_map = [&](const std::string& path) {
+      const std::string map = path.substr(0, path.rfind('.'));
+      return map.find('.') != std::string::npos && tree_.entries.contains(map) && rule_of_group(map).empty();
+    };
     for (const BlockEntry& block : tree_.blocks) {
       if (blocks.contains(block.name)) continue;
       problems_.add({printable(block.name), "", "unknown block", block.origin, suggest_block(block.name)});
     }
     for (const auto& [path, entry] : tree_.entries) {
       const bool told_with_its_block = !entry.overlay && !blocks.contains(path.substr(0, path.find('.')));
-      if (paths.contains(path) || told_with_its_block) continue;
+      if (paths.contains(path) || !rule_of_group(path).empty()) continue;
+      if (told_with_its_block || told_with_its_map(path)) continue;
       problems_.add({printable(path), as_written(entry), "unknown key", entry.origin, suggest_key(path)});
     }
   }
 
   void read_key(const Block& block, const Key& key) {
     const std::string path = path_of(block, key);
+    const std::string group = group_path_of(block, key);
+    if (!group.empty() && !group_is_there(group)) return;
     const auto entry = tree_.entries.find(path);
     if (entry != tree_.entries.end()) {
       if (read_value(entry->second, path, key, key.field(parameters_), problems_)) sound_.insert(path);
     } else if ((key.traits & kOptional) == 0) {
-      problems_.add({path, "", "missing", source_, "add it: " + rule_of(key)});
+      const auto map = tree_.entries.find(group);
+      const std::string& place = map == tree_.entries.end() ? source_ : map->second.origin;
+      problems_.add({path, "", "missing", place, "add it: " + rule_of(key)});
+    }
+  }
+
+  // A map that is missing or no map is one problem, not one per key.
+  bool group_is_there(const std::string& group) {
+    const auto entry = tree_.entries.find(group);
+    const bool map = entry != tree_.entries.end() && entry->second.kind == Entry::Kind::kMap;
+    const auto first_inside = tree_.entries.lower_bound(group + ".");
+    const bool overlaid_alone = entry == tree_.entries.end() && first_inside != tree_.entries.end() &&
+                                first_inside->first.starts_with(group + ".");
+    if (map || overlaid_alone) return true;
+    if (!told_groups_.insert(group).second) return false;
+    const std::string rule = rule_of_group(group);
+    if (entry == tree_.entries.end()) {
+      problems_.add({group, "", "missing", source_, "add it: " + rule});
+    } else {
+      problems_.add({group, as_written(entry->second), "must be " + rule, entry->second.origin, ""});
+    }
+    return false;
+  }
+
+  // Each is right for itself, together they are not.
+  void check_contradictions() {
+    const auto refuse = [&](const std::string& path, const std::string& rule) {
+      const Entry& entry = tree_.entries.at(path);
+      problems_.add({path, as_written(entry), rule, entry.origin, ""});
+    };
+    const std::string low = "safety_monitor.battery_low.limit";
+    const std::string empty = "safety_monitor.battery_empty.limit";
+    const SafetyParameters& safety = parameters_.safety;
+    if (sound_.contains(low) && sound_.contains(empty) && *safety.battery_empty.limit >= *safety.battery_low.limit) {
+      const Entry& entry = tree_.entries.at(low);
+      refuse(empty, "must be below " + low + " = " + as_written(entry) + " [" + entry.origin + "]");
+    }
+    // The sensors of one cycle, the permit of the next, the torque of the one after.
+    constexpr double kCyclesToStop = 3;
+    const std::string delay = "safety_monitor.stop_delay";
+    const double fastest = kCyclesToStop * parameters_.loop.period();
+    if (sound_.contains(delay) && sound_.contains("robot.rate") && safety.stop_delay < fastest) {
+      refuse(delay, "must be at least three periods, " + shortest(fastest) + " s at " +
+                        shortest(parameters_.loop.rate) + " Hz: no stop is faster");
     }
   }
 
@@ -120,7 +172,8 @@ class TreeReader {
   std::string source_;  ///< of what is missing
   ProblemList& problems_;
   Parameters parameters_;
-  std::set<std::string, std::less<>> sound_;  ///< paths whose value was accepted
+  std::set<std::string, std::less<>> sound_;        ///< paths whose value was accepted
+  std::set<std::string, std::less<>> told_groups_;  ///< groups that are no maps
 };
 
 }  // namespace

@@ -72,10 +72,11 @@ struct Parameters {
   TelemetryParameters telemetry;
 };
 
-/// One value laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate".
+/// One value laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate". A condition of the safety
+/// monitor is a map: path "safety_monitor.tilt.limit" sets one value in it, "safety_monitor.tilt" those it names.
 struct Overlay {
   std::string path;
-  std::string text;  ///< a scalar or a list in brackets; an empty text is the empty string
+  std::string text;  ///< a scalar, or a list or a map in brackets; an empty text is the empty string
   std::string origin;
 };
 

@@ -1,5 +1,6 @@
 #include "parameters/schema.h"
 
+#include <algorithm>
 #include <array>
 
 #include "parameters/problem_list.h"
@@ -17,6 +18,37 @@ Field in(Parameters& parameters) {
 }
 
 using P = Parameters;
+using Safety = SafetyParameters;
+
+template <auto Condition, auto Member>
+Field in_condition(Parameters& parameters) {
+  return &(parameters.safety.*Condition.*Member);
+}
+
+template <std::size_t... Sizes>
+constexpr auto rows(const std::array<Key, Sizes>&... parts) {
+  std::array<Key, (Sizes + ...)> all;
+  auto next = all.begin();
+  ((next = std::copy(parts.begin(), parts.end(), next)), ...);
+  return all;
+}
+
+// Facts that are true or false: lost, stuck.
+template <auto Condition>
+constexpr std::array<Key, 2> fact(std::string_view group) {
+  using C = robot_control::Condition;
+  // A minute: what lasts longer is no condition to stop for.
+  return {{{"persistence", in_condition<Condition, &C::persistence>, "s", 0, 60, 0, {}, group},
+           {"reaction", in_condition<Condition, &C::reaction>, {}, 0, 0, 0, {}, group}}};
+}
+
+template <auto Condition>
+constexpr std::array<Key, 3> condition(std::string_view group, std::string_view unit, double min, double max,
+                                       unsigned traits = 0) {
+  using C = robot_control::Condition;
+  return rows(std::to_array<Key>({{"limit", in_condition<Condition, &C::limit>, unit, min, max, traits, {}, group}}),
+              fact<Condition>(group));
+}
 
 // seed and cycles: any value that a YAML integer, a Python int and a ROS parameter can all carry.
 constexpr double kAnyCount = 9007199254740992.0;  // 2^53
@@ -41,9 +73,11 @@ constexpr auto kRobot = std::to_array<Key>({
     {"wheel_radius", in<&P::robot, &Robot::wheel_radius>, "m", 0.005, 2, kOptional},
     {"wheel_effort_limit", in<&P::robot, &Robot::wheel_effort_limit>, "N·m", 0.001, 10000, kOptional},
     {"wheel_velocity_limit", in<&P::robot, &Robot::wheel_velocity_limit>, "rad/s", 0.01, 1000, kOptional},
+    {"wheel_effort_rate", in<&P::robot, &Robot::wheel_effort_rate>, "N·m/s", 0.01, 1.0e9, kOptional},
     {"mass", in<&P::robot, &Robot::mass>, "kg", 0.01, 100000, kOptional},
     {"centre_of_gravity", in<&P::robot, &Robot::centre_of_gravity>, "m", -10, 10, kOptional},
     {"imu_link", in<&P::robot, &Robot::imu_link>, {}, 0, 0, kMayBeEmpty},
+    {"fail_action", in<&P::loop, &LoopParameters::fail_action>},
     {"rate", in<&P::loop, &LoopParameters::rate>, "Hz", 100, 2000},
     {"clock", in<&P::loop, &LoopParameters::clock>},
     {"realtime", in<&P::loop, &LoopParameters::realtime>},
@@ -88,6 +122,10 @@ constexpr auto kMujocoPlant = std::to_array<Key>({
     {"accelerometer_bias", in<&P::plant, &Plant::accelerometer_bias>, "m/s²", 0, 10},
     {"accelerometer_bias_walk", in<&P::plant, &Plant::accelerometer_bias_walk>, "m/s²/√s", 0, 10},
     {"sensor_delay", in<&P::plant, &Plant::sensor_delay>, "cycles", 0, 100},
+    {"contact_sensors", in<&P::plant, &Plant::contact_sensors>},
+    // At most half a volt falls off at the idle current (battery.h): something always is left.
+    {"battery_voltage", in<&P::plant, &Plant::battery_voltage>, "V", 1, 1000, kZeroIsOff},
+    {"battery_resistance", in<&P::plant, &Plant::battery_resistance>, "Ω", 0, 1},
     {"push_x", in<&P::plant, &Plant::push_x>, "N", -100000, 100000},
     {"push_y", in<&P::plant, &Plant::push_y>, "N", -100000, 100000},
     {"push_z", in<&P::plant, &Plant::push_z>, "N", -100000, 100000},
@@ -128,13 +166,39 @@ constexpr auto kDiffDriveController = std::to_array<Key>({
     {"command_rate", in<&P::report, &ReportParameters::command_rate>, "Hz", 0.1, 2000, kPublishRate},
 });
 
-constexpr auto kSafetyMonitor = std::to_array<Key>({
+constexpr auto kSafetyLimits = std::to_array<Key>({
     // More than the four cycles that a command lives at the gate: a held command is not yet a lost node.
-    {"loss_cycles", in<&P::safety, &SafetyParameters::loss_cycles>, "cycles", 5, 10000},
-    {"heartbeat_timeout", in<&P::safety, &SafetyParameters::heartbeat_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
-    {"ramp_time", in<&P::safety, &SafetyParameters::ramp_time>, "s", 0.01, 60},
-    {"standstill_speed", in<&P::safety, &SafetyParameters::standstill_speed>, "rad/s", 1.0e-6, 10},
+    {"loss_cycles", in<&P::safety, &Safety::loss_cycles>, "cycles", 5, 10000},
+    {"heartbeat_timeout", in<&P::safety, &Safety::heartbeat_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
+    {"ramp_time", in<&P::safety, &Safety::ramp_time>, "s", 0.01, 60},
+    {"standstill_speed", in<&P::safety, &Safety::standstill_speed>, "rad/s", 1.0e-6, 10},
+    {"slow_speed", in<&P::safety, &Safety::slow_speed>, "m/s", 0, 50},
+    {"clearance", in<&P::safety, &Safety::clearance>, "m", 0, 10000, kZeroIsOff},
+    {"stop_delay", in<&P::safety, &Safety::stop_delay>, "s", 0, 10},
+    {"stop_deceleration", in<&P::safety, &Safety::stop_deceleration>, "m/s²", 0.001, 100},
 });
+
+constexpr auto kSafetyMonitor =
+    rows(kSafetyLimits,  //
+         condition<&Safety::wheel_speed>("wheel_speed", "rad/s", 0.01, 10000, kOptional),
+         condition<&Safety::wheel_acceleration>("wheel_acceleration", "rad/s²", 0.1, 1.0e7, kOptional),
+         condition<&Safety::wheel_effort>("wheel_effort", "of the effort limit", 0.01, 10),
+         condition<&Safety::power>("power", "W", 0.01, 1.0e7, kOptional),
+         condition<&Safety::stall>("stall", "rad", 0.001, 1000),
+         condition<&Safety::runaway>("runaway", "rad/s", 0.001, 10000, kOptional),
+         condition<&Safety::wrong_direction>("wrong_direction", "rad/s", 0.001, 10000),
+         condition<&Safety::not_stopping>("not_stopping", "s", 0.01, 60),
+         condition<&Safety::yaw_rate>("yaw_rate", "rad/s", 0.001, 100),
+         condition<&Safety::tilt>("tilt", "rad", 0.01, 1.5),  // below a right angle
+         condition<&Safety::tip_over>("tip_over", "rad/s", 0.001, 100),
+         condition<&Safety::free_fall>("free_fall", "m/s²", 0.01, 9),  // below gravity
+         condition<&Safety::lift>("lift", "of the weight", 0.001, 1),
+         condition<&Safety::impact>("impact", "m/s²", 0.1, 100000),
+         fact<&Safety::encoders_lost>("encoders_lost"),  //
+         fact<&Safety::imu_lost>("imu_lost"),            //
+         fact<&Safety::imu_stuck>("imu_stuck"), condition<&Safety::overruns>("overruns", "1/s", 0.01, 2000),
+         condition<&Safety::battery_low>("battery_low", "V", 0.1, 1000, kOptional),
+         condition<&Safety::battery_empty>("battery_empty", "V", 0.1, 1000, kOptional));
 
 constexpr auto kTelemetry = std::to_array<Key>({
     {"directory", in<&P::telemetry, &TelemetryParameters::directory>, {}, 0, 0, kMayBeEmpty},
@@ -165,6 +229,19 @@ constexpr auto kTyreWords = std::to_array<Word>({
     {"native", static_cast<int>(TyreModel::kNative)},
 });
 
+constexpr auto kFailActionWords = std::to_array<Word>({
+    {"brake", static_cast<int>(FailAction::kBrake)},
+    {"coast", static_cast<int>(FailAction::kCoast)},
+});
+
+constexpr auto kReactionWords = std::to_array<Word>({
+    {"off", static_cast<int>(Reaction::kOff)},
+    {"warn", static_cast<int>(Reaction::kWarn)},
+    {"slow", static_cast<int>(Reaction::kSlow)},
+    {"ramp", static_cast<int>(Reaction::kRamp)},
+    {"brake", static_cast<int>(Reaction::kBrake)},
+});
+
 std::string range_of(const Key& key, std::string_view noun) {
   std::string rule = (key.traits & kZeroIsOff) != 0 && key.min > 0 ? "0 (off) or " : "";
   rule += std::string(noun) + " of " + shortest(key.min) + " … " + shortest(key.max);
@@ -187,7 +264,22 @@ std::span<const Block> schema() {
 }
 
 std::string path_of(const Block& block, const Key& key) {
-  return std::string(block.name) + "." + std::string(key.name);
+  return (key.group.empty() ? std::string(block.name) : group_path_of(block, key)) + "." + std::string(key.name);
+}
+
+std::string group_path_of(const Block& block, const Key& key) {
+  return key.group.empty() ? "" : std::string(block.name) + "." + std::string(key.group);
+}
+
+std::string rule_of_group(std::string_view path) {
+  std::string names;
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      if (key.group.empty() || group_path_of(block, key) != path) continue;
+      names.append(names.empty() ? "a map of " : ", ").append(key.name);
+    }
+  }
+  return names;
 }
 
 std::string rule_of(const Key& key) {
@@ -216,6 +308,8 @@ std::string rule_of(const Key& key) {
           [&](ClockMode* to) { return word(to); },
           [&](RealtimePolicy* to) { return word(to); },
           [&](TyreModel* to) { return word(to); },
+          [&](Reaction* to) { return word(to); },
+          [&](FailAction* to) { return word(to); },
       },
       field);
 }
@@ -224,6 +318,8 @@ std::span<const Word> words_of(const Field& field) {
   if (std::holds_alternative<ClockMode*>(field)) return kClockWords;
   if (std::holds_alternative<RealtimePolicy*>(field)) return kRealtimeWords;
   if (std::holds_alternative<TyreModel*>(field)) return kTyreWords;
+  if (std::holds_alternative<Reaction*>(field)) return kReactionWords;
+  if (std::holds_alternative<FailAction*>(field)) return kFailActionWords;
   return {};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The only place that knows a YAML key: one table per block, one line per parameter.
+/// The only place that knows a YAML key: one table per block, one line per parameter, or per condition of the safety
+/// monitor, which is a group of keys: `tilt: {limit: 0.35, persistence: 0.05, reaction: brake}`.
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +16,8 @@ namespace robot_control {
 
 /// Where a value goes; the type of the pointer is the type of the parameter.
 using Field = std::variant<double*, std::optional<double>*, std::optional<Vector3>*, std::int64_t*, std::uint64_t*,
-                           bool*, std::string*, std::vector<std::string>*, ClockMode*, RealtimePolicy*, TyreModel*>;
+                           bool*, std::string*, std::vector<std::string>*, ClockMode*, RealtimePolicy*, TyreModel*,
+                           Reaction*, FailAction*>;
 
 /// What a key allows beyond its range; bits of Key::traits.
 enum KeyTrait : unsigned {
@@ -35,6 +37,7 @@ struct Key {
   double max = 0;
   unsigned traits = 0;
   std::string_view other_name_of = {};  ///< the key of this block whose value this one is, too
+  std::string_view group = {};          ///< the map of the block in which it stands; empty: in the block itself
 };
 
 struct Block {
@@ -44,8 +47,14 @@ struct Block {
 
 std::span<const Block> schema();
 
-/// "block.key".
+/// "block.key" or "block.group.key".
 std::string path_of(const Block& block, const Key& key);
+
+/// "block.group"; empty where the key stands in the block itself.
+std::string group_path_of(const Block& block, const Key& key);
+
+/// "a map of limit, persistence, reaction": what stands at a group's path. Empty: there is no such group.
+std::string rule_of_group(std::string_view path);
 
 /// What is allowed, in words: "a number of 100 … 2000 Hz", "one of wall, lockstep".
 std::string rule_of(const Key& key);

@@ -43,13 +43,18 @@ std::string suggest_key(std::string_view path) {
   if (key_name.size() > kLongestWord) return {};
   std::size_t nearest = farthest(key_name) + 1;
   std::string word;
+  const auto consider = [&](const Block& block, const std::string& candidate) {
+    const bool here = block.name == block_name;
+    const std::string name = candidate.substr(block.name.size() + 1);
+    const std::size_t distance = edit_distance(key_name, name) + (here ? 0 : 1);
+    if (distance >= nearest) return;
+    nearest = distance;
+    word = here ? name : candidate;
+  };
   for (const Block& block : schema()) {
     for (const Key& key : block.keys) {
-      const bool here = block.name == block_name;
-      const std::size_t distance = edit_distance(key_name, key.name) + (here ? 0 : 1);
-      if (distance >= nearest) continue;
-      nearest = distance;
-      word = here ? std::string(key.name) : path_of(block, key);
+      if (!key.group.empty()) consider(block, group_path_of(block, key));
+      consider(block, path_of(block, key));
     }
   }
   return question(word);

@@ -98,6 +98,8 @@ class Reader {
   bool operator()(ClockMode* to) { return word(*to); }
   bool operator()(RealtimePolicy* to) { return word(*to); }
   bool operator()(TyreModel* to) { return word(*to); }
+  bool operator()(Reaction* to) { return word(*to); }
+  bool operator()(FailAction* to) { return word(*to); }
 
  private:
   bool plain() const { return entry_.kind == Entry::Kind::kPlain; }

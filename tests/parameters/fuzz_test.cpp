@@ -50,13 +50,33 @@ TEST(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInTheFile) {
   }
 }
 
+// The conditions are maps: damage there alone, where braces open and close.
+TEST(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInACondition) {
+  const std::string text = shipped_text();
+  const std::size_t begin = text.find("\n  wheel_speed:");
+  const std::size_t end = text.find("\ntelemetry:");
+  ASSERT_LT(begin, end);
+  ParameterFile file;
+  for (unsigned seed = 0; seed < 1500; ++seed) {
+    std::mt19937 random(seed);
+    file.write(text.substr(0, begin) + damaged(text.substr(begin, end - begin), random) + text.substr(end));
+    try {
+      read_parameters(file.path());
+    } catch (const ParameterError&) {
+    } catch (const std::exception& error) {
+      FAIL() << "seed " << seed << ": " << error.what();
+    }
+  }
+}
+
 TEST(ReadParametersFuzz, ReadsOrRefusesWhateverAnOverlaySays) {
   const std::vector<std::string> paths = parameter_paths();
   for (unsigned seed = 0; seed < 1500; ++seed) {
     std::mt19937 random(seed);
     const std::string& path = paths[seed % paths.size()];
     try {
-      read_parameters(shipped_path(), {{path, damaged("1000.0", random), "server"}});
+      const std::string value = seed % 2 == 0 ? "1000.0" : "{limit: 0.3, persistence: 0.1, reaction: warn}";
+      read_parameters(shipped_path(), {{path, damaged(value, random), "server"}});
     } catch (const ParameterError&) {
     } catch (const std::exception& error) {
       FAIL() << "seed " << seed << ", " << path << ": " << error.what();

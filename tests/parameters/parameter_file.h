@@ -59,6 +59,22 @@ class ParameterFile {
     write(result);
   }
 
+  /// The value of `key` in the map `group`, which stands on one line; an empty `value` removes the key.
+  void set_in(const std::string& group, const std::string& key, const std::string& value) {
+    const std::size_t line = text_.find("\n  " + group + ":");
+    const std::size_t begin = text_.find(key + ": ", line);
+    const std::size_t end = text_.find_first_of(",}", begin);
+    ASSERT_NE(end, std::string::npos) << group << "." << key << " does not stand in the file";
+    std::string text = text_;
+    if (!value.empty()) {
+      write(text.replace(begin, end - begin, key + ": " + value));
+    } else if (text[end] == ',') {
+      write(text.erase(begin, end + 2 - begin));
+    } else {
+      write(text.erase(begin, end - begin));
+    }
+  }
+
   /// 1-based number of the `nth` line that begins with `start`.
   int line_of(const std::string& start, int nth = 1) const {
     std::istringstream from(text_);

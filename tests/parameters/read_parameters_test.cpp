@@ -116,7 +116,11 @@ TEST_F(ReadParameters, RefusesTheAbsenceOfAnyKeyThatIsNotOptional) {
       if ((key.traits & kOptional) != 0) continue;
       ParameterFile without;
       const std::string name(key.name);
-      without.set(name, "", ++seen[name]);
+      if (key.group.empty()) {
+        without.set(name, "", ++seen[name]);
+      } else {
+        without.set_in(std::string(key.group), name, "");
+      }
       const std::string message = without.refusal();
       EXPECT_THAT(message, HasSubstr(path_of(block, key) + ": missing"));
       EXPECT_EQ(problems_in(message), 1u) << message;
@@ -150,6 +154,8 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
                                                   {"mujoco_plant.tyre", "native"},
                                                   {"mujoco_plant.gear_ratio", "1"},
                                                   {"mujoco_plant.sensor_errors", "false"},
+                                                  {"mujoco_plant.contact_sensors", "true"},
+                                                  {"robot.fail_action", "coast"},
                                                   {"state_estimator.publish_tf", "no"},
                                                   {"state_estimator.odom_frame", "odom"},
                                                   {"state_estimator.base_frame", "base"}};
@@ -162,7 +168,9 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
     } else if (!text) {
       const bool small = overlay.path.starts_with("state_estimator.") || overlay.path.ends_with("_rate");
       const bool none = overlay.path.starts_with("mujoco_plant.") && !small;
-      overlay.text = none ? "0" : small ? "1" : "10";  // within the range of all the others
+      const bool limit = overlay.path.ends_with(".limit");
+      overlay.text = none ? "0" : small || limit ? "1" : "10";  // within the range of all the others
+      if (overlay.path.ends_with(".reaction")) overlay.text = "warn";
     }
   }
   const Parameters parameters = read_parameters("", all);
@@ -224,7 +232,13 @@ TEST_F(ReadParameters, RefusesAnEmptyFile) {
 
 TEST_F(ReadParameters, RefusesASecondDocument) {
   file.write(shipped_text() + "---\nrobot: {}\n");
-  EXPECT_THAT(file.refusal(), HasSubstr("must hold one YAML document, not 2"));
+  EXPECT_THAT(file.refusal(), HasSubstr("must hold one YAML document, not more"));
+}
+
+// yaml-cpp 0.7 reads documents without end there.
+TEST_F(ReadParameters, RefusesATextThatBeginsWithAComma) {
+  file.write(", " + shipped_text());
+  EXPECT_NE(file.refusal(), "");
 }
 
 TEST_F(ReadParameters, RefusesAListInPlaceOfBlocks) {
@@ -444,7 +458,8 @@ TEST(Schema, EveryMemberOfALawsParametersHasAKey) {
   EXPECT_EQ(bytes_in(parameters.plant), sizeof(MujocoPlantParameters));
   EXPECT_EQ(bytes_in(parameters.estimator), sizeof(EstimatorParameters));
   EXPECT_EQ(bytes_in(parameters.controller), sizeof(DriveControllerParameters));
-  EXPECT_EQ(bytes_in(parameters.safety), sizeof(SafetyParameters));
+  constexpr std::size_t kWithoutLimit = 3;  // encoders_lost, imu_lost, imu_stuck: lost or not
+  EXPECT_EQ(bytes_in(parameters.safety), sizeof(SafetyParameters) - kWithoutLimit * sizeof(Condition::limit));
 }
 
 TEST(Schema, EveryNumberHasARange) {
