@@ -55,6 +55,18 @@ double tilt_of(const Quaternion& q) {
   return 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
 }
 
+double where(bool there, double value) {
+  return there ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+double speed_limit_of(const Permit& permit) {
+  return where(permit.speed_limit < kNoSpeedLimit, permit.speed_limit);
+}
+
+bool has_evidence(const Permit& permit) {
+  return permit.evidence[0].cause != 0;
+}
+
 using D = DriverTrace;
 using E = EstimatorTrace;
 using C = ControllerTrace;
@@ -143,6 +155,13 @@ void add_safety(Columns& to) {
   to.push_back(column<M>("supervisor_state", "SupervisorState", [](const M& m, J) { return m.permit.state; }));
   to.push_back(column<M>("permit_causes", "StopCause", [](const M& m, J) { return m.permit.causes; }));
   to.push_back(column<M>("permit_active", "StopCause", [](const M& m, J) { return m.permit.active; }));
+  to.push_back(column<M>("permit_warnings", "StopCause", [](const M& m, J) { return m.permit.warnings; }));
+  to.push_back(column<M>("speed_limit", "m/s", [](const M& m, J) { return speed_limit_of(m.permit); }));
+  to.push_back(column<M>("evidence_cause", "StopCause", [](const M& m, J) { return m.permit.evidence[0].cause; }));
+  to.push_back(column<M>("evidence_value", "cause_names.h",
+                         [](const M& m, J) { return where(has_evidence(m.permit), m.permit.evidence[0].value); }));
+  to.push_back(column<M>("evidence_limit", "cause_names.h",
+                         [](const M& m, J) { return where(has_evidence(m.permit), m.permit.evidence[0].limit); }));
   to.push_back(column<M>("permit_missing", "MissingNode", [](const M& m, J) { return m.permit.missing; }));
   to.push_back(column<M>("reset_refusal", "ResetRefusal", [](const M& m, J) { return m.permit.reset_refusal; }));
   to.push_back(column<D>("gate_verdict", "GateVerdict", [](const D& d, J) { return d.gate.verdict; }));
@@ -155,6 +174,9 @@ void add_safety(Columns& to) {
   to.push_back(column<D>("refused", "", [](const D& d, J) { return d.gate.refused; }));
   to.push_back(column<D>("driver_state", "DriverState", [](const D& d, J) { return d.sensors.driver_state; }));
   to.push_back(column<D>("faults", "DriverFault", [](const D& d, J) { return d.sensors.faults; }));
+  to.push_back(column<D>("battery_voltage", "V", [](const D& d, J) {
+    return where((d.sensors.valid & kValidBattery) != 0, d.sensors.battery_voltage);
+  }));
   to.push_back(column<D>("injected", "fault_code", [](const D& d, J) { return fault_code(d.sensors.injected); }));
 }
 

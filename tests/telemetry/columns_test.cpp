@@ -85,6 +85,12 @@ TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
                                                "permit_action",
                                                "supervisor_state",
                                                "permit_causes",
+                                               "permit_warnings",
+                                               "speed_limit",
+                                               "evidence_cause",
+                                               "evidence_value",
+                                               "evidence_limit",
+                                               "battery_voltage",
                                                "gate_verdict",
                                                "gate_reasons",
                                                "gate_command_cycle",
@@ -127,6 +133,8 @@ TEST_F(Columns, OfTimeAreAllAndAloneAbsentFromLockstep) {
 }
 
 TEST_F(Columns, AreEmptyWhereTheNodeHasNoFrame) {
+  driver.sensors.valid = kValidBattery;
+  monitor.permit.evidence[0].cause = kCauseTilt;
   row.estimator = nullptr;
   for (const Column& column : columns) {
     EXPECT_EQ(column.present(row), column.source != ColumnSource::kEstimator) << column.name;
@@ -179,6 +187,33 @@ TEST_F(Columns, LogTheGateOfTickKNotOfTheTickBefore) {
 TEST_F(Columns, CarryBitsAsIntegers) {
   monitor.permit.causes = kCauseDriverLost | kCauseNotFinite;
   EXPECT_EQ(value("permit_causes"), (1 << 3) + (1 << 10));
+}
+
+TEST_F(Columns, ShowByWhatTheFirstCauseWasTold) {
+  EXPECT_EQ(value("evidence_cause"), 0);
+  EXPECT_TRUE(std::isnan(value("evidence_value")));
+  EXPECT_TRUE(std::isnan(value("evidence_limit")));
+  monitor.permit.evidence[0] = {.cause = kCauseBatteryEmpty, .value = 20.5, .limit = 21};
+  monitor.permit.evidence[1] = {.cause = kCauseTilt, .value = 0.4, .limit = 0.35};
+  EXPECT_EQ(value("evidence_cause"), 17179869184.0);  // 2^34
+  EXPECT_EQ(value("evidence_value"), 20.5);
+  EXPECT_EQ(value("evidence_limit"), 21);
+}
+
+TEST_F(Columns, ShowASpeedLimitWhereThereIsOne) {
+  monitor.permit.speed_limit = kNoSpeedLimit;
+  EXPECT_TRUE(std::isnan(value("speed_limit")));
+  monitor.permit.speed_limit = 0.3;
+  EXPECT_EQ(value("speed_limit"), 0.3);
+  monitor.permit.warnings = kCauseBatteryLow;
+  EXPECT_EQ(value("permit_warnings"), static_cast<double>(kCauseBatteryLow));
+}
+
+TEST_F(Columns, ShowTheBatteryWhereItIsMeasured) {
+  driver.sensors.battery_voltage = 23.5;
+  EXPECT_TRUE(std::isnan(value("battery_voltage")));
+  driver.sensors.valid = kValidBattery;
+  EXPECT_EQ(value("battery_voltage"), 23.5);
 }
 
 TEST_F(Columns, ShowTheInjectedFaultsAsOneOctalDigitPerComponent) {
