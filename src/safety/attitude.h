@@ -1,0 +1,64 @@
+#pragma once
+/// Which way is up, in base axes, from gyro and accelerometer alone: the monitor's own, never the estimate.
+///
+///   carried by the gyro     u̇ = −ω × u
+///   pulled by the other     u ← u + dt/T·(â − u),   â = (a − c)/|a − c|,   where ||a − c| − g| < kBand
+///   at first                u = â, of the first sample within the band
+///
+/// a  accelerometer: specific force, +g upwards at rest; c  what the caller knows of it that is not gravity
+/// u  always of unit length; no sample of one of them: the other alone
+///
+/// Errors of u [rad], T = 1.5 s, b a gyro's bias, A an acceleration along the ground that c does not hold:
+///
+///   bias              ≤ b T            0.05 rad/s: 0.075
+///   acceleration      ≤ A/g·(1 − e^{−t/T}) ≤ Δv/(g T)    1 m/s² for 1 s: 0.050; 5 m/s² from 1 m/s: 0.068, and none of
+///   it
+///                                      where the band shuts it out: A > √(2 g kBand + kBand²) = 4.5 m/s²
+///   offset of a       δ/g              0.2 m/s²: 0.020
+///   a start in motion A/g of the first sample, and falls with e^{−t/T}
+///
+/// T weighs the first two: b T = Δv/(g T) for b = 0.05 rad/s and Δv = 1 m/s is T = 1.4 s. kBand: three standard
+/// deviations of an offset of 0.2 m/s² and of noise of 0.05 m/s², and 1 m/s² of braking, which adds 0.05 m/s² to |a|.
+///
+/// Without a pull for kTrust the gyro's bias may have carried u anywhere: it is not known, until the next pull, which
+/// begins anew.
+///
+/// (Complementary filter: R. Mahony, T. Hamel, J.-M. Pflimlin, IEEE TAC 53 (2008) 1203, of its vector alone.)
+
+#include <Eigen/Core>
+
+namespace robot_control {
+
+class Attitude {
+ public:
+  static constexpr double kTimeConstant = 1.5;  ///< s, T
+  static constexpr double kBand = 1.0;          ///< m/s²
+  static constexpr double kTrust = 3.0;         ///< s, 0.15 rad of a bias of 0.05 rad/s
+
+  void reset() noexcept { *this = {}; }
+
+  /// Base axes: `rate` ω, rad/s, null without a gyro; `force` a − c, m/s², null without an accelerometer; finite.
+  /// `dt` s since the last step.
+  void step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept;
+
+  bool known() const noexcept { return unpulled_ <= kTrust; }
+
+  /// u; while it is not known, the base's z axis or the last one known.
+  const Eigen::Vector3d& up() const noexcept { return up_; }
+
+  /// rad, 0 … π, between u and the base's z axis.
+  double tilt() const noexcept;
+
+  /// rad/s, its derivative by the gyro: (ω_x u_y − ω_y u_x)/√(u_x² + u_y²); 0 upright or without a gyro.
+  double tilt_rate() const noexcept { return tilt_rate_; }
+
+ private:
+  void carry(const Eigen::Vector3d& rate, double dt) noexcept;
+  void pull(const Eigen::Vector3d& force, double dt) noexcept;
+
+  Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
+  double unpulled_ = 2 * kTrust;  ///< s since the last pull
+  double tilt_rate_ = 0;
+};
+
+}  // namespace robot_control
