@@ -15,16 +15,16 @@ constexpr double kUpright = 1e-9;  // rad; below it no direction of tilting is k
 
 void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept {
   unpulled_ = std::min(unpulled_ + dt, 2 * kTrust);
-  tilt_rate_ = 0;
   if (rate != nullptr) carry(*rate, dt);
   if (force != nullptr) pull(*force, dt);
+  const double horizontal = std::hypot(up_.x(), up_.y());
+  const bool leaning = rate != nullptr && horizontal > kUpright;
+  tilt_rate_ = leaning ? (rate->x() * up_.y() - rate->y() * up_.x()) / horizontal : 0;
 }
 
 void Attitude::carry(const Eigen::Vector3d& rate, double dt) noexcept {
   const double angle = rate.norm() * dt;
   if (angle > 0) up_ = Eigen::AngleAxisd(-angle, rate.normalized()) * up_;
-  const double horizontal = std::hypot(up_.x(), up_.y());
-  if (horizontal > kUpright) tilt_rate_ = (rate.x() * up_.y() - rate.y() * up_.x()) / horizontal;
 }
 
 void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {

@@ -1,0 +1,393 @@
+/// What happens to the body, at 1 kHz. The healthy case: a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart, its IMU
+/// in the middle, upright, rolling straight at 0.5 m/s; the last bits of every sample are others.
+
+#include "safety/body_facts.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "robot/gravity.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPeriod = 1e-3;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Vector3 plain(const Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+class BodyFactsTest : public testing::Test {
+ protected:
+  BodyFactsTest() {
+    robot_.mass = 10;
+    robot_.joints.resize(2);
+    robot_.wheels.resize(2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      robot_.wheels[i].joint = i;
+      robot_.wheels[i].radius = 0.1;
+      robot_.wheels[i].centre_base = {0, i == 0 ? 0.2 : -0.2, 0};
+    }
+    sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
+    sensors_.joint_count = 2;
+    for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = 5;
+    begin();
+  }
+
+  /// Anew, with the parameters and the robot as they are now; healthy for 10 cycles.
+  void begin() {
+    facts_ = BodyFacts(parameters_, robot_, kPeriod);
+    steps(10);
+  }
+
+  void step() {
+    jitter_ = -jitter_;
+    sensors_.imu.angular_velocity = plain(rate_ + jitter_ * Vector3d::Ones());
+    sensors_.imu.linear_acceleration = plain(force_ + jitter_ * Vector3d::Ones());
+    look();
+  }
+  /// At the frame as it is.
+  void look(std::uint64_t elapsed = 1) {
+    out_.clear();
+    facts_.step(sensors_, elapsed, wheels_turn_, out_);
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) step();
+  }
+
+  /// Cycles until this very cause is active, none besides; −1: not within `most`.
+  int cycles_until(StopCause cause, int most = 2000) {
+    for (int i = 1; i <= most; ++i) {
+      step();
+      if (out_.stopping() == 0 && out_.with(Reaction::kSlow) == 0) continue;
+      EXPECT_EQ(out_.stopping() | out_.with(Reaction::kSlow), cause);
+      return i;
+    }
+    return -1;
+  }
+  static int cycles(const Condition& condition) {
+    return std::max(1, static_cast<int>(std::lround(condition.persistence / kPeriod)));
+  }
+  bool quiet() const { return out_.findings().empty(); }
+
+  /// Leans by `angle` about x from now on, as a robot that is set on a ramp.
+  void lean(double angle) { force_ = kGravity * Vector3d(0, std::sin(angle), std::cos(angle)); }
+
+  SafetyParameters parameters_;
+  RobotModel robot_;
+  SensorFrame sensors_;
+  BodyFacts facts_{parameters_, robot_, kPeriod};
+  ActiveCauses out_;
+  Vector3d rate_ = Vector3d::Zero();
+  Vector3d force_{0, 0, kGravity};
+  bool wheels_turn_ = true;
+  double jitter_ = 1e-12;
+};
+
+TEST_F(BodyFactsTest, FindNothingOnAHealthyRobot) {
+  for (int i = 0; i < 5000; ++i) {
+    step();
+    ASSERT_TRUE(quiet());
+  }
+}
+
+TEST_F(BodyFactsTest, TiltIsFoundAfterItsPersistence) {
+  lean(0.36);
+  facts_.enter_run();  // the ramp is steep from the beginning
+  EXPECT_EQ(cycles_until(kCauseTilt), cycles(parameters_.tilt));
+  EXPECT_NEAR(out_.findings()[0].value, 0.36, 1e-9);
+  EXPECT_EQ(out_.findings()[0].limit, 0.35);
+}
+
+TEST_F(BodyFactsTest, ALeanBelowTheLimitIsNone) {
+  lean(0.34);
+  facts_.enter_run();
+  EXPECT_EQ(cycles_until(kCauseTilt), -1);
+}
+
+// Tipping at 1 rad/s, slower than the limit of tip_over: at the limit after 0.35 s, and its persistence.
+TEST_F(BodyFactsTest, TiltIsFoundWhileItGrows) {
+  int count = 0;
+  for (double angle = 0; quiet() && count < 2000; ++count) {
+    angle += kPeriod;
+    lean(angle);
+    rate_ = {1, 0, 0};
+    step();
+  }
+  EXPECT_EQ(out_.stopping(), kCauseTilt);
+  EXPECT_NEAR(count, 350 + cycles(parameters_.tilt), 1) << "rounding of the sum";
+}
+
+TEST_F(BodyFactsTest, TippingOverIsFoundBeforeTheTiltIsReached) {
+  int count = 0;
+  for (double angle = 0; quiet() && count < 2000; ++count) {
+    angle += 2 * kPeriod;
+    lean(angle);
+    rate_ = {2, 0, 0};
+    step();
+  }
+  EXPECT_EQ(out_.stopping(), kCauseTipOver);
+  EXPECT_NEAR(count, 0.175 / 2 / kPeriod + cycles(parameters_.tip_over), 2);
+  EXPECT_NEAR(out_.findings()[0].value, 2, 1e-6);
+  EXPECT_LT(facts_.attitude().tilt(), 0.35);
+}
+
+TEST_F(BodyFactsTest, RisingAgainIsNoTippingOver) {
+  lean(0.3);
+  facts_.enter_run();
+  steps(1);
+  rate_ = {-3, 0, 0};
+  for (double angle = 0.3; angle > 0; angle -= 3 * kPeriod) {
+    lean(angle);
+    step();
+    ASSERT_TRUE(quiet());
+  }
+}
+
+TEST_F(BodyFactsTest, AFastSwayNearTheVerticalIsNoTippingOver) {
+  for (int i = 0; i < 1000; ++i) {  // 0.1 rad at 30 rad/s: 3 rad/s
+    const double time = kPeriod * i;
+    lean(0.1 * std::sin(30 * time));
+    rate_ = {3 * std::cos(30 * time), 0, 0};
+    step();
+    ASSERT_TRUE(quiet());
+  }
+}
+
+TEST_F(BodyFactsTest, FreeFallIsFoundAfterItsPersistence) {
+  force_ = {0, 0, 0.5};
+  EXPECT_EQ(cycles_until(kCauseFreeFall), cycles(parameters_.free_fall));
+  EXPECT_NEAR(out_.findings()[0].value, 0.5, 1e-6);
+}
+
+TEST_F(BodyFactsTest, AHopIsNoFreeFall) {
+  force_ = {0, 0, 0.5};
+  steps(cycles(parameters_.free_fall) - 1);
+  EXPECT_TRUE(quiet());
+  force_ = {0, 0, kGravity};
+  step();
+  force_ = {0, 0, 0.5};
+  steps(cycles(parameters_.free_fall) - 1);
+  EXPECT_TRUE(quiet());
+}
+
+TEST_F(BodyFactsTest, AnImpactIsFoundAtOnce) {
+  force_ = {-61, 0, kGravity};
+  EXPECT_EQ(cycles_until(kCauseImpact), 1);
+  EXPECT_NEAR(out_.findings()[0].value, 61, 1e-6);
+}
+
+TEST_F(BodyFactsTest, GravityIsNoPartOfAnImpact) {
+  force_ = {0, 0, kGravity + 59};
+  step();
+  EXPECT_TRUE(quiet());
+  force_ = {0, 0, kGravity + 61};
+  EXPECT_EQ(cycles_until(kCauseImpact), 1);
+}
+
+TEST_F(BodyFactsTest, LiftIsFoundWhereContactsAreFelt) {
+  sensors_.valid |= kValidContacts;
+  sensors_.contact_forces[0] = sensors_.contact_forces[1] = {3, 0, 0.15 * 10 * kGravity};
+  EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
+  sensors_.contact_forces[0] = {3, 0, 0};
+  EXPECT_EQ(cycles_until(kCauseLift), cycles(parameters_.lift));
+  EXPECT_NEAR(out_.findings()[0].value, 0.15, 1e-9);
+}
+
+TEST_F(BodyFactsTest, WithoutContactSensorsThereIsNoLift) {
+  EXPECT_EQ(cycles_until(kCauseLift), -1);
+  EXPECT_EQ(facts_.carried(), 1);
+}
+
+TEST_F(BodyFactsTest, CastersCarryToo) {
+  robot_.casters.resize(1);
+  sensors_.valid |= kValidContacts;
+  sensors_.contact_forces[2] = {0, 0, 0.9 * 10 * kGravity};
+  begin();
+  EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
+}
+
+// On a ramp of 0.3 rad weight m g stands on the wheels, along the vertical.
+TEST_F(BodyFactsTest, WeightIsVertical) {
+  lean(0.3);
+  facts_.enter_run();
+  sensors_.valid |= kValidContacts;
+  sensors_.contact_forces[0] = plain(10 * force_);
+  step();
+  EXPECT_NEAR(facts_.carried(), 1, 1e-9);
+}
+
+// The other device goes on.
+TEST_F(BodyFactsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
+  for (Vector3* stuck : {&sensors_.imu.angular_velocity, &sensors_.imu.linear_acceleration}) {
+    begin();
+    Vector3& other =
+        stuck == &sensors_.imu.angular_velocity ? sensors_.imu.linear_acceleration : sensors_.imu.angular_velocity;
+    int count = 0;
+    for (; quiet() && count < 2000; ++count) {
+      other[0] = -other[0];
+      look();
+    }
+    EXPECT_EQ(count, cycles(parameters_.imu_stuck));
+    EXPECT_EQ(out_.with(Reaction::kSlow), kCauseImuStuck);
+    EXPECT_NEAR(out_.findings()[0].value, parameters_.imu_stuck.persistence, 1e-9);
+  }
+}
+
+TEST_F(BodyFactsTest, StandsStillWithoutAStuckImu) {
+  wheels_turn_ = false;
+  for (int i = 0; i < 2000; ++i) {
+    look();
+    ASSERT_TRUE(quiet());
+  }
+}
+
+TEST_F(BodyFactsTest, ASlowImuIsNotStuck) {
+  for (int i = 0; i < 2000; ++i) {  // gyro and accelerometer at 100 Hz, not at once
+    jitter_ = i / 10 % 2 == 0 ? 1e-12 : -1e-12;
+    if (i % 10 == 0) sensors_.imu.angular_velocity = plain(rate_ + jitter_ * Vector3d::Ones());
+    if (i % 10 == 5) sensors_.imu.linear_acceleration = plain(force_ + jitter_ * Vector3d::Ones());
+    look();
+    ASSERT_TRUE(quiet());
+  }
+}
+
+TEST_F(BodyFactsTest, ASampleThatIsNotFiniteTellsNothing) {
+  const double before = facts_.attitude().tilt();
+  for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sensors_.imu.angular_velocity = {0, 0, 0};
+      sensors_.imu.linear_acceleration = {0, 0, kGravity};
+      sensors_.imu.angular_velocity[axis] = bad;
+      sensors_.imu.linear_acceleration[axis] = bad;
+      look();
+      EXPECT_TRUE(quiet());
+    }
+  }
+  EXPECT_NEAR(facts_.attitude().tilt(), before, 1e-9);
+  EXPECT_EQ(facts_.shock(), 0);
+  EXPECT_EQ(cycles_until(kCauseTilt, 100), -1);
+}
+
+TEST_F(BodyFactsTest, ASampleThatIsNotValidTellsNothing) {
+  sensors_.valid = kValidJoints;
+  force_ = {100, 0, 0};
+  rate_ = {30, 0, 0};
+  steps(100);
+  EXPECT_TRUE(quiet());
+  EXPECT_LT(facts_.attitude().tilt(), 1e-6);
+}
+
+TEST_F(BodyFactsTest, ContactForcesThatAreNotFiniteTellNothing) {
+  sensors_.valid |= kValidContacts;
+  sensors_.contact_forces[0] = {kNaN, 0, 0};
+  EXPECT_EQ(cycles_until(kCauseLift, 500), -1);
+}
+
+// 1 m/s at 2 rad/s: 2 m/s² to the left, 0.2 rad if it were taken for gravity.
+TEST_F(BodyFactsTest, ACurveIsNoTilt) {
+  rate_ = {0, 0, 2};
+  force_ = {0, 2, kGravity};
+  for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = 10;
+  steps(20000);
+  EXPECT_TRUE(quiet());
+  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
+}
+
+// 0.5 m ahead of the axle, at 2 rad/s on the spot: 2 m/s² backwards.
+TEST_F(BodyFactsTest, AnImuFarOutIsNotTilted) {
+  robot_.imu_in_base.position = {0.5, 0, 0.1};
+  begin();
+  rate_ = {0, 0, 2};
+  force_ = {-2, 0, kGravity};
+  for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = i == 0 ? -4 : 4;
+  steps(20000);
+  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
+}
+
+TEST_F(BodyFactsTest, ACurveIsFeltWithWheelsThatTurnTheOtherWay) {
+  robot_.wheels[0].sign = -1;
+  begin();
+  rate_ = {0, 0, 2};
+  force_ = {0, 2, kGravity};
+  sensors_.joints[0].velocity = -10;
+  sensors_.joints[1].velocity = 10;
+  steps(20000);
+  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
+}
+
+TEST_F(BodyFactsTest, EncodersThatSayNothingDoNoHarm) {
+  sensors_.joints[0].velocity = kNaN;
+  steps(1000);
+  EXPECT_LT(facts_.attitude().tilt(), 1e-6);
+}
+
+// Mounted upside down and turned: what it measures is turned back into base axes.
+TEST_F(BodyFactsTest, TheMountingOfTheImuCounts) {
+  const Eigen::Quaterniond mounting =
+      Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()) * Eigen::AngleAxisd(0.5, Vector3d::UnitZ());
+  robot_.imu_in_base.orientation = {mounting.x(), mounting.y(), mounting.z(), mounting.w()};
+  force_ = mounting.inverse() * Vector3d(0, 0, kGravity);
+  facts_ = BodyFacts(parameters_, robot_, kPeriod);
+  steps(100);
+  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-9);
+  double angle = 0;
+  while (quiet() && angle < 1) {
+    angle += kPeriod;
+    rate_ = mounting.inverse() * Vector3d(1, 0, 0);
+    force_ = mounting.inverse() * (kGravity * Vector3d(0, std::sin(angle), std::cos(angle)));
+    step();
+  }
+  EXPECT_EQ(out_.stopping(), kCauseTilt);
+}
+
+TEST_F(BodyFactsTest, ANewRunKnowsNothing) {
+  force_ = {0, 0, 0.5};
+  steps(cycles(parameters_.free_fall) - 1);
+  facts_.enter_run();
+  EXPECT_FALSE(facts_.attitude().known());
+  step();
+  EXPECT_TRUE(quiet()) << "the count begins anew";
+}
+
+TEST_F(BodyFactsTest, SkippedCyclesCount) {
+  sensors_.imu.linear_acceleration = {0, 0, 0.5};
+  look(static_cast<std::uint64_t>(cycles(parameters_.free_fall)));
+  EXPECT_EQ(out_.stopping(), kCauseFreeFall);
+}
+
+TEST_F(BodyFactsTest, WhatIsOffIsNotFound) {
+  for (Condition* condition : {&parameters_.tilt, &parameters_.tip_over, &parameters_.free_fall, &parameters_.impact,
+                               &parameters_.lift, &parameters_.imu_stuck}) {
+    condition->reaction = Reaction::kOff;
+  }
+  begin();
+  sensors_.valid |= kValidContacts;
+  for (const Vector3d& force : {Vector3d(100, 0, 0), Vector3d(0, 0, 0), Vector3d(kGravity, 0, 0)}) {
+    force_ = force;
+    rate_ = {0, 3, 0};
+    steps(500);
+    for (int i = 0; i < 500; ++i) look();
+    EXPECT_TRUE(quiet());
+  }
+}
+
+TEST_F(BodyFactsTest, NeverAllocate) {
+  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
+  rate_ = {1, 2, 3};
+  const AllocationGuard guard;
+  steps(1000);
+  facts_.enter_run();
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace robot_control
