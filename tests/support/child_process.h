@@ -38,18 +38,42 @@ class ChildProcess {
 
   /// The exit code; -1 after a signal.
   int wait() noexcept {
-    if (id_ <= 0) return -1;
-    int status = 0;
-    while (waitpid(id_, &status, 0) < 0 && errno == EINTR) {
-    }
-    id_ = 0;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    if (id_ > 0) collect(0);
+    return code_;
   }
+
+  /// Does it still live, be it stopped?
+  bool lives() noexcept {
+    if (id_ > 0) collect(WNOHANG);
+    return id_ > 0;
+  }
+
+  void send(int signal) const noexcept {
+    if (id_ > 0) ::kill(id_, signal);
+  }
+
+  /// Of one that has ended: -1 after a signal.
+  int code() const noexcept { return code_; }
+  /// That ended it; 0: none.
+  int ending_signal() const noexcept { return signal_; }
 
   pid_t id() const noexcept { return id_; }
 
  private:
+  void collect(int options) noexcept {
+    int status = 0;
+    pid_t done = -1;
+    while ((done = waitpid(id_, &status, options)) < 0 && errno == EINTR) {
+    }
+    if (done == 0) return;
+    id_ = 0;
+    code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    signal_ = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  }
+
   pid_t id_;
+  int code_ = -1;
+  int signal_ = 0;
 };
 
 }  // namespace robot_control

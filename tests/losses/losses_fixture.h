@@ -1,0 +1,92 @@
+#pragma once
+/// A healthy robot at full speed, four processes in `clock: wall`: each test takes one thing from it. What is promised
+/// is written down in docs/losses.md, a row for each test.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "support/driving_robot.h"
+
+namespace robot_control {
+
+inline constexpr const char* kParams = PROJECT_DIRECTORY "/config/robot_params.yaml";
+
+/// Cycles of the plant from a loss to the brake: permit and command live on for 4, and the machine may stall.
+inline constexpr std::uint64_t kBrakeWithin = 20;
+
+/// What a machine that stood still for 20 ms may latch by itself.
+inline constexpr std::uint64_t kStallCauses = kCauseDriverLost | kCauseControllerLost | kCauseEstimatorLost |
+                                              kCauseMonitorLate | kCauseCommandStale | kCauseGateRefuses;
+
+inline std::string name_of_signal(int number) {
+  return number == SIGSTOP ? "SIGSTOP" : number == SIGKILL ? "SIGKILL" : "SIGSEGV";
+}
+
+class Losses : public ::testing::Test {
+ protected:
+  explicit Losses(const Parameters& parameters = DrivingRobot::quick(kParams)) : robot_(parameters) {
+    robot_.drive_at_full_speed();
+  }
+
+  DriveLog& log() noexcept { return robot_.log(); }
+  NodeProcesses& nodes() noexcept { return robot_.nodes(); }
+
+  void expect_lives(LoopNode node) { EXPECT_TRUE(nodes().lives(node)) << name_of(node) << ":\n" << nodes().said(node); }
+
+  /// Full speed, as before, and nothing latched but what a stall of this machine latches.
+  void expect_undisturbed() {
+    constexpr double kFast = 0.9 * DrivingRobot::kFullSpeed;
+    robot_.await_cycles(300);
+    if (const std::uint64_t causes = robot_.permit().causes; causes != 0 && (causes & ~kStallCauses) == 0) {
+      robot_.drive_at_full_speed();
+    }
+    EXPECT_EQ(robot_.permit().causes, 0u) << robot_.situation();
+    EXPECT_GT(log().last().speed, kFast) << robot_.situation();
+    expect_no_jump();
+  }
+
+  /// Of which one cannot say how many cycles braked: a full ring takes no rows.
+  void expect_drives_on(std::uint64_t cycles) {
+    const std::uint64_t end = robot_.cycle() + cycles;
+    EXPECT_TRUE(robot_.await([&] { return robot_.cycle() >= end; })) << robot_.situation();
+    EXPECT_EQ(robot_.permit().causes & ~kStallCauses, 0u) << robot_.situation();
+    if (robot_.permit().causes == 0) {
+      EXPECT_GT(robot_.speed(), 0.9 * DrivingRobot::kFullSpeed) << robot_.situation();
+    }
+  }
+
+  /// The robot went its way in steps: none is longer than top speed allows, and 5 % for the wheel loops.
+  void expect_no_jump() {
+    EXPECT_LT(log().longest_step(), 1.05 * DrivingRobot::kFullSpeed * nodes().parameters().loop.period());
+  }
+
+  /// Stopped for good: a standing wish to drive moves nothing and is what a reset is refused for; released, the robot
+  /// stands until a new command, and then drives.
+  void expect_latched_until_reset_and_new_command(std::uint64_t cause) {
+    EXPECT_TRUE(robot_.await([&] { return (robot_.permit().causes & cause) != 0; }))
+        << "wanted " << names_of(kStopCauseNames, cause) << "; " << robot_.situation();
+    expect_stands(100);
+    EXPECT_NE(robot_.ask_reset() & kRefusalCommand, 0u) << robot_.situation();
+    expect_stands(20);
+    robot_.release();
+    robot_.ask_for_nothing();
+    expect_stands(100);
+    robot_.drive_at_full_speed();
+    expect_no_jump();
+  }
+
+  void expect_stands(std::uint64_t cycles) {
+    const double from = log().way_since(0);
+    ASSERT_TRUE(robot_.await_cycles(cycles)) << robot_.situation();
+    EXPECT_LT(log().way_since(0) - from, 0.001) << robot_.situation();
+  }
+
+  DrivingRobot robot_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,113 @@
+/// A node is stopped, killed, or crashes, at full speed.
+
+#include "losses_fixture.h"
+
+namespace robot_control {
+namespace {
+
+struct Row {
+  LoopNode node;
+  int signal;
+  std::uint64_t cause;  ///< latched, at the latest once the node is back
+};
+
+class ALostNode : public Losses, public ::testing::WithParamInterface<Row> {
+ protected:
+  void bring_back() {
+    if (GetParam().signal == SIGSTOP) {
+      nodes().process(GetParam().node).send(SIGCONT);
+    } else {
+      robot_.restart(GetParam().node);
+    }
+  }
+};
+
+TEST_P(ALostNode, StopsTheRobotUntilResetAndANewCommand) {
+  const auto [node, signal, cause] = GetParam();
+  const MeasuredStop stop = robot_.lose(node, signal);
+  std::printf("  %s of %s: brake after %llu cycles (%s), %.3f m to standstill\n", name_of_signal(signal).c_str(),
+              name_of(node), static_cast<unsigned long long>(stop.cycles),
+              names_of(kGateReasonNames, stop.reasons).c_str(), stop.way);
+  if (stop.measured()) {
+    EXPECT_LE(stop.cycles, kBrakeWithin);
+  }
+  EXPECT_LT(stop.way, 0.5) << "v²/2a with brakes of 2 · 2.2 N·m on wheels of 0.1 m under 12 kg: 0.14 m";
+  if (signal != SIGSTOP) {
+    EXPECT_FALSE(nodes().lives(node));
+    EXPECT_EQ(nodes().process(node).ending_signal(), signal) << "and it hangs nowhere on its way";
+    if (node != LoopNode::kMonitor) {
+      EXPECT_TRUE(robot_.await([&] { return nodes().misses(LoopNode::kMonitor, node); })) << "the monitor names it";
+    }
+  }
+  for (const LoopNode other : kLoop) {
+    if (other != node) expect_lives(other);
+  }
+  bring_back();
+  expect_latched_until_reset_and_new_command(cause);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ALostNode,
+                         ::testing::Values(Row{LoopNode::kController, SIGSTOP, kCauseControllerLost},
+                                           Row{LoopNode::kController, SIGKILL, kCauseControllerLost},
+                                           Row{LoopNode::kController, SIGSEGV, kCauseControllerLost},
+                                           Row{LoopNode::kEstimator, SIGSTOP, kCauseEstimatorLost},
+                                           Row{LoopNode::kEstimator, SIGKILL, kCauseEstimatorLost},
+                                           Row{LoopNode::kEstimator, SIGSEGV, kCauseEstimatorLost},
+                                           Row{LoopNode::kMonitor, SIGSTOP, kCauseMonitorLate},
+                                           Row{LoopNode::kMonitor, SIGKILL, kCauseMonitorRestarted},
+                                           Row{LoopNode::kMonitor, SIGSEGV, kCauseMonitorRestarted}),
+                         [](const auto& each) {
+                           return std::string(name_of(each.param.node)) + "_" + name_of_signal(each.param.signal);
+                         });
+
+/// The plant is the world, too: its time ends, or stands still, with it.
+class ALostPlant : public Losses, public ::testing::WithParamInterface<int> {};
+
+TEST_P(ALostPlant, IsNamedByEveryOtherAndHoldsTheLatch) {
+  nodes().process(LoopNode::kPlant).send(GetParam());
+  EXPECT_TRUE(robot_.await([&] { return (robot_.permit().causes & kCauseDriverLost) != 0; })) << robot_.situation();
+  if (GetParam() == SIGSTOP) {
+    const std::uint64_t stood = robot_.cycle();
+    nodes().process(LoopNode::kPlant).send(SIGCONT);
+    EXPECT_TRUE(robot_.await([&] { return log().rested(DrivingRobot::kRestCycles); })) << robot_.situation();
+    EXPECT_LE(*log().braking_since(), stood + 2) << "the first cycles find the latched permit";
+  } else {
+    EXPECT_TRUE(robot_.await([&] { return !nodes().lives(LoopNode::kPlant); }));
+    EXPECT_EQ(nodes().process(LoopNode::kPlant).ending_signal(), GetParam());
+    for (const LoopNode other : {LoopNode::kEstimator, LoopNode::kController, LoopNode::kMonitor}) {
+      EXPECT_TRUE(robot_.await([&] { return nodes().misses(other, LoopNode::kPlant); })) << name_of(other);
+    }
+    EXPECT_NE(robot_.ask_reset() & kRefusalSilent, 0u) << robot_.situation();
+    log().forget();
+    robot_.restart(LoopNode::kPlant);
+    EXPECT_TRUE(robot_.await([&] { return log().rested(DrivingRobot::kRestCycles); })) << robot_.situation();
+  }
+  for (const LoopNode other : kLoop) expect_lives(other);
+  expect_latched_until_reset_and_new_command(kCauseDriverLost);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ALostPlant, ::testing::Values(SIGSTOP, SIGKILL, SIGSEGV),
+                         [](const auto& each) { return name_of_signal(each.param); });
+
+/// The log's reader.
+class ALostTelemetry : public Losses, public ::testing::WithParamInterface<int> {};
+
+TEST_P(ALostTelemetry, HarmsNothing) {
+  nodes().log_into(nodes().folder() / "log");
+  nodes().start(LoopNode::kTelemetry);
+  expect_drives_on(200);
+  nodes().process(LoopNode::kTelemetry).send(GetParam());
+  expect_drives_on(kRingRows + 500);  // its rings are full by then, were anybody to wait for room
+  if (GetParam() == SIGSTOP) {
+    nodes().process(LoopNode::kTelemetry).send(SIGCONT);
+    EXPECT_TRUE(robot_.await([&] { return nodes().desk().lost_rows.load() > 0; })) << "what was lost is counted";
+    expect_drives_on(200);
+  }
+  for (const LoopNode node : kLoop) expect_lives(node);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ALostTelemetry, ::testing::Values(SIGSTOP, SIGKILL, SIGSEGV),
+                         [](const auto& each) { return name_of_signal(each.param); });
+
+}  // namespace
+}  // namespace robot_control

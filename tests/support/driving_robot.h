@@ -1,0 +1,242 @@
+#pragma once
+/// A robot of four processes that somebody drives at full speed, from whom one of them is then taken.
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "rt/clock.h"
+#include "rt/futex.h"
+#include "runtime/process.h"
+#include "signals/names.h"
+#include "support/drive_log.h"
+#include "support/node_processes.h"
+
+namespace robot_control {
+
+/// From a signal to standstill.
+struct MeasuredStop {
+  std::uint64_t cycles = 0;   ///< from the newest one seen before the signal to the first of all that braked
+  std::uint64_t blurred = 0;  ///< cycles that passed while the signal was sent: the uncertainty of `cycles`
+  bool before = false;        ///< it braked already: this machine stood still, nothing is measured
+  double way = 0;             ///< m, true, from then to standstill
+  std::uint64_t reasons = 0;  ///< the gate's, in the first cycle that braked
+
+  /// Else this machine kept the test from its work between a look and a signal: to be measured anew.
+  bool measured() const noexcept { return !before && blurred <= 2; }
+};
+
+class DrivingRobot {
+ public:
+  static constexpr double kFullSpeed = 1.0;       ///< m/s: max_linear_speed
+  static constexpr double kPatience = 30.0;       ///< s: what takes longer has not happened
+  static constexpr std::size_t kRestCycles = 20;  ///< twice what the monitor asks for
+
+  explicit DrivingRobot(const Parameters& parameters)
+      : nodes_(parameters),
+        log_(nodes_.bus()),
+        sensors_(nodes_.bus(), ChannelNames::kSensors),
+        permits_(nodes_.bus(), ChannelNames::kPermit),
+        truth_(nodes_.bus(), ChannelNames::kTruth) {
+    nodes_.start_loop();
+  }
+
+  /// The users' parameters, but for an acceleration that a test has time for: what motors of 2 · 3.5 N·m on wheels of
+  /// 0.1 m give 12 kg is 5.8 m/s².
+  static Parameters quick(const std::string& params) {
+    Parameters parameters = read_parameters(params);
+    parameters.controller.max_linear_acceleration = 5.0;
+    return parameters;
+  }
+
+  NodeProcesses& nodes() noexcept { return nodes_; }
+  DriveLog& log() noexcept { return log_; }
+
+  /// Newest on the channel; cycle 0 of run 0 where there is none.
+  Permit permit() const {
+    Permit permit;
+    return permits_.reader.newest(permit) == Lookup::kFrame ? permit : Permit{};
+  }
+  SensorFrame sensors() const {
+    SensorFrame sensors;
+    for (int tries = 0; tries < 100; ++tries) {
+      if (sensors_.reader.newest(sensors) == Lookup::kFrame) return sensors;
+    }
+    return {};
+  }
+  std::uint64_t cycle() const { return sensors().head.cycle; }
+
+  /// m/s, by the newest frame; for whoever cannot wait for the trace.
+  double speed() const {
+    TruthFrame truth;
+    return truth_.reader.newest(truth) == Lookup::kFrame ? truth.twist_base.linear[0] : 0;
+  }
+
+  /// From now on an operator asks for this, 20 times a second.
+  void ask_for(double speed) {
+    asked_ = speed;
+    next_send_ns_ = 0;
+  }
+  void ask_for_nothing() { asked_.reset(); }
+
+  /// Sends, maps and reads what is due.
+  void look() {
+    const std::int64_t now_ns = monotonic_ns();
+    if (asked_ && now_ns >= next_send_ns_) {
+      next_send_ns_ = now_ns + kSendNs;
+      command_.twist.linear[0] = *asked_;
+      ++command_.count;
+      nodes_.desk().command.store(command_);
+    }
+    if (!watching_) return;
+    if (mapping_ && now_ns >= next_poll_ns_) {
+      next_poll_ns_ = now_ns + kPollNs;
+      sensors_.poll();
+      permits_.poll();
+      truth_.poll();
+      log_.poll();
+    }
+    log_.look();
+  }
+
+  /// Objects are not looked at again: of a wreck that would be an error.
+  void keep_mappings() noexcept { mapping_ = false; }
+
+  /// Memory that is about to be cut off must not be touched: nothing of all this is known until `look_anew`.
+  void look_away() {
+    watching_ = false;
+    log_ = DriveLog(nodes_.bus());
+    sensors_.reader = FrameReader<SensorFrame>();
+    permits_.reader = FrameReader<Permit>();
+    truth_.reader = FrameReader<TruthFrame>();
+  }
+
+  /// At objects of those names that are whole.
+  void look_anew() {
+    look_away();
+    sensors_.channel = ForeignChannel<LatestFrames<SensorFrame>>(nodes_.bus(), ChannelNames::kSensors);
+    permits_.channel = ForeignChannel<LatestFrames<Permit>>(nodes_.bus(), ChannelNames::kPermit);
+    truth_.channel = ForeignChannel<LatestFrames<TruthFrame>>(nodes_.bus(), ChannelNames::kTruth);
+    watching_ = true;
+    mapping_ = true;
+  }
+
+  /// Until the condition holds. False: it did not in time.
+  template <class Condition>
+  bool await(Condition condition, double patience_s = kPatience) {
+    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+    for (look(); !condition(); look()) {
+      if (monotonic_ns() > end_ns) return false;
+      sleep_ns(kLookNs);
+    }
+    return true;
+  }
+
+  /// So many cycles go by.
+  bool await_cycles(std::uint64_t count) {
+    const std::uint64_t end = log_.empty() ? count : log_.last().cycle + count;
+    return await([&] { return !log_.empty() && log_.last().cycle >= end; });
+  }
+
+  /// Kills what may still live of it, and starts it.
+  void restart(LoopNode node) {
+    nodes_.start(node);
+    if (node == LoopNode::kController) command_ = {};
+    if (node == LoopNode::kMonitor) operator_input_ = {};
+  }
+
+  /// All of them anew, as if nothing had been: with driver and monitor both gone no latch is left.
+  void restart_all() {
+    for (const LoopNode node : kLoop) nodes_.end(node);
+    for (const LoopNode node : kLoop) restart(node);
+  }
+
+  /// Asks once; the answer's refusals, 0: accepted. Throws std::runtime_error where none comes.
+  std::uint64_t ask_reset() {
+    ++operator_input_.resets;
+    nodes_.desk().operator_input.store(operator_input_);
+    if (!await([&] { return permit().resets_handled == operator_input_.resets; })) {
+      throw std::runtime_error("nobody answers a reset");
+    }
+    return permit().reset_refusal;
+  }
+
+  /// The operator lets go, and asks until it is accepted.
+  void release() {
+    ask_for(0);
+    if (!await([&] { return log_.rested(kRestCycles); })) throw std::runtime_error("does not stand: " + situation());
+    if (!await([&] { return ask_reset() == 0; })) throw std::runtime_error("is not released: " + situation());
+  }
+
+  /// From whatever state the robot is in. What a machine that stalls latches meanwhile is released.
+  void drive_at_full_speed() {
+    const auto fast = [&] { return !log_.empty() && log_.last().speed > 0.97 * kFullSpeed; };
+    const auto latched = [&] { return permit().state == SupervisorState::kStopped; };
+    const auto ready = [&] { return permit().state != SupervisorState::kInit && !log_.empty(); };
+    if (!await(ready)) throw std::runtime_error("not ready: " + situation());
+    for (int tries = 0; tries < kTries; ++tries) {
+      if (latched()) release();
+      ask_for(kFullSpeed);
+      if (await([&] { return fast() || latched(); }) && fast()) return;
+    }
+    throw std::runtime_error("does not reach full speed: " + situation());
+  }
+
+  /// At full speed: sends the signal and looks on until the robot stands. Throws std::runtime_error where it does not.
+  MeasuredStop lose(LoopNode node, int signal) {
+    look();
+    log_.forget();
+    const std::uint64_t before = cycle();
+    nodes_.process(node).send(signal);
+    MeasuredStop stop{.blurred = cycle() - before};
+    if (!await([&] { return log_.rested(kRestCycles); })) throw std::runtime_error("does not stop: " + situation());
+    const std::uint64_t braked = *log_.braking_since();
+    stop.before = braked <= before;
+    stop.cycles = stop.before ? 0 : braked - before;
+    stop.way = log_.way_since(before);
+    for (const DrivenCycle& driven : log_.cycles()) {
+      if (driven.cycle == braked) stop.reasons = driven.reasons;
+    }
+    return stop;
+  }
+
+  /// What is the case, for messages.
+  std::string situation() {
+    const Permit last = permit();
+    std::string text = "monitor: state " + std::string(name_of(last.state)) + ", causes " +
+                       names_of(kStopCauseNames, last.causes) + ", missing " +
+                       names_of(kMissingNodeNames, last.missing) + "; reset refused for " +
+                       names_of(kResetRefusalNames, last.reset_refusal);
+    if (!log_.empty()) {
+      text += "; gate: " + names_of(kGateReasonNames, log_.last().reasons) + " in cycle " +
+              std::to_string(log_.last().cycle) + ", speed " + std::to_string(log_.last().speed) + " m/s";
+    }
+    for (const LoopNode node : kLoop) {
+      if (const std::string said = nodes_.said(node); !said.empty()) text += "\n" + said;
+    }
+    return text;
+  }
+
+ private:
+  static constexpr int kTries = 5;
+  static constexpr std::int64_t kSendNs = 50'000'000;
+  static constexpr std::int64_t kPollNs = 20'000'000;
+  static constexpr std::int64_t kLookNs = 500'000;
+
+  NodeProcesses nodes_;
+  DriveLog log_;
+  Input<SensorFrame> sensors_;
+  Input<Permit> permits_;
+  Input<TruthFrame> truth_;
+  VelocityCommand command_;
+  OperatorInput operator_input_;
+  std::optional<double> asked_;
+  std::int64_t next_send_ns_ = 0;
+  std::int64_t next_poll_ns_ = 0;
+  bool watching_ = true;
+  bool mapping_ = true;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,170 @@
+#pragma once
+/// The nodes of the loop as processes of their own, the plant too, without ROS: each may be stopped, killed and started
+/// again while the test, which has no thread but its own, looks on.
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "drivers/mujoco_plant.h"
+#include "rt/futex.h"
+#include "rt/realtime_thread.h"
+#include "runtime/controller_process.h"
+#include "runtime/driver_process.h"
+#include "runtime/estimator_process.h"
+#include "runtime/monitor_process.h"
+#include "runtime/telemetry_process.h"
+#include "support/anonymous_memory.h"
+#include "support/child_process.h"
+#include "support/control_desk.h"
+#include "support/scoped_bus.h"
+#include "support/temporary_folder.h"
+
+namespace robot_control {
+
+class NodeProcesses {
+ public:
+  explicit NodeProcesses(const Parameters& parameters)
+      : parameters_(parameters), robot_(read_robot(load_description(parameters.urdf), parameters.robot)) {
+    new (desk_.get()) ControlDesk();
+    parameters_.loop.wait_for_nodes = true;  // a run begins with everybody there
+  }
+
+  void start_loop() {
+    for (const LoopNode node : kLoop) start(node);
+  }
+
+  /// Forks the node. It hears nothing that was said before; what it said itself, it goes on saying.
+  void start(LoopNode node) {
+    if (node == LoopNode::kController) desk_->command.store({});
+    if (node == LoopNode::kMonitor) desk_->operator_input.store({});
+    if (node == LoopNode::kTelemetry) desk_->lost_rows.store(0);
+    desk_->missing[index_of(node)].store(0);
+    processes_[index_of(node)] = std::make_unique<ChildProcess>([this, node] { return run(node); });
+    // Only cycle 0 of the first run waits for everybody; a plant that is started again finds others braking.
+    if (node == LoopNode::kPlant) parameters_.loop.wait_for_nodes = false;
+  }
+
+  /// Gone on return.
+  void end(LoopNode node) {
+    if (processes_[index_of(node)] != nullptr) processes_[index_of(node)]->kill();
+  }
+
+  ChildProcess& process(LoopNode node) { return *processes_[index_of(node)]; }
+  bool lives(LoopNode node) {
+    const auto& process = processes_[index_of(node)];
+    return process != nullptr && process->lives();
+  }
+  bool misses(LoopNode node, LoopNode whom) const {
+    return (desk_->missing[index_of(node)].load() >> index_of(whom) & 1U) != 0;
+  }
+
+  /// What the node wrote to stderr.
+  std::string said(LoopNode node) const {
+    std::ifstream file(log_of(node));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  /// What else the process does before it is a node.
+  void prepare(LoopNode node, std::function<void()> act) { preparations_[index_of(node)] = std::move(act); }
+
+  ControlDesk& desk() const noexcept { return *desk_.get(); }
+  const std::string& bus() const noexcept { return bus_.name(); }
+  const Parameters& parameters() const noexcept { return parameters_; }
+  const RobotModel& robot() const noexcept { return robot_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
+
+  /// Telemetry writes there, from its next start on.
+  void log_into(const std::string& directory) { parameters_.telemetry.directory = directory; }
+
+ private:
+  static constexpr std::int64_t kLookNs = 5'000'000;  // twenty times what a ROS node looks: a test shall not wait
+
+  std::string log_of(LoopNode node) const { return folder_.path() / (std::string(name_of(node)) + ".log"); }
+
+  int run(LoopNode node) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const int log = open(log_of(node).c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    dup2(log, STDERR_FILENO);
+    try {
+      if (preparations_[index_of(node)]) preparations_[index_of(node)]();
+      prepare_process(parameters_.loop.realtime);
+      run_prepared(node);
+      return 0;
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s: refused:\n%s\n", name_of(node), error.what());
+      return 1;
+    }
+  }
+
+  void run_prepared(LoopNode node) {
+    switch (node) {
+      case LoopNode::kPlant:
+        return run_plant();
+      case LoopNode::kEstimator:
+        return run_consumer<EstimatorProcess>(node, [](EstimatorProcess&) {});
+      case LoopNode::kController:
+        return run_consumer<ControllerProcess>(node, [this](ControllerProcess& controller) {
+          VelocityCommand command;
+          if (desk_->command.load(command)) controller.cycle().inbox().store(command);
+        });
+      case LoopNode::kMonitor:
+        return run_consumer<MonitorProcess>(node, [this](MonitorProcess& monitor) {
+          OperatorInput input;
+          if (desk_->operator_input.load(input)) monitor.cycle().inbox().store(input);
+        });
+      case LoopNode::kTelemetry:
+        return run_telemetry();
+    }
+  }
+
+  template <class Node, class Hear>
+  [[noreturn]] void run_consumer(LoopNode name, Hear hear) {
+    Node node(parameters_, robot_, bus_.name());
+    for (;;) {
+      hear(node);
+      node.poll();
+      desk_->missing[index_of(name)].store(missing_bits(node.missing()));
+      sleep_ns(kLookNs);
+    }
+  }
+
+  [[noreturn]] void run_plant() {
+    DriverProcess driver(parameters_, robot_, bus_.name());
+    driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
+    for (;;) {
+      driver.poll();
+      desk_->missing[index_of(LoopNode::kPlant)].store(missing_bits(driver.missing()));
+      sleep_ns(kLookNs);
+    }
+  }
+
+  [[noreturn]] void run_telemetry() {
+    TelemetryProcess telemetry(parameters_, robot_, bus_.name());
+    for (;;) {
+      telemetry.poll();
+      telemetry.drain();
+      const TelemetryCounts counts = telemetry.counts();
+      desk_->lost_rows.store(counts.dropped + counts.overwritten);
+      sleep_ns(kLookNs);
+    }
+  }
+
+  ScopedBus bus_;
+  TemporaryFolder folder_;
+  AnonymousMemory<ControlDesk> desk_;
+  Parameters parameters_;
+  RobotModel robot_;
+  std::array<std::function<void()>, kLoopNodeNames.size()> preparations_;
+  std::array<std::unique_ptr<ChildProcess>, kLoopNodeNames.size()> processes_;
+};
+
+}  // namespace robot_control
