@@ -8,6 +8,12 @@
 /// needed (H.-J. Boehm, "Can seqlocks get along with programming language memory models?", MSPC 2012,
 /// section 4), and on x86-64 every access is a plain move.
 ///
+/// What holds, on any machine that C++ runs on: a copy that passes is one publication, whole. `newest` never
+/// goes back. Versions are stored with release and loaded with acquire, so that a try that fails knows the
+/// publication that was in its way: where consecutive cycles are published, `newest` misses only if kReadTries
+/// publications overtook it. tests/rt/latest_frames_model_test.cpp visits every execution of a small model of
+/// this code that the memory model of C++ allows, and shows that no order and no check can be left out.
+///
 /// `sequence` counts publications over all writers' lives and is the futex word that readers wait on.
 /// Readers need only read access to the memory.
 
@@ -41,16 +47,17 @@ struct ChannelHead {
   std::array<std::atomic<char>, 256> robot_source;  ///< where that robot was read, zero-terminated
 };
 
-template <class Frame>
+/// Atomic and kSlots differ from their defaults in the model of the tests alone.
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t kSlots = kFrameSlots>
 struct LatestFrames {
   struct Slot {
-    std::atomic<std::uint64_t> version;
-    std::array<std::atomic<std::uint64_t>, kFrameWords<Frame>> words;
+    Atomic<std::uint64_t> version;
+    std::array<Atomic<std::uint64_t>, kFrameWords<Frame>> words;
   };
   ChannelHead head;
-  alignas(64) std::atomic<std::uint32_t> sequence;  ///< futex word
-  std::atomic<std::uint64_t> newest;                ///< slot of the last publication + 1; 0 = none
-  alignas(64) std::array<Slot, kFrameSlots> slots;
+  alignas(64) Atomic<std::uint32_t> sequence;  ///< futex word
+  Atomic<std::uint64_t> newest;                ///< slot of the last publication + 1; 0 = none
+  alignas(64) std::array<Slot, kSlots> slots;
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
@@ -60,12 +67,13 @@ enum class Lookup { kMissing, kFrame, kToken, kCorrupt };
 /// Whom a publication wakes. A loop in one thread, on private memory, saves the system call.
 enum class Wake { kReaders, kNobody };
 
-template <class Frame>
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t kSlots = kFrameSlots>
 class FrameWriter {
  public:
+  using Frames = LatestFrames<Frame, Atomic, kSlots>;
+
   /// `memory`: zeroed, or left by an earlier writer of the same layout. Not owned.
-  explicit FrameWriter(LatestFrames<Frame>* memory = nullptr, Wake wake = Wake::kReaders) noexcept
-      : memory_(memory), wake_(wake) {}
+  explicit FrameWriter(Frames* memory = nullptr, Wake wake = Wake::kReaders) noexcept : memory_(memory), wake_(wake) {}
 
   /// Seals the frame, stores it and wakes all readers. One futex call, nothing else.
   void publish(Frame& frame) noexcept {
@@ -85,16 +93,16 @@ class FrameWriter {
   /// Stores without sealing or waking: for tests that plant a broken frame.
   void store(const Frame& frame) noexcept {
     const auto words = std::bit_cast<std::array<std::uint64_t, kFrameWords<Frame>>>(frame);
-    const std::size_t index = frame.head.cycle % kFrameSlots;
+    const std::size_t index = frame.head.cycle % kSlots;
     auto& slot = memory_->slots[index];
     const std::uint64_t version = slot.version.load(std::memory_order_relaxed) | 1;  // odd also after a crash
-    slot.version.store(version, std::memory_order_relaxed);
+    slot.version.store(version, std::memory_order_release);
     for (std::size_t i = 0; i < words.size(); ++i) slot.words[i].store(words[i], std::memory_order_release);
     slot.version.store(version + 1, std::memory_order_release);
     memory_->newest.store(index + 1, std::memory_order_release);
   }
 
-  LatestFrames<Frame>* memory() const noexcept { return memory_; }
+  Frames* memory() const noexcept { return memory_; }
 
  private:
   void wake() noexcept {
@@ -102,14 +110,16 @@ class FrameWriter {
     if (wake_ == Wake::kReaders) futex_wake_all(memory_->sequence);
   }
 
-  LatestFrames<Frame>* memory_;
+  Frames* memory_;
   Wake wake_;
 };
 
-template <class Frame>
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t kSlots = kFrameSlots>
 class FrameReader {
  public:
-  explicit FrameReader(const LatestFrames<Frame>* memory = nullptr) noexcept : memory_(memory) {}
+  using Frames = LatestFrames<Frame, Atomic, kSlots>;
+
+  explicit FrameReader(const Frames* memory = nullptr) noexcept : memory_(memory) {}
   FrameReader(const FrameReader& other) noexcept : memory_(other.memory_.load()) {}
   FrameReader& operator=(const FrameReader& other) noexcept {
     memory_.store(other.memory_.load());
@@ -117,7 +127,7 @@ class FrameReader {
   }
 
   /// Ordinary thread: the channel's object was replaced. The old mapping must stay valid.
-  void remap(const LatestFrames<Frame>* memory) noexcept { memory_.store(memory, std::memory_order_release); }
+  void remap(const Frames* memory) noexcept { memory_.store(memory, std::memory_order_release); }
 
   /// The frame published last.
   Lookup newest(Frame& out) const noexcept {
@@ -125,11 +135,11 @@ class FrameReader {
     if (memory == nullptr) return Lookup::kMissing;
     for (int tries = 0; tries < kReadTries; ++tries) {
       const std::uint64_t newest = memory->newest.load(std::memory_order_acquire);
-      if (newest == 0 || newest > kFrameSlots) return Lookup::kMissing;
+      if (newest == 0 || newest > kSlots) return Lookup::kMissing;
       if (!copy(memory->slots[newest - 1], out)) continue;
       // A reader that slept in between holds the slot's next frame already: taking it, and then the one
       // before it, would turn time back.
-      if (memory->newest.load(std::memory_order_acquire) == newest) return judge(out);
+      if (memory->newest.load(std::memory_order_relaxed) == newest) return judge(out);
     }
     return Lookup::kMissing;
   }
@@ -139,7 +149,7 @@ class FrameReader {
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
     for (int tries = 0; tries < kReadTries; ++tries) {
-      if (!copy(memory->slots[cycle % kFrameSlots], out)) continue;
+      if (!copy(memory->slots[cycle % kSlots], out)) continue;
       const Lookup found = judge(out);
       if (found == Lookup::kCorrupt) return found;
       return out.head.run == run && out.head.cycle == cycle ? found : Lookup::kMissing;
@@ -182,15 +192,15 @@ class FrameReader {
 
   static constexpr std::int64_t kRemapNs = 20'000'000;
 
-  const LatestFrames<Frame>* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
+  const Frames* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
 
  private:
-  static bool copy(const typename LatestFrames<Frame>::Slot& slot, Frame& out) noexcept {
+  static bool copy(const typename Frames::Slot& slot, Frame& out) noexcept {
     const std::uint64_t before = slot.version.load(std::memory_order_acquire);
     if (before % 2 != 0) return false;
     std::array<std::uint64_t, kFrameWords<Frame>> words;
     for (std::size_t i = 0; i < words.size(); ++i) words[i] = slot.words[i].load(std::memory_order_acquire);
-    if (slot.version.load(std::memory_order_relaxed) != before) return false;
+    if (slot.version.load(std::memory_order_acquire) != before) return false;
     out = std::bit_cast<Frame>(words);
     return true;
   }
@@ -201,7 +211,7 @@ class FrameReader {
     return frame.head.kind == FrameKind::kToken ? Lookup::kToken : Lookup::kFrame;
   }
 
-  std::atomic<const LatestFrames<Frame>*> memory_;
+  std::atomic<const Frames*> memory_;
 };
 
 }  // namespace robot_control

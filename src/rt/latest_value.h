@@ -1,9 +1,9 @@
 #pragma once
 /// A latest value between two threads of one process: the inbox of a real-time thread.
 ///
-/// Same sequence lock as LatestFrames, one slot. `store` must be serialised by the caller when more than
-/// one thread writes. `load` is bounded: it returns false, and leaves `out`, when a writer was in the way
-/// kReadTries times; the reader then keeps its old value and asks again in the next cycle.
+/// Same sequence lock as LatestFrames, one slot (tests/rt/latest_value_model_test.cpp). `store` must be serialised
+/// by the caller when more than one thread writes. `load` is bounded: it returns false, and leaves `out`, when a
+/// writer was in the way kTries times; the reader then keeps its old value and asks again in the next cycle.
 
 #include <array>
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace robot_control {
 
-template <class Value>
+template <class Value, template <class> class Atomic = std::atomic>
 class LatestValue {
   static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) % 8 == 0);
   static constexpr std::size_t kWords = sizeof(Value) / 8;
@@ -46,8 +46,8 @@ class LatestValue {
   }
 
  private:
-  std::atomic<std::uint64_t> version_{0};
-  std::array<std::atomic<std::uint64_t>, kWords> words_{};
+  Atomic<std::uint64_t> version_{0};
+  std::array<Atomic<std::uint64_t>, kWords> words_{};
 };
 
 }  // namespace robot_control

@@ -2,7 +2,9 @@
 /// A ring of rows from one writer to one reader in another process, losses counted.
 ///
 /// The ring belongs to the writer, the read position to the reader (RingPositions, an object of its own, so
-/// that neither needs write access to the other's memory). Each slot is a sequence lock as in LatestFrames.
+/// that neither needs write access to the other's memory). Each slot is a sequence lock as in LatestFrames, except
+/// that `written` alone publishes a row: its version tells whether the row is still there.
+/// tests/rt/ring_model_test.cpp visits every execution of a small model of this code.
 /// When the ring is full the writer either waits (lockstep, a reader present) or drops the new row and counts
 /// it; with no reader present it overwrites the oldest rows.
 
@@ -30,79 +32,88 @@ struct RingPositions {
   alignas(64) std::array<std::atomic<std::uint64_t>, kTraceRings> read;
 };
 
-template <class Row>
+/// Atomic and kRows differ from their defaults in the model of the tests alone.
+template <class Row, template <class> class Atomic = std::atomic, std::size_t kRows = kRingRows>
 struct Ring {
   static_assert(std::is_trivially_copyable_v<Row> && sizeof(Row) % 8 == 0);
   static constexpr std::size_t kWords = sizeof(Row) / 8;
   struct Slot {
-    std::atomic<std::uint64_t> version;  ///< 2 * (position + 1) when row `position` is complete
-    std::array<std::atomic<std::uint64_t>, kWords> words;
+    Atomic<std::uint64_t> version;  ///< 2 * (position + 1) when row `position` is complete
+    std::array<Atomic<std::uint64_t>, kWords> words;
   };
   ChannelHead head;
-  alignas(64) std::atomic<std::uint64_t> written;  ///< rows ever appended
-  std::atomic<std::uint64_t> dropped;              ///< rows ever dropped by the writer
-  alignas(64) std::array<Slot, kRingRows> slots;
+  alignas(64) Atomic<std::uint64_t> written;  ///< rows ever appended
+  Atomic<std::uint64_t> dropped;              ///< rows ever dropped by the writer
+  alignas(64) std::array<Slot, kRows> slots;
 };
 
-template <class Row>
+template <class Row, template <class> class Atomic = std::atomic, std::size_t kRows = kRingRows>
 class RingWriter {
  public:
-  explicit RingWriter(Ring<Row>* memory = nullptr) noexcept : memory_(memory) {}
+  using Rows = Ring<Row, Atomic, kRows>;
+
+  explicit RingWriter(Rows* memory = nullptr) noexcept : memory_(memory) {}
 
   /// `read`: the reader's position, null when no reader is present. False: dropped and counted.
-  bool append(const Row& row, const std::atomic<std::uint64_t>* read) noexcept {
+  bool append(const Row& row, const Atomic<std::uint64_t>* read) noexcept {
     const std::uint64_t position = memory_->written.load(std::memory_order_relaxed);
-    if (full(read)) {
+    if (full_at(position, read)) {
       memory_->dropped.fetch_add(1, std::memory_order_relaxed);
       return false;
     }
-    auto& slot = memory_->slots[position % kRingRows];
-    const auto words = std::bit_cast<std::array<std::uint64_t, Ring<Row>::kWords>>(row);
+    auto& slot = memory_->slots[position % kRows];
+    const auto words = std::bit_cast<std::array<std::uint64_t, Rows::kWords>>(row);
     slot.version.store(2 * position + 1, std::memory_order_relaxed);
     for (std::size_t i = 0; i < words.size(); ++i) slot.words[i].store(words[i], std::memory_order_release);
-    slot.version.store(2 * (position + 1), std::memory_order_release);
+    slot.version.store(2 * (position + 1), std::memory_order_relaxed);
     memory_->written.store(position + 1, std::memory_order_release);
     return true;
   }
 
   /// True when `append` would drop.
-  bool full(const std::atomic<std::uint64_t>* read) const noexcept {
-    if (read == nullptr) return false;
-    const std::uint64_t position = memory_->written.load(std::memory_order_relaxed);
-    const std::uint64_t done = read->load(std::memory_order_acquire);
-    return position >= done && position - done >= kRingRows;
+  bool full(const Atomic<std::uint64_t>* read) const noexcept {
+    return full_at(memory_->written.load(std::memory_order_relaxed), read);
   }
 
  private:
-  Ring<Row>* memory_;
+  static bool full_at(std::uint64_t position, const Atomic<std::uint64_t>* read) noexcept {
+    if (read == nullptr) return false;
+    const std::uint64_t done = read->load(std::memory_order_acquire);
+    return position >= done && position - done >= kRows;
+  }
+
+  Rows* memory_;
 };
 
-template <class Row>
+template <class Row, template <class> class Atomic = std::atomic, std::size_t kRows = kRingRows>
 class RingReader {
  public:
+  using Rows = Ring<Row, Atomic, kRows>;
+
   /// Starts at the row that will be written next.
-  explicit RingReader(const Ring<Row>* memory) noexcept
+  explicit RingReader(const Rows* memory) noexcept
       : memory_(memory), position_(memory->written.load(std::memory_order_acquire)) {}
 
   /// Starts at `position`: 0 for every row that is still there, or where an earlier reader ended.
-  RingReader(const Ring<Row>* memory, std::uint64_t position) noexcept : memory_(memory), position_(position) {}
+  RingReader(const Rows* memory, std::uint64_t position) noexcept : memory_(memory), position_(position) {}
 
-  /// Takes the next row; false when there is none yet. Rows overwritten meanwhile are skipped and counted.
+  /// Takes the next row; false when there is none yet, or when the writer was in the way kReadTries times: ask
+  /// again later. Rows overwritten meanwhile are skipped and counted.
   bool take(Row& row) noexcept {
-    for (;;) {
+    for (int tries = 0; tries < kReadTries; ++tries) {
       const std::uint64_t written = memory_->written.load(std::memory_order_acquire);
       if (position_ >= written) {
         position_ = written;  // an earlier reader's position in an object that was made anew since
         return false;
       }
-      if (written - position_ > kRingRows) {
-        overwritten_ += written - position_ - kRingRows;
-        position_ = written - kRingRows;
+      if (written - position_ > kRows) {
+        overwritten_ += written - position_ - kRows;
+        position_ = written - kRows;
       }
-      const auto& slot = memory_->slots[position_ % kRingRows];
+      const auto& slot = memory_->slots[position_ % kRows];
       const std::uint64_t expected = 2 * (position_ + 1);
-      std::array<std::uint64_t, Ring<Row>::kWords> words;
-      if (slot.version.load(std::memory_order_acquire) == expected) {
+      std::array<std::uint64_t, Rows::kWords> words;
+      if (slot.version.load(std::memory_order_relaxed) == expected) {
         for (std::size_t i = 0; i < words.size(); ++i) words[i] = slot.words[i].load(std::memory_order_acquire);
         if (slot.version.load(std::memory_order_relaxed) == expected) {
           row = std::bit_cast<Row>(words);
@@ -113,6 +124,7 @@ class RingReader {
       ++overwritten_;
       ++position_;
     }
+    return false;
   }
 
   std::uint64_t position() const noexcept { return position_; }
@@ -120,7 +132,7 @@ class RingReader {
   std::uint64_t dropped() const noexcept { return memory_->dropped.load(std::memory_order_relaxed); }
 
  private:
-  const Ring<Row>* memory_;
+  const Rows* memory_;
   std::uint64_t position_;
   std::uint64_t overwritten_ = 0;
 };
