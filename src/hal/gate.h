@@ -5,24 +5,35 @@
 /// Then it clamps. Up to 3 missed commands the last one holds; beyond, brake, unlatched and counted.
 ///
 /// At tick k (all of the driver's present run, else the frame counts as missing):
-///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife)
-///   action   kDrive, or kRamp while k ≤ ramp_until
+///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife)  ∧  cycle not before that of an earlier tick's permit:
+///            what was revoked does not come back
+///   action   kDrive, or kRamp while k ≤ ramp_until and for longest_ramp cycles in a row at most, whatever it says
 ///   command  k − kCommandLife ≤ cycle ≤ k − 1; older than k − 1 is *held*
-///   numbers  every field of every joint finite, every mode a JointMode, joint_count the robot's
-///   clamp    |effort| ≤ the joint's limit; the driver clamps the total torque of its law
-/// Tick 0 brakes. A brake is JointCommand{} on every joint. A frame counted in `refused` is one that was
-/// there and was not believed; a tick counted in `missed` is one that only the command was missing in.
+///   numbers  every field of every joint finite, every mode a JointMode, joint_count the robot's; the samples of the
+///            joints that are to move finite, where a clamp needs them
+///   clamps   joint_clamp.h, in this order:
+///            |effort| ≤ limit · |Δeffort| ≤ effort_rate·Δt · speed limit · end stops
+/// The driver's brake torque ends with the brake. So the first effort after it may lie where the brake held, at zero,
+/// or anywhere between, and one step beyond.
+///
+/// Tick 0 brakes. A brake is JointCommand{} on every joint; under FailAction::kCoast kEffort 0 on wheels, unless the
+/// command itself asks for the brake of every joint. A frame counted in `refused` is one that was there and was not
+/// believed; a tick counted in `missed` is one that only the command was missing in.
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "hal/gate_parameters.h"
+#include "hal/joint_speed.h"
 #include "rt/latest_frames.h"
 #include "signals/command_frame.h"
 #include "signals/gate_report.h"
 #include "signals/joint.h"
 #include "signals/permit.h"
+#include "signals/sensor_frame.h"
 
 namespace robot_control {
 
@@ -33,12 +44,13 @@ struct GateInput {
   const Permit* permit = nullptr;  ///< never null; meaningful when found
   Lookup command_found = Lookup::kMissing;
   const CommandFrame* command = nullptr;  ///< never null; meaningful when found
+  const SensorFrame* sensors = nullptr;   ///< never null; of this very tick
 };
 
 class Gate {
  public:
-  /// One limit per joint, N·m or N, ≥ 0. Throws std::invalid_argument: NaN, negative, more than kMaxJoints.
-  explicit Gate(std::vector<double> effort_limits);
+  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument: limits that are none, more than kMaxJoints.
+  Gate(std::vector<JointLimits> limits, const GateParameters& parameters, double period);
 
   /// A new run: counters begin anew.
   void reset() noexcept;
@@ -49,13 +61,34 @@ class Gate {
   const GateReport& report() const noexcept { return report_; }
 
  private:
+  /// Of one joint, from tick to tick.
+  struct JointMemory {
+    JointSpeed speed;
+    bool driven = false;  ///< in the last tick, by a command
+    double effort = 0;    ///< that it then got
+  };
+
+  void observe(const GateInput& input) noexcept;
   bool permitted(const GateInput& input) noexcept;
+  bool allowed(const Permit& permit, std::uint64_t cycle) noexcept;
   bool fresh(const GateInput& input) noexcept;
   bool sound(const CommandFrame& command) noexcept;
-  void clamp() noexcept;
+  bool sensed(const CommandFrame& command) noexcept;
+  bool usable(std::size_t joint) const noexcept;
+  bool passes(const GateInput& input) noexcept;
+  void clamp(double elapsed) noexcept;
+  void brake(FailAction wheels) noexcept;
+  void remember() noexcept;
 
-  std::size_t joint_count_ = 0;
-  std::array<double, kMaxJoints> effort_limits_{};
+  std::vector<JointLimits> limits_;
+  GateParameters parameters_;
+  double period_;
+  std::vector<JointMemory> memory_;
+  std::span<const JointSample> samples_;     ///< of this tick; empty: missing
+  std::optional<std::uint64_t> last_cycle_;  ///< of the last tick
+  std::uint64_t newest_permit_ = 0;          ///< cycle of the newest permit seen in this run
+  bool ramping_ = false;                     ///< the last living permit was a ramp
+  std::uint64_t ramp_began_ = 0;             ///< in this tick
   std::array<JointCommand, kMaxJoints> commands_{};
   GateReport report_;
 };

@@ -1,24 +1,19 @@
 #include "runtime/driver_cycle.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "hal/bus.h"
+#include "runtime/gate_setup.h"
 
 namespace robot_control {
-namespace {
-
-std::vector<double> effort_limits(const RobotModel& robot) {
-  std::vector<double> limits;
-  for (const JointModel& joint : robot.joints) limits.push_back(joint.effort_limit);
-  return limits;
-}
-
-}  // namespace
 
 DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns,
-                         Now now)
-    : driver_(driver), channels_(channels), gate_(effort_limits(robot)), period_ns_(period_ns), now_(now) {
+                         Now now, const GateParameters& gate)
+    : driver_(driver),
+      channels_(channels),
+      gate_(joint_limits(robot), gate, static_cast<double>(period_ns) * 1e-9),
+      period_ns_(period_ns),
+      now_(now) {
   announce_robot(channels_.sensors.memory()->head, robot.hash, robot.source);
 }
 
@@ -63,6 +58,7 @@ GateInput DriverCycle::latch() noexcept {
   input.cycle = cycle_;
   input.command = &command_;
   input.permit = &permit_;
+  input.sensors = &trace_.sensors;
   if (cycle_ == 0) return input;
   const std::uint64_t last = cycle_ - 1;
   input.command_found = channels_.command->newest_within(run_, cycle_ - std::min(cycle_, kCommandLife), last, command_);

@@ -26,7 +26,8 @@ class DriverCycle {
     const FrameReader<Permit>* permit;
   };
 
-  DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns, Now now);
+  DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
+              const GateParameters& gate = {});
 
   /// The number of this process; see SensorFrame::boot.
   void set_boot(std::uint64_t boot) noexcept { boot_ = boot; }

@@ -4,6 +4,7 @@
 
 #include "rt/clock.h"
 #include "rt/periodic.h"
+#include "runtime/gate_setup.h"
 #include "runtime/start_check.h"
 
 namespace robot_control {
@@ -34,6 +35,7 @@ DriverProcess::DriverProcess(const Parameters& parameters, const RobotModel& rob
     : Process(parameters.loop, LoopPriority::kDriver, "driver"),
       robot_(identified(robot, parameters.loop)),
       cycles_(parameters.plant.cycles),
+      gate_(gate_parameters(parameters)),
       sensors_(bus, ChannelNames::kSensors),
       truth_(bus, ChannelNames::kTruth),
       state_(bus, ChannelNames::kState),
@@ -51,7 +53,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   driver_ = std::move(driver);
   cycle_ = std::make_unique<DriverCycle>(
       *driver_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
-      loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns);
+      loop_parameters().period_ns(), lockstep() ? nullptr : &monotonic_ns, gate_);
   SensorFrame last;  // of an earlier process; time never goes back
   if (lockstep() && sensors_.reader.newest(last) == Lookup::kFrame) {
     cycle_->set_start(last.head.stamp_ns + loop_parameters().period_ns());

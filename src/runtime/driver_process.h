@@ -59,6 +59,7 @@ class DriverProcess final : public Process {
 
   RobotModel robot_;
   std::uint64_t cycles_;
+  GateParameters gate_;
   Output<SensorFrame> sensors_;
   Output<TruthFrame> truth_;
   Input<StateFrame> state_;

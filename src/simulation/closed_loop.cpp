@@ -7,6 +7,7 @@
 #include "runtime/controller_cycle.h"
 #include "runtime/driver_cycle.h"
 #include "runtime/estimator_cycle.h"
+#include "runtime/gate_setup.h"
 #include "runtime/monitor_cycle.h"
 #include "runtime/safety_limits.h"
 #include "runtime/start_check.h"
@@ -39,7 +40,7 @@ struct ClosedLoop::Parts {
         robot(load_robot(given)),
         plant(robot, given.plant, given.loop.period()),
         driver(plant, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, given.loop.period_ns(),
-               nullptr),
+               nullptr, gate_parameters(given)),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
                    {&sensors.reader, &state.reader, &permit.reader, command.writer},

@@ -12,6 +12,7 @@
 #include "estimation/estimator.h"
 #include "hal/gate.h"
 #include "rt/clock.h"
+#include "runtime/gate_setup.h"
 #include "safety/safety_monitor.h"
 #include "simulation/closed_loop.h"
 #include "support/allocation_guard.h"
@@ -109,9 +110,7 @@ int run(const std::string& path) {
                                 command);
               }));
 
-  std::vector<double> limits;
-  for (const JointModel& joint : robot.joints) limits.push_back(joint.effort_limit);
-  Gate gate(limits);
+  Gate gate(joint_limits(robot), gate_parameters(parameters), period);
   add(rows, "gate",
       measure([&] { gate.reset(); },
               [&](std::size_t k) {
@@ -120,7 +119,8 @@ int run(const std::string& path) {
                            .permit_found = Lookup::kFrame,
                            .permit = &drive.permits[k - 1],
                            .command_found = Lookup::kFrame,
-                           .command = &drive.commands[k - 1]});
+                           .command = &drive.commands[k - 1],
+                           .sensors = &drive.sensors[k]});
               }));
 
   SafetyMonitor monitor(parameters.safety, robot, period);

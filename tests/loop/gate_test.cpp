@@ -1,0 +1,71 @@
+/// The gate's clamps are for what goes wrong: no shipped loop ever meets one.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <iterator>
+
+#include "simulation/closed_loop.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::uint64_t kClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
+
+using Wish = std::function<Twist(double time)>;
+
+Twist twist(double linear, double angular) {
+  return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
+}
+
+/// Full speed, hard reversals, spins, and stops that are long enough for the brake: a new wish every 0.7 s.
+Twist restless(double time) {
+  constexpr double kTable[][2] = {{1, 0},  {-1, 0}, {0, 2}, {0, -2}, {1, 2},  {-1, 2},
+                                  {1, -2}, {0, 0},  {0, 0}, {0, 0},  {-1, -2}};
+  const auto& now = kTable[static_cast<std::size_t>(time / 0.7) % std::size(kTable)];
+  return twist(now[0], now[1]);
+}
+
+class GateInTheLoop : public testing::Test {
+ protected:
+  GateInTheLoop() : parameters_(read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml")) {}
+
+  void expect_no_clamp(const Wish& wish, double seconds) {
+    ClosedLoop loop(parameters_);
+    std::uint64_t passed = 0;
+    while (loop.time() < seconds) {
+      loop.command(wish(loop.time()));
+      loop.step();
+      const GateReport& gate = loop.row().driver->gate;
+      ASSERT_EQ(gate.reasons & kClamps, 0u) << "at " << loop.time() << " s, " << parameters_.loop.rate << " Hz";
+      passed += gate.verdict == GateVerdict::kPassed;
+    }
+    EXPECT_GT(static_cast<double>(passed) / parameters_.loop.rate, seconds / 2);  // else it did not drive
+  }
+
+  Parameters parameters_;
+};
+
+TEST_F(GateInTheLoop, NeverClampsAtAnyRate) {
+  for (const double rate : {100.0, 250.0, 500.0, 1000.0, 2000.0}) {
+    parameters_.loop.rate = rate;
+    expect_no_clamp(restless, 16);
+  }
+}
+
+// What the brake held is what the controller begins with: no step from zero.
+TEST_F(GateInTheLoop, NeverClampsWhereTheBrakeLetsGoOnASlope) {
+  parameters_.plant.slope = 0.0873;  // 5°
+  expect_no_clamp(restless, 16);
+}
+
+// 10 rad/s of 14. One cycle's difference of 64 counts a turn is 98 rad/s, that of the gate's window 8.
+TEST_F(GateInTheLoop, DoesNotTakeACoarseEncoderForATooFastWheel) {
+  parameters_.plant.encoder_resolution = 64;
+  parameters_.robot.wheel_velocity_limit = 14;
+  parameters_.robot.wheel_effort_rate = 1e9;  // the tracking loop of the controller does take it for an acceleration
+  expect_no_clamp([](double) { return twist(1, 0); }, 5);
+}
+
+}  // namespace
+}  // namespace robot_control
