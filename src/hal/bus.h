@@ -9,7 +9,9 @@
 ///                                 a new object begins at a random number
 ///   truncated or foreign magic    never writes to it, unlinks it and makes a new one
 ///   any of them, locked           BusError: another instance, or a node of another build, is running
-///   another owner, open to others BusError
+///   another owner, open to others BusError naming owner or mode; not put right, since whoever could open it may
+///                                 have it open still
+///   a link, directory, pipe       BusError
 /// A reader maps read-only. It maps nothing but what is usable: an unlocked wreck is waited out, since its next
 /// writer replaces it; a locked wreck and a foreign owner are a BusError. A lock does not outlive the process
 /// that took it, unless a forked child has kept the descriptor.

@@ -1,6 +1,8 @@
 #include "hal/bus_object.h"
 
+#include <pwd.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +10,7 @@
 #include <cerrno>
 #include <climits>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -83,16 +86,49 @@ std::string file_of(const std::string& name) {
   throw BusError("channel '" + channel + "' (" + file_of(name) + "): " + why + "; remedy: " + remedy);
 }
 
-[[noreturn]] void fail_foreign_user(const std::string& channel, const std::string& name) {
-  fail(channel, name, "the object belongs to another user, or others than this user may open it",
-       "see 'ls -l " + file_of(name) + "'; remove it, or set another parameter 'bus'");
+std::string user_name(uid_t user) {
+  const passwd* const entry = getpwuid(user);
+  return entry == nullptr ? "user " + std::to_string(user)
+                          : "'" + std::string(entry->pw_name) + "' (" + std::to_string(user) + ")";
+}
+
+const char* kind_text(mode_t mode) {
+  if (S_ISLNK(mode)) return "a symbolic link";
+  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISFIFO(mode)) return "a pipe";
+  return "a device or socket";
+}
+
+/// The object of this name is not this user's alone. It is refused, never put right: whoever could open it may
+/// have it open still.
+[[noreturn]] void fail_not_private(const std::string& channel, const std::string& name) {
+  const std::string file = file_of(name);
+  const std::string look = "see 'ls -l " + file + "'; ";
+  struct stat status {};
+  if (lstat(file.c_str(), &status) != 0) {
+    fail(channel, name, "may not be opened or made by " + user_name(geteuid()),
+         "let this user write in /dev/shm (mode 1777), or set another parameter 'bus'");
+  }
+  if (status.st_uid != geteuid()) {
+    fail(channel, name, "belongs to " + user_name(status.st_uid) + ", and this node runs as " + user_name(geteuid()),
+         look + "let its owner or root remove it, start all nodes as one user, or set another parameter 'bus'");
+  }
+  if (!S_ISREG(status.st_mode)) {
+    fail(channel, name, std::string(kind_text(status.st_mode)) + " stands in its place", look + "remove it");
+  }
+  char mode[8];
+  std::snprintf(mode, sizeof mode, "%04o", static_cast<unsigned>(status.st_mode & 07777U));
+  fail(channel, name, std::string("its mode is ") + mode + ", and must be 0600: others than this user may have it open",
+       look + "stop all nodes and remove it; the next start makes it anew");
 }
 
 [[noreturn]] void fail_system(const std::string& channel, const std::string& name, const std::system_error& error) {
+  struct stat status {};
+  if (lstat(file_of(name).c_str(), &status) == 0 && !S_ISREG(status.st_mode)) fail_not_private(channel, name);
   switch (error.code().value()) {
     case EACCES:
     case EPERM:
-      fail_foreign_user(channel, name);
+      fail_not_private(channel, name);
     case ENOSPC:
     case ENOMEM:
       fail(channel, name, error.what(), "make room in /dev/shm ('df -h /dev/shm'; in a container --shm-size=256m)");
@@ -152,7 +188,7 @@ OwnedBusObject claim_object(const std::string& channel, const std::string& name,
   for (int tries = 0; tries < kClaimTries; ++tries) {
     std::optional<SharedMemory> object = open_or_create(name);
     if (!object) continue;
-    if (!object->is_private()) fail_foreign_user(channel, name);
+    if (!object->is_private()) fail_not_private(channel, name);
     const bool locked = object->lock();
     if (!object->still_named()) continue;
     const Finding finding = inspect(*object, layout);
@@ -204,7 +240,7 @@ bool ForeignBusObject::poll() {
     std::optional<SharedMemory> named = SharedMemory::open(name_, Access::kReadOnly);
     obstacle_ = named ? "" : "does not exist yet";
     if (!named || is_current(*named)) return false;
-    if (!named->is_private()) fail_foreign_user(channel_, name_);
+    if (!named->is_private()) fail_not_private(channel_, name_);
     obstacle_ = obstacle_of(*named);
     if (!obstacle_.empty()) return false;
     mappings_.push_back(named->map(layout_.object_bytes));

@@ -31,7 +31,7 @@ class MemoryMapping {
 
 class SharedMemory {
  public:
-  /// The object of this name ("/…"); empty where there is none.
+  /// The object of this name ("/…"); empty where there is none. Follows no symbolic link, waits for nobody.
   static std::optional<SharedMemory> open(const std::string& name, Access access);
 
   /// A new object of no size and mode 0600; empty where the name is taken.
@@ -41,7 +41,8 @@ class SharedMemory {
   SharedMemory& operator=(SharedMemory&& other) noexcept;
   ~SharedMemory();
 
-  /// Belongs to this process's effective user, who alone may read and write it.
+  /// A plain object that belongs to this process's effective user, whom alone its mode lets in (an access list
+  /// that lets in others shows in the mode's group bits).
   bool is_private() const;
 
   std::size_t bytes() const;
