@@ -32,6 +32,8 @@ void MonitorCycle::receive_messages() noexcept {
   operator_input_.e_stop_services += arrived.e_stop_services - received_.e_stop_services;
   operator_input_.resets += arrived.resets - received_.resets;
   operator_input_.heartbeats += arrived.heartbeats - received_.heartbeats;
+  operator_input_.clearances += arrived.clearances - received_.clearances;
+  operator_input_.clearance = arrived.clearance;
   received_ = arrived;
 }
 
@@ -81,7 +83,7 @@ bool MonitorCycle::step() noexcept {
 }
 
 void MonitorCycle::note_corrupt_sensors() noexcept {
-  if (++corrupt_sensors_ != Conditions::kPersistence || input_.sensors == nullptr) return;
+  if (++corrupt_sensors_ != FrameFacts::kPersistence || input_.sensors == nullptr) return;
   monitor_.sensors_corrupt();
   publish_again();
 }
@@ -107,10 +109,12 @@ void MonitorCycle::idle() noexcept {
   if (input_.sensors == nullptr) return;
   const std::uint64_t resets = operator_input_.resets;
   receive_messages();
-  if (operator_input_.resets == resets) return;
+  const bool reset = operator_input_.resets != resets;
+  const bool stopped = monitor_.note_emergency_stop(operator_input_);
+  if (!reset && !stopped) return;
   input_.operator_input = operator_input_;
-  monitor_.refuse_reset(operator_input_,
-                        sensors_.driver_state == DriverState::kPaused ? kRefusalPaused : kRefusalSilent);
+  const bool paused = sensors_.driver_state == DriverState::kPaused;
+  if (reset) monitor_.refuse_reset(operator_input_, paused ? kRefusalPaused : kRefusalSilent);
   publish_again();
 }
 

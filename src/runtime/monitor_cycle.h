@@ -15,9 +15,6 @@
 
 namespace robot_control {
 
-/// The monitor's wait ends after so many periods; then the driver is lost (wall clock only).
-inline constexpr std::int64_t kDriverLossPeriods = 20;
-
 class MonitorCycle {
  public:
   struct Channels {
@@ -40,7 +37,7 @@ class MonitorCycle {
   /// latches kCauseDriverLost, and the last permit is published again with it, for display. Then as `idle`.
   void silence() noexcept;
 
-  /// No frame has come for a while: answers resets, with a refusal.
+  /// No frame has come for a while: answers resets, with a refusal, and emergency stops, with the latch.
   void idle() noexcept;
 
   const MonitorTrace& trace() const noexcept { return trace_; }

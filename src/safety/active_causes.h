@@ -13,7 +13,10 @@ namespace robot_control {
 
 class ActiveCauses {
  public:
-  void clear() noexcept { *this = {}; }
+  void clear() noexcept {
+    bits_ = {};
+    count_ = 0;
+  }
 
   void add(StopCause cause, Reaction reaction, const Finding& finding = {}) noexcept {
     bits_[static_cast<std::size_t>(reaction)] |= cause;
@@ -25,6 +28,11 @@ class ActiveCauses {
   /// Nothing while it is not active.
   void add(const ConditionWatch& watch) noexcept {
     if (watch.active()) add(watch.cause(), watch.reaction(), watch.finding());
+  }
+
+  /// One more cycle of a condition.
+  void judge(ConditionWatch& watch, const Finding& finding, std::uint64_t elapsed) noexcept {
+    if (watch.step(finding, elapsed)) add(watch);
   }
 
   /// StopCause bits.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "safety/safety_parameters.h"
 #include "signals/permit.h"
@@ -21,6 +22,14 @@ struct Finding {
   double limit = 0;
   std::uint64_t joint = kMaxJoints;  ///< index into RobotModel::joints; kMaxJoints: of no single one
 };
+
+/// Of two, that which is further beyond its limit, or nearer to it. What is not a number is no finding.
+inline const Finding& worse(const Finding& a, const Finding& b) noexcept {
+  return b.value - b.limit > a.value - a.limit ? b : a;
+}
+
+/// Nothing found: further from its limit than any.
+inline constexpr Finding kNothingFound{.limit = std::numeric_limits<double>::infinity()};
 
 class ConditionWatch {
  public:

@@ -1,28 +1,13 @@
 #include "safety/safety_monitor.h"
 
+#include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
+#include "safety/parameter_check.h"
 #include "safety/stop_category.h"
 
 namespace robot_control {
 namespace {
-
-const SafetyParameters& checked(const SafetyParameters& parameters, double period) {
-  const auto require = [](bool holds, const std::string& rule) {
-    if (!holds) throw std::invalid_argument("safety monitor: " + rule);
-  };
-  require(period > 0 && std::isfinite(period), "period must be > 0 s, is " + std::to_string(period));
-  require(parameters.loss_cycles > 0, "loss_cycles must be > 0");
-  require(parameters.heartbeat_timeout >= 0 && std::isfinite(parameters.heartbeat_timeout),
-          "heartbeat_timeout must be >= 0 s, is " + std::to_string(parameters.heartbeat_timeout));
-  require(parameters.ramp_time >= 0 && std::isfinite(parameters.ramp_time),
-          "ramp_time must be >= 0 s, is " + std::to_string(parameters.ramp_time));
-  require(parameters.standstill_speed > 0 && std::isfinite(parameters.standstill_speed),
-          "standstill_speed must be > 0 rad/s, is " + std::to_string(parameters.standstill_speed));
-  return parameters;
-}
 
 bool zero(const Vector3& vector) noexcept {
   return vector[0] == 0 && vector[1] == 0 && vector[2] == 0;
@@ -32,19 +17,48 @@ bool asks_for_motion(const CommandFrame* command) noexcept {
   return command != nullptr && !(zero(command->twist_requested.linear) && zero(command->twist_requested.angular));
 }
 
+Finding counted(double count) noexcept {
+  return {.beyond = true, .value = count, .limit = count};
+}
+
 }  // namespace
 
 SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period)
-    : conditions_(checked(parameters, period), period),
-      standstill_(parameters.standstill_speed, robot.wheels.size()),
+    : slow_speed_(checked(parameters, period).slow_speed),
+      presence_(parameters.loss_cycles),
+      sensor_presence_(parameters, robot.wheels.size(), period),
+      operator_facts_(parameters.heartbeat_timeout, period),
+      clearance_(parameters),
+      motion_(robot.wheels.size(), period),
+      standstill_(parameters.standstill_speed, period),
+      targets_(robot.wheels.size()),
+      wheel_limits_(parameters, robot, period),
+      wheel_following_(parameters, period),
+      yaw_agreement_(parameters.yaw_rate, robot, period),
+      gate_facts_(parameters.loss_cycles, period),
+      machine_facts_(parameters, period),
+      body_facts_(parameters, robot, period),
+      warnings_(period),
       supervisor_(static_cast<std::uint64_t>(std::llround(parameters.ramp_time / period))) {}
 
 void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
-  conditions_.enter_run(operator_input);
-  standstill_.reset();
+  presence_.enter_run();
+  sensor_presence_.enter_run();
+  frame_facts_.enter_run();
+  operator_facts_.enter_run(operator_input);
+  motion_.enter_run();
+  standstill_.enter_run();
+  targets_.enter_run();
+  wheel_limits_.enter_run();
+  wheel_following_.enter_run();
+  yaw_agreement_.enter_run();
+  gate_facts_.enter_run();
+  machine_facts_.enter_run();
+  body_facts_.enter_run();
+  active_.clear();
+  warnings_.enter_run();
   supervisor_.enter_run();
   cycle_.reset();
-  active_ = 0;
   if (resets_handled_ != operator_input.resets) reset_refusal_ = kRefusalInit;
   resets_handled_ = operator_input.resets;
 }
@@ -57,9 +71,19 @@ void SafetyMonitor::driver_lost() noexcept {
   if (driver_known_ && !driver_paused_) pending_ |= kCauseDriverLost;
 }
 
+void SafetyMonitor::sensors_corrupt() noexcept {
+  pending_ |= kCauseCorruptFrame;
+}
+
 void SafetyMonitor::refuse_reset(const OperatorInput& operator_input, ResetRefusal why) noexcept {
   resets_handled_ = operator_input.resets;
   reset_refusal_ = why;
+}
+
+bool SafetyMonitor::note_emergency_stop(const OperatorInput& operator_input) noexcept {
+  const std::uint64_t stops = operator_facts_.emergency_stops(operator_input) & ~active_.stopping();
+  pending_ |= stops;
+  return stops != 0;
 }
 
 void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {
@@ -69,29 +93,59 @@ void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {
   last_.reset();
   if (!continued && sensors.gate.permit_cycle == 0) return;
   supervisor_.restore(last.causes, last.first_cause, kCauseMonitorRestarted, sensors.head.cycle);
+  evidence_.restore(last);
   pending_ |= kCauseMonitorRestarted;
-  if ((last.active & kCauseEmergencyStopTopic) != 0) conditions_.hold_e_stop();
+  if ((last.active & kCauseEmergencyStopTopic) != 0) operator_facts_.hold_e_stop();
 }
 
-void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {
+void SafetyMonitor::look(const MonitorInput& input) noexcept {
   const SensorFrame& sensors = *input.sensors;
-  decide_restart(sensors);
-  driver_known_ = true;
-  driver_paused_ = sensors.driver_state == DriverState::kPaused;
+  const std::uint64_t cycle = sensors.head.cycle;
+  const std::uint64_t elapsed = cycle_ ? cycle - *cycle_ : 1;
+  active_.clear();
+  presence_.step(input, elapsed, active_);
+  sensor_presence_.step(sensors, elapsed, active_);
+  frame_facts_.step(input, active_);
+  operator_facts_.step(input, supervisor_.state() == SupervisorState::kDrive, active_);
+  machine_facts_.step(sensors, elapsed, active_);
+  gate_facts_.step(sensors, elapsed, active_);
+  look_at_motion(input, elapsed);
+  warnings_.step(active_, cycle, elapsed);
+}
 
-  const bool again = cycle_ == sensors.head.cycle;
-  if (!again) {
-    cycle_ = sensors.head.cycle;
-    active_ = conditions_.step(input, supervisor_.state() == SupervisorState::kDrive);
-    standstill_.step(sensors);
+void SafetyMonitor::look_at_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept {
+  const SensorFrame& sensors = *input.sensors;
+  motion_.step(sensors);
+  standstill_.step(motion_, sensors.head.cycle);
+  targets_.step(input);
+  wheel_limits_.step(sensors, motion_, targets_.passed(), last_speed_limit_, elapsed, active_);
+  wheel_following_.step(targets_, motion_, standstill_, elapsed, active_);
+  yaw_agreement_.step(sensors, motion_, elapsed, active_);
+  body_facts_.step(sensors, elapsed, standstill_.moving(), active_);
+}
+
+void SafetyMonitor::add_pending() noexcept {
+  constexpr auto kPeriods = static_cast<double>(kDriverLossPeriods);
+  constexpr auto kCorrupt = static_cast<double>(FrameFacts::kPersistence);
+  for (std::uint64_t rest = pending_; rest != 0; rest &= rest - 1) {
+    const auto cause = static_cast<StopCause>(rest & (~rest + 1));
+    Finding finding{.beyond = true};
+    if (cause == kCauseDriverLost) finding = counted(kPeriods);
+    if (cause == kCauseCorruptFrame) finding = counted(kCorrupt);
+    active_.add(cause, Reaction::kBrake, finding);
   }
-  active_ |= pending_;
   pending_ = 0;
+}
 
+void SafetyMonitor::supervise(const MonitorInput& input, bool again) noexcept {
+  const std::uint64_t cycle = input.sensors->head.cycle;
+  const std::uint64_t brake = active_.with(Reaction::kBrake);
   SupervisorInput facts;
-  facts.cycle = sensors.head.cycle;
-  facts.active = active_;
-  facts.missing = conditions_.missing();
+  facts.cycle = cycle;
+  facts.repair = for_repair(brake);
+  facts.brake = brake & ~facts.repair;
+  facts.ramp = active_.with(Reaction::kRamp);
+  facts.missing = presence_.missing();
   facts.requested = asks_for_motion(input.command);
   facts.moving = standstill_.moving();
   facts.standing = standstill_.standing();
@@ -101,19 +155,44 @@ void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {
     resets_handled_ = input.operator_input.resets;
     reset_refusal_ = supervisor_.reset_refusal();
   }
+  if (supervisor_.causes() == 0) evidence_.clear();
+  evidence_.latch(active_, cycle);
+}
+
+double SafetyMonitor::speed_limit(const OperatorInput& operator_input) const noexcept {
+  const double clear = clearance_.speed_limit(operator_input);
+  return warnings_.slowing() ? std::min(clear, slow_speed_) : clear;
+}
+
+void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {
+  const SensorFrame& sensors = *input.sensors;
+  decide_restart(sensors);
+  driver_known_ = true;
+  driver_paused_ = sensors.driver_state == DriverState::kPaused;
+
+  const bool again = cycle_ == sensors.head.cycle;
+  if (!again) look(input);
+  cycle_ = sensors.head.cycle;
+  add_pending();
+  supervise(input, again);
+  last_speed_limit_ = speed_limit(input.operator_input);
 
   out.state = supervisor_.state();
   out.action = action_in(out.state);
   out.ramp_until = supervisor_.ramp_until();
   out.expiry = sensors.head.cycle + kPermitLife;
   out.causes = supervisor_.causes();
-  out.active = active_;
+  out.active = active_.stopping();
   out.first_cause = supervisor_.first_cause();
+  out.warnings = warnings_.bits();
   out.since_cycle = supervisor_.since_cycle();
-  out.missing = facts.missing;
+  out.missing = presence_.missing();
   out.boot = sensors.boot;
   out.resets_handled = resets_handled_;
   out.reset_refusal = reset_refusal_;
+  out.speed_limit = last_speed_limit_;
+  evidence_.write(warnings_, out.evidence);
+  if (!again) gate_facts_.remember(out, sensors.head.cycle);
 }
 
 }  // namespace robot_control

@@ -1,30 +1,58 @@
 #pragma once
 /// safety_monitor's law: facts of one cycle → permit of that cycle.
 ///
-///   facts ─► Conditions (StopCause bits) ─► Supervisor (latch, table) ─► Permit
+///   facts ─► causes by reaction ─► warnings: told, slowed down for        ─► Permit
+///            (ActiveCauses)    └─► Supervisor: latch, table ─► action
 ///
-/// INIT until sensors, state and command of this run were each seen; then READY or DRIVE permit motion until a
-/// cause latches a stop (stop_category.h). The permit of cycle k is alive until k + kPermitLife: a monitor that
-/// makes no progress permits nothing.
+///   presence.h, sensor_presence.h, frame_facts.h    who is missing, what cannot be believed
+///   operator_facts.h, clearance.h                   what the operator says
+///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, yaw_agreement.h, standstill.h
+///   gate_facts.h, machine_facts.h, body_facts.h     does the machine obey, is it well, what happens to its body
+///
+/// INIT until sensors, state and command of this run were each seen; then READY or DRIVE permit motion until a cause
+/// latches a stop (stop_category.h, SafetyParameters). The permit of cycle k is alive until k + kPermitLife: a monitor
+/// that makes no progress permits nothing.
+///
+/// The speed limit of a permit is the least of slow_speed, where a cause slows the robot down, and of what the
+/// clearance allows; it latches nothing.
 
 #include <cstdint>
 #include <optional>
 
 #include "robot/robot_model.h"
-#include "safety/conditions.h"
+#include "safety/active_causes.h"
+#include "safety/body_facts.h"
+#include "safety/clearance.h"
+#include "safety/evidence.h"
+#include "safety/frame_facts.h"
+#include "safety/gate_facts.h"
+#include "safety/machine_facts.h"
 #include "safety/monitor_input.h"
+#include "safety/operator_facts.h"
+#include "safety/presence.h"
 #include "safety/safety_parameters.h"
+#include "safety/sensor_presence.h"
 #include "safety/standstill.h"
 #include "safety/supervisor.h"
+#include "safety/warnings.h"
+#include "safety/wheel_following.h"
+#include "safety/wheel_limits.h"
+#include "safety/wheel_motion.h"
+#include "safety/wheel_targets.h"
+#include "safety/yaw_agreement.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {
 
+/// The monitor's wait for sensors ends after so many periods; then the driver is lost (wall clock only).
+inline constexpr std::int64_t kDriverLossPeriods = 20;
+
 class SafetyMonitor {
  public:
-  /// `period` s. Throws std::invalid_argument: a period, speed or time out of range, loss_cycles 0.
+  /// `period` s. Limits that are absent are none: derived_limits.h fills them. Throws std::invalid_argument: what
+  /// parameter_check.h refuses.
   SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
   /// A new run: sightings and counts begin anew; latched causes stay. `operator_input` is the inbox now:
@@ -37,31 +65,55 @@ class SafetyMonitor {
   /// a gate that has used a permit of this run was served by an earlier monitor.
   void resume(const Permit& last) noexcept;
 
-  /// The driver has been silent for 20 periods (wall clock only): latches kCauseDriverLost from the next step
+  /// The driver has been silent for kDriverLossPeriods (wall clock only): latches kCauseDriverLost from the next step
   /// on. No effect before the first step (a driver that was never there is missing, not lost) or while the
   /// driver's last word was "paused".
   void driver_lost() noexcept;
 
-  /// Three sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step on.
-  void sensors_corrupt() noexcept { pending_ |= kCauseCorruptFrame; }
+  /// FrameFacts::kPersistence sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step on.
+  void sensors_corrupt() noexcept;
 
   /// No frame comes, so nothing can be judged: a reset asked for meanwhile is answered with `why` and does not
   /// release anything later.
   void refuse_reset(const OperatorInput& operator_input, ResetRefusal why = kRefusalSilent) noexcept;
+
+  /// No frame comes, but an emergency stop may: true when it did. It latches with the next step.
+  bool note_emergency_stop(const OperatorInput& operator_input) noexcept;
 
   /// Fills everything but `out.head`. A second step in the same cycle counts nothing twice.
   void step(const MonitorInput& input, Permit& out) noexcept;
 
  private:
   void decide_restart(const SensorFrame& sensors) noexcept;
+  void look(const MonitorInput& input) noexcept;
+  void look_at_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept;
+  void add_pending() noexcept;
+  void supervise(const MonitorInput& input, bool again) noexcept;
+  double speed_limit(const OperatorInput& operator_input) const noexcept;
 
-  Conditions conditions_;
+  double slow_speed_;
+  Presence presence_;
+  SensorPresence sensor_presence_;
+  FrameFacts frame_facts_;
+  OperatorFacts operator_facts_;
+  Clearance clearance_;
+  WheelMotion motion_;
   JointStandstill standstill_;
+  WheelTargets targets_;
+  WheelLimits wheel_limits_;
+  WheelFollowing wheel_following_;
+  YawAgreement yaw_agreement_;
+  GateFacts gate_facts_;
+  MachineFacts machine_facts_;
+  BodyFacts body_facts_;
+  ActiveCauses active_;  ///< of the last step
+  Warnings warnings_;
+  Evidence evidence_;
   Supervisor supervisor_;
   std::optional<Permit> last_;          ///< of an earlier monitor, until the first step
   std::optional<std::uint64_t> cycle_;  ///< of the last step in this run
-  std::uint64_t active_ = 0;            ///< causes true in that step
-  std::uint64_t pending_ = 0;           ///< causes from outside a step
+  double last_speed_limit_ = kNoSpeedLimit;
+  std::uint64_t pending_ = 0;  ///< causes from outside a step
   bool driver_known_ = false;
   bool driver_paused_ = false;
   std::uint64_t resets_handled_ = 0;

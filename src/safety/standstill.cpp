@@ -5,19 +5,45 @@
 
 namespace robot_control {
 
-void JointStandstill::step(const SensorFrame& sensors) noexcept {
-  const bool valid = (sensors.valid & kValidJoints) != 0;
-  bool finite = true;
-  bool slow = true;
-  const std::size_t count = std::min<std::size_t>({sensors.joint_count, kMaxJoints, wheels_});
-  for (std::size_t i = 0; i < count; ++i) {
-    const double speed = std::abs(sensors.joints[i].velocity);
-    finite = finite && std::isfinite(speed);
-    slow = slow && speed < standstill_speed_;
+JointStandstill::JointStandstill(double standstill_speed, double period) noexcept
+    : window_(standstill_speed * kStandingTime),
+      cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(kStandingTime / period)))) {}
+
+void JointStandstill::enter_run() noexcept {
+  anchored_ = moving_ = standing_ = false;
+}
+
+void JointStandstill::step(const WheelMotion& motion, std::uint64_t cycle) noexcept {
+  if (!motion.sampled()) {
+    anchored_ = standing_ = false;
+    moving_ = true;
+    return;
   }
-  const bool known = valid && finite;
-  moving_ = !known || (!slow && !standing());
-  slow_cycles_ = known && slow ? slow_cycles_ + 1 : 0;
+  if (!anchored_) return begin_window(motion, cycle);
+  if (!inside(motion)) {
+    moving_ = true;
+    standing_ = false;
+    return begin_window(motion, cycle);
+  }
+  if (cycle - since_ < cycles_) return;
+  moving_ = false;
+  standing_ = true;
+  begin_window(motion, cycle);
+}
+
+bool JointStandstill::inside(const WheelMotion& motion) const noexcept {
+  bool inside = true;
+  for (std::size_t i = 0; i < motion.wheels(); ++i) {
+    const double window = std::max(window_, 1.5 * motion.quantum(i)) * (standing_ ? 2 : 1);
+    inside = inside && std::abs(motion.angle(i) - anchor_[i]) < window;
+  }
+  return inside;
+}
+
+void JointStandstill::begin_window(const WheelMotion& motion, std::uint64_t cycle) noexcept {
+  for (std::size_t i = 0; i < motion.wheels(); ++i) anchor_[i] = motion.angle(i);
+  since_ = cycle;
+  anchored_ = true;
 }
 
 }  // namespace robot_control

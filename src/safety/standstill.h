@@ -1,39 +1,50 @@
 #pragma once
-/// Does the robot stand, by its wheels' joints alone (the monitor trusts no estimate)? A caster may still turn.
+/// Does the robot stand, by its wheels' angles alone (the monitor trusts no estimate)? A caster may still turn.
 ///
-///   slow      |q̇_i| < standstill_speed for every wheel i, and the joint samples are there and finite
-///   standing  slow for kStandingCycles in a row: differenced encoders read zero between two counts
-///   moving    not slow, nor standing before: one count alone, of a wheel at rest at the edge of a count, is no motion
+///   inside    every wheel within ±w of where it was when the window began;  w = max(v·T, 1.5 quanta), T =
+///   kStandingTime,
+///             v standstill_speed; a wheel that stands already may use twice that, so that nothing flickers
+///   standing  inside for T; then the window begins anew, so that a creep slower than v never ends it
+///   moving    a wheel left its window, or its angle is not known; until the robot stands again
+///
+/// One count of a wheel at rest at the edge of a count is no motion, and a wheel that swings beyond the window does not
+/// stand, however slow it is on average. At first, and in the first T of a run, it is neither.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
-#include "signals/sensor_frame.h"
+#include "robot/robot_model.h"
+#include "safety/wheel_motion.h"
 
 namespace robot_control {
 
 class JointStandstill {
  public:
-  static constexpr std::uint64_t kStandingCycles = 10;
+  static constexpr double kStandingTime = 0.1;  ///< s; the robot's own swinging is over by then
 
-  /// `standstill_speed` rad/s, > 0. The first `wheels` joints are judged.
-  JointStandstill(double standstill_speed, std::size_t wheels) noexcept
-      : standstill_speed_(standstill_speed), wheels_(wheels) {}
+  /// `standstill_speed` rad/s, `period` s, both > 0.
+  JointStandstill(double standstill_speed, double period) noexcept;
 
-  void step(const SensorFrame& sensors) noexcept;
-  void reset() noexcept {
-    slow_cycles_ = 0;
-    moving_ = true;
-  }
+  /// A new run.
+  void enter_run() noexcept;
 
-  /// In the last cycle.
+  void step(const WheelMotion& motion, std::uint64_t cycle) noexcept;
+
   bool moving() const noexcept { return moving_; }
-  bool standing() const noexcept { return slow_cycles_ >= kStandingCycles; }
+  bool standing() const noexcept { return standing_; }
 
  private:
-  double standstill_speed_;
-  std::size_t wheels_;
-  std::uint64_t slow_cycles_ = 0;  ///< in a row
-  bool moving_ = true;             ///< nothing is known yet
+  bool inside(const WheelMotion& motion) const noexcept;
+  void begin_window(const WheelMotion& motion, std::uint64_t cycle) noexcept;
+
+  double window_;         ///< rad, v·T
+  std::uint64_t cycles_;  ///< T
+  bool anchored_ = false;
+  bool moving_ = false;
+  bool standing_ = false;
+  std::uint64_t since_ = 0;
+  std::array<double, kMaxWheels> anchor_{};
 };
 
 }  // namespace robot_control

@@ -1,8 +1,11 @@
 #pragma once
-/// How each cause stops the robot: stop categories of IEC 60204-1 (2016), 9.2.2.
+/// How causes stop the robot: stop categories of IEC 60204-1 (2016), 9.2.2.
 ///   0  brake at once
 ///   1  ramp down under supervision, then brake
-/// A driver fault is category 0 and waits for a repair besides.
+///
+/// Those of kStopRules do so always, whatever a user sets: they say that the chain itself cannot be trusted, or that
+/// somebody wants it to stand. What waits for a repair is category 0 besides. All other causes are conditions of
+/// SafetyParameters, with the reaction that stands there.
 
 #include <array>
 #include <cstdint>
@@ -31,9 +34,12 @@ inline constexpr auto kStopRules = std::to_array<StopRule>({
     {kCauseCorruptFrame, StopCategory::kBrake},
     {kCauseNotFinite, StopCategory::kBrake},
     {kCauseMonitorLate, StopCategory::kBrake},
+    {kCauseCommandStale, StopCategory::kBrake},
+    {kCauseGateRefuses, StopCategory::kBrake},
+    {kCauseGateDisobeys, StopCategory::kBrakeForRepair},
 });
 
-/// All causes of one category as bits.
+/// All fixed causes of one category as bits.
 constexpr std::uint64_t causes_of(StopCategory category) noexcept {
   std::uint64_t bits = 0;
   for (const StopRule& rule : kStopRules) {
@@ -42,7 +48,11 @@ constexpr std::uint64_t causes_of(StopCategory category) noexcept {
   return bits;
 }
 
-inline constexpr std::uint64_t kAllCauses =
-    causes_of(StopCategory::kBrake) | causes_of(StopCategory::kBrakeForRepair) | causes_of(StopCategory::kRamp);
+/// Of these, those that wait for a repair.
+constexpr std::uint64_t for_repair(std::uint64_t causes) noexcept {
+  return causes & causes_of(StopCategory::kBrakeForRepair);
+}
+
+inline constexpr std::uint64_t kAllCauses = (std::uint64_t{1} << kStopCauses) - 1;
 
 }  // namespace robot_control

@@ -5,20 +5,19 @@
 namespace robot_control {
 
 void Supervisor::step(const SupervisorInput& input) noexcept {
-  latch(input.active);
+  latch(input);
 
   TriggerSet triggers;
   if (input.reset_requested) {
     reset_refusal_ = refusal(input);
-    if (reset_refusal_ == 0 && causes_ != 0) {
-      causes_ = 0;
-      first_cause_ = 0;
+    if (reset_refusal_ == 0 && causes() != 0) {
+      repair_ = brake_ = ramp_ = first_cause_ = 0;
       triggers.add(input.missing == 0 ? Trigger::kResetComplete : Trigger::kResetIncomplete);
     }
   }
-  triggers.add(Trigger::kRepairCause, (causes_ & causes_of(StopCategory::kBrakeForRepair)) != 0);
-  triggers.add(Trigger::kBrakeCause, (causes_ & causes_of(StopCategory::kBrake)) != 0);
-  triggers.add(Trigger::kRampCause, (causes_ & causes_of(StopCategory::kRamp)) != 0);
+  triggers.add(Trigger::kRepairCause, repair_ != 0);
+  triggers.add(Trigger::kBrakeCause, brake_ != 0);
+  triggers.add(Trigger::kRampCause, ramp_ != 0);
   triggers.add(Trigger::kRampEnded, input.standing || input.cycle >= ramp_until_);
   triggers.add(Trigger::kComplete, input.missing == 0);
   triggers.add(Trigger::kMotion, input.requested || input.moving);
@@ -39,33 +38,37 @@ void Supervisor::enter_run() noexcept {
 
 void Supervisor::restore(std::uint64_t causes, std::uint64_t first_cause, StopCause cause,
                          std::uint64_t cycle) noexcept {
-  first_cause_ = first_cause_ == 0 ? first_cause : first_cause_;
-  causes_ |= causes & kAllCauses;
-  latch(cause);
+  if (first_cause_ == 0) first_cause_ = first_cause;
+  causes &= kAllCauses;
+  latch({.repair = for_repair(causes), .brake = causes & ~for_repair(causes)});
+  latch({.brake = cause});
   state_ = latched_state();
   since_cycle_ = cycle;
 }
 
-void Supervisor::latch(std::uint64_t active) noexcept {
+void Supervisor::latch(const SupervisorInput& input) noexcept {
+  const std::uint64_t active = input.repair | input.brake | input.ramp;
   if (first_cause_ == 0) first_cause_ = active & (~active + 1);  // the lowest bit names one of several
-  causes_ |= active;
+  repair_ |= input.repair;
+  brake_ |= input.brake;
+  ramp_ |= input.ramp;
 }
 
 std::uint64_t Supervisor::refusal(const SupervisorInput& input) const noexcept {
   std::uint64_t refusal = 0;
-  if (causes_ == 0) {
+  if (causes() == 0) {
     if (state_ == SupervisorState::kInit && input.missing != 0) refusal |= kRefusalInit;
     return refusal;
   }
-  if (input.active != 0) refusal |= kRefusalCauseActive;
+  if ((input.repair | input.brake | input.ramp) != 0) refusal |= kRefusalCauseActive;
   if (input.requested) refusal |= kRefusalCommand;
   if (!input.standing || state_ == SupervisorState::kStopping) refusal |= kRefusalMoving;
   return refusal;
 }
 
 SupervisorState Supervisor::latched_state() const noexcept {
-  if ((causes_ & causes_of(StopCategory::kBrakeForRepair)) != 0) return SupervisorState::kFault;
-  return causes_ != 0 ? SupervisorState::kStopped : SupervisorState::kInit;
+  if (repair_ != 0) return SupervisorState::kFault;
+  return causes() != 0 ? SupervisorState::kStopped : SupervisorState::kInit;
 }
 
 }  // namespace robot_control

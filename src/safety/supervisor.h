@@ -1,5 +1,5 @@
 #pragma once
-/// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes and which came first.
+/// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, how each stops, which came first.
 ///
 /// A cause once active stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused
 /// while a cause is active, a motion is asked for, the robot moves or a node is missing in INIT; during
@@ -15,7 +15,9 @@ namespace robot_control {
 
 struct SupervisorInput {
   std::uint64_t cycle = 0;
-  std::uint64_t active = 0;   ///< StopCause bits true in this cycle
+  std::uint64_t repair = 0;   ///< StopCause bits true in this cycle that brake and wait for a repair
+  std::uint64_t brake = 0;    ///< … that brake
+  std::uint64_t ramp = 0;     ///< … that ramp
   std::uint64_t missing = 0;  ///< MissingNode bits of this run
   bool requested = false;     ///< the controller asks for a motion
   bool moving = false;        ///< a joint turns in this very cycle
@@ -33,24 +35,26 @@ class Supervisor {
   /// A new run: INIT, or where a cause is latched STOPPED or FAULT.
   void enter_run() noexcept;
 
-  /// Takes over what an earlier monitor had latched, and adds `cause`: STOPPED, or FAULT.
+  /// Takes over what an earlier monitor had latched, and adds `cause`: STOPPED, or FAULT. All of it brakes from now on.
   void restore(std::uint64_t causes, std::uint64_t first_cause, StopCause cause, std::uint64_t cycle) noexcept;
 
   SupervisorState state() const noexcept { return state_; }
-  std::uint64_t causes() const noexcept { return causes_; }
+  std::uint64_t causes() const noexcept { return repair_ | brake_ | ramp_; }
   std::uint64_t first_cause() const noexcept { return first_cause_; }
   std::uint64_t since_cycle() const noexcept { return since_cycle_; }
   std::uint64_t ramp_until() const noexcept { return ramp_until_; }
   std::uint64_t reset_refusal() const noexcept { return reset_refusal_; }
 
  private:
-  void latch(std::uint64_t active) noexcept;
+  void latch(const SupervisorInput& input) noexcept;
   std::uint64_t refusal(const SupervisorInput& input) const noexcept;
   SupervisorState latched_state() const noexcept;
 
   std::uint64_t ramp_cycles_;
   SupervisorState state_ = SupervisorState::kInit;
-  std::uint64_t causes_ = 0;
+  std::uint64_t repair_ = 0;  ///< latched
+  std::uint64_t brake_ = 0;   ///< latched
+  std::uint64_t ramp_ = 0;    ///< latched
   std::uint64_t first_cause_ = 0;
   std::uint64_t since_cycle_ = 0;
   std::uint64_t ramp_until_ = 0;

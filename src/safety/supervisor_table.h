@@ -20,9 +20,9 @@
 namespace robot_control {
 
 enum class Trigger : std::uint8_t {
-  kRepairCause,      ///< a latched cause of StopCategory::kBrakeForRepair
-  kBrakeCause,       ///< a latched cause of StopCategory::kBrake
-  kRampCause,        ///< a latched cause of StopCategory::kRamp
+  kRepairCause,      ///< a latched cause that waits for a repair
+  kBrakeCause,       ///< a latched cause of stop category 0
+  kRampCause,        ///< a latched cause of stop category 1
   kRampEnded,        ///< standing, or the ramp's last cycle is reached
   kResetIncomplete,  ///< a reset was accepted, a node of this run is still missing
   kResetComplete,    ///< a reset was accepted, all nodes of this run were seen
@@ -59,9 +59,14 @@ inline constexpr auto kTransitions = std::to_array<Transition>({
     {SupervisorState::kStopping, Trigger::kRampEnded, SupervisorState::kStopped},
 
     {SupervisorState::kStopped, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kStopped, Trigger::kBrakeCause, SupervisorState::kStopped},
+    {SupervisorState::kStopped, Trigger::kRampCause, SupervisorState::kStopped},
     {SupervisorState::kStopped, Trigger::kResetIncomplete, SupervisorState::kInit},
     {SupervisorState::kStopped, Trigger::kResetComplete, SupervisorState::kReady},
 
+    {SupervisorState::kFault, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kFault, Trigger::kBrakeCause, SupervisorState::kFault},
+    {SupervisorState::kFault, Trigger::kRampCause, SupervisorState::kFault},
     {SupervisorState::kFault, Trigger::kResetIncomplete, SupervisorState::kInit},
     {SupervisorState::kFault, Trigger::kResetComplete, SupervisorState::kReady},
 });

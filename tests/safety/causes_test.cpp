@@ -116,7 +116,7 @@ TEST_F(CausesTest, CorruptFramesStopInTheThirdCycleInARow) {
 }
 
 TEST_F(CausesTest, SensorsThatAreNotFiniteStopInTheThirdCycleInARow) {
-  sensors_.imu.angular_velocity[0] = kNaN;
+  sensors_.imu.angular_velocity[1] = kNaN;
   steps(2);
   expect_driving();
   step();
@@ -125,7 +125,7 @@ TEST_F(CausesTest, SensorsThatAreNotFiniteStopInTheThirdCycleInARow) {
 
 TEST_F(CausesTest, ASensorThatIsNotValidMayHoldAnything) {
   sensors_.valid = kValidJoints;
-  sensors_.imu.angular_velocity[0] = sensors_.imu.linear_acceleration[2] = kNaN;
+  sensors_.imu.angular_velocity[1] = sensors_.imu.linear_acceleration[2] = kNaN;
   sensors_.joints[2].position = kNaN;  // the robot has two
   steps(10);
   expect_driving();
@@ -158,6 +158,7 @@ TEST_F(CausesTest, APausedDriverIsNotLost) {
 
 TEST_F(CausesTest, ADriverThatWasNeverThereIsNotLost) {
   SafetyMonitor monitor(parameters(), robot(), kPeriod);
+  sensors_.gate = {};
   monitor.driver_lost();
   monitor.step(input_, permit_);
   EXPECT_EQ(permit_.causes, 0u);
@@ -215,9 +216,10 @@ TEST_F(HeartbeatTest, ABeatDuringTheRampDoesNotSaveIt) {
 TEST_F(HeartbeatTest, RampEndsAtStandstill) {
   steps(kHeartbeat + 1);
   turn_wheels(0);
-  steps(JointStandstill::kStandingCycles - 1);
+  target(0);
+  steps(kStands - 5);
   EXPECT_EQ(permit_.state, SupervisorState::kStopping);
-  step();
+  steps(5);
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
@@ -258,7 +260,9 @@ TEST_F(MonitorTest, HeartbeatTimeoutZeroAsksForNone) {
   SafetyParameters none = parameters();
   none.heartbeat_timeout = 0;
   monitor_ = SafetyMonitor(none, robot(), kPeriod);
-  ask_for(0.5);
+  new_run();
+  step();
+  drive();
   steps(10 * kHeartbeat);
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
 }
@@ -330,17 +334,19 @@ TEST_F(MonitorTest, ReadyPermitsAndBecomesDriveWithARequestOrAMotion) {
   ask_for(0);
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
-  turn_wheels(-0.05);
-  steps(2);
+  turn_wheels(-0.3);  // 10 mrad, twice the window of 0.05 rad/s · 0.1 s, take 33 ms, and a count more
+  steps(30);
+  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+  steps(40);  // twice as long where a new window began meanwhile
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
-  turn_wheels(0.049);
-  steps(JointStandstill::kStandingCycles - 1);
+  turn_wheels(0.04);
+  steps(kStands - 30);  // the last window began up to 20 cycles earlier
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
-  step();
+  steps(30);
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
-// The wheel rests at the edge of a count: 1.53 rad/s for a cycle, every now and then.
+// The wheel rests at the edge of a count: 1.53 rad/s for a cycle, every now and then, is a count.
 TEST_F(CausesTest, ACountOfAWheelAtRestIsNoMotion) {
   stand();
   for (int count = 0; count < 3; ++count) {
@@ -348,10 +354,11 @@ TEST_F(CausesTest, ACountOfAWheelAtRestIsNoMotion) {
     step();
     EXPECT_EQ(permit_.state, SupervisorState::kReady);
     turn_wheels(0);
-    steps(JointStandstill::kStandingCycles);
+    ++input_.operator_input.heartbeats;
+    steps(kStands);
   }
   turn_wheels(1.53);
-  steps(2);
+  steps(10);
   EXPECT_EQ(permit_.state, SupervisorState::kDrive);
 }
 

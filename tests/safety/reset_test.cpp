@@ -47,7 +47,8 @@ TEST_F(ResetTest, IsRefusedWhileATurnIsAskedFor) {
 }
 
 TEST_F(ResetTest, IsRefusedWhileAWheelTurns) {
-  sensors_.joints[1].velocity = -0.06;
+  speed_[1] = -0.2;
+  steps(kStands);
   EXPECT_EQ(reset(), std::uint64_t{kRefusalMoving});
 }
 
@@ -75,6 +76,7 @@ TEST_F(ResetTest, NamesEveryReasonAtOnce) {
   sensors_.digital_inputs = kInputEmergencyStop;
   ask_for(1);
   turn_wheels(1);
+  steps(20);
   EXPECT_EQ(reset(), kRefusalCauseActive | kRefusalCommand | kRefusalMoving);
 }
 
@@ -155,7 +157,9 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     const auto chance = [&](unsigned one_in) { return random() % one_in == 0; };
-    monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
+    SafetyParameters impatient = parameters();
+    impatient.heartbeat_timeout = 0.05;
+    monitor_ = SafetyMonitor(impatient, robot(), kPeriod);
     new_run();
     std::uint64_t latched = 0;
     for (int i = 0; i < 2000; ++i) {

@@ -91,7 +91,7 @@ TEST_F(RunTest, ANewRunNeverClearsAFaultButAResetThenDoes) {
   step();
   new_run();
   sensors_.faults = 0;
-  steps(JointStandstill::kStandingCycles);
+  steps(kStands);
   EXPECT_EQ(permit_.state, SupervisorState::kFault);
   EXPECT_EQ(reset(), 0u);
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
@@ -228,6 +228,7 @@ TEST_F(RestartTest, BesideANewDriverBeginsInInit) {
   e_stop();
   restart();
   sensors_.boot = 78;
+  new_run();
   input_.command = nullptr;
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kInit);

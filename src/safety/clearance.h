@@ -1,0 +1,44 @@
+#pragma once
+/// How fast may the robot be if it shall stop within the free way ahead?
+///
+///   v·t + v²/(2a) ≤ c   ⇒   v = a·(√(t² + 2c/a) − t) = 2c/(t + √(t² + 2c/a))
+///
+/// c the clearance (m), t stop_delay (s), in which the robot drives on, a stop_deceleration (m/s²). The second form
+/// does not cancel for a small c. Where way and speed end: c = ∞ is unlimited; c ≤ 0 and NaN are no way left, speed 0.
+///
+/// c is the parameter `clearance` (0: unlimited) until the topic says otherwise; then its last value, for ever: who
+/// measures it has to tell when the way is free again.
+
+#include <cmath>
+
+#include "safety/safety_parameters.h"
+#include "signals/permit.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+class Clearance {
+ public:
+  explicit Clearance(const SafetyParameters& parameters) noexcept
+      : delay_(parameters.stop_delay),
+        deceleration_(parameters.stop_deceleration),
+        from_parameter_(parameters.clearance > 0 ? speed(parameters.clearance) : kNoSpeedLimit) {}
+
+  /// m/s
+  double speed_limit(const OperatorInput& operator_input) const noexcept {
+    return operator_input.clearances > 0 ? speed(operator_input.clearance) : from_parameter_;
+  }
+
+ private:
+  double speed(double clearance) const noexcept {
+    if (!(clearance > 0)) return 0;
+    if (clearance >= kNoSpeedLimit) return kNoSpeedLimit;
+    return 2 * clearance / (delay_ + std::sqrt(delay_ * delay_ + 2 * clearance / deceleration_));
+  }
+
+  double delay_;
+  double deceleration_;
+  double from_parameter_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,88 @@
+#pragma once
+/// How the wheels turn, from raw encoder angles alone.
+///
+///   speed         ω = (q_k − q_j)/((k − j)·period),  j the newest cycle seen with k − j ≥ n
+///   acceleration  (ω_k − ω_j)/((k − j)·period), of two windows side by side
+///   n = max(2, ⌈kSpeedWindow/period⌉), at most kMaxWindow (2 kHz)
+///
+/// The speed that the encoder reports is differenced over one period and jumps by the quantum 2π/(counts·period):
+/// 1.5 rad/s for 4096 counts at 1 kHz. Over the window T it is quantum/T = 0.08 rad/s; the price is a lag of T/2.
+///
+///   quantum       the smallest step, or change of step, that an angle made in this run. A robot starts from rest, so
+///   it
+///                 is a single count; at speed, steps of 65 and 66 counts give it, too. Steps below kLeastQuantum are
+///                 none: an encoder of 2²² counts needs no tolerance.
+///   tolerances    quantum/T for a speed, 2 quanta/T² for an acceleration: by so much may quantisation alone lift them.
+///
+/// Cycles that were skipped, or whose samples are missing, not valid or not finite, make a window longer, to at most
+/// twice its length; beyond, nothing is known.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "robot/robot_model.h"
+#include "safety/derived_limits.h"
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+class WheelMotion {
+ public:
+  static constexpr std::uint64_t kMaxWindow = 40;  ///< cycles
+  static constexpr double kLeastQuantum = 1e-6;    ///< rad
+
+  /// The first `wheels` joints. `period` s.
+  WheelMotion(std::size_t wheels, double period) noexcept;
+
+  /// Nothing is known.
+  void enter_run() noexcept;
+
+  void step(const SensorFrame& sensors) noexcept;
+
+  std::size_t wheels() const noexcept { return wheels_; }
+
+  /// This cycle's angles are there.
+  bool sampled() const noexcept { return sampled_; }
+  bool speed_known() const noexcept { return speed_known_; }
+  bool acceleration_known() const noexcept { return acceleration_known_; }
+
+  double angle(std::size_t wheel) const noexcept { return angle_[wheel]; }                ///< rad
+  double speed(std::size_t wheel) const noexcept { return speed_[wheel]; }                ///< rad/s
+  double acceleration(std::size_t wheel) const noexcept { return acceleration_[wheel]; }  ///< rad/s²
+  double quantum(std::size_t wheel) const noexcept { return quantum_[wheel]; }            ///< rad; 0: not seen yet
+  double speed_tolerance(std::size_t wheel) const noexcept { return quantum_[wheel] / window_; }
+  double acceleration_tolerance(std::size_t wheel) const noexcept { return 2 * quantum_[wheel] / (window_ * window_); }
+
+ private:
+  using Values = std::array<double, kMaxWheels>;
+
+  struct Sample {
+    std::uint64_t cycle = kNever;
+    Values angle{};
+  };
+  static constexpr std::uint64_t kNever = ~std::uint64_t{0};
+  static constexpr std::size_t kSlots = 256;  // two windows of twice the length, and more
+
+  bool take(const SensorFrame& sensors) noexcept;
+  void refine_quantum(const Values& angle) noexcept;
+  const Sample* before(std::uint64_t cycle) const noexcept;
+
+  std::size_t wheels_;
+  double period_;
+  std::uint64_t window_cycles_;
+  double window_;  ///< s
+  bool sampled_ = false;
+  bool speed_known_ = false;
+  bool acceleration_known_ = false;
+  bool stepped_ = false;  ///< `last_step_` is one
+  std::uint64_t newest_ = kNever;
+  Values angle_{};
+  Values last_step_{};
+  Values speed_{};
+  Values acceleration_{};
+  Values quantum_{};
+  std::array<Sample, kSlots> samples_{};  ///< of cycle c in slot c mod kSlots
+};
+
+}  // namespace robot_control
