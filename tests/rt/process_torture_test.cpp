@@ -1,0 +1,31 @@
+/// Ten million frames and ten million rows between two processes; scripts/bench frames takes a thousand million.
+
+#include <gtest/gtest.h>
+
+#include "support/allocation_guard.h"
+#include "support/torture.h"
+
+namespace robot_control {
+namespace {
+
+// A sanitizer sees one process at a time: there it is the wiring that is tested.
+constexpr std::uint64_t kCount = AllocationGuard::kCounts ? 10'000'000 : 100'000;
+
+TEST(ProcessTorture, NoFrameIsTornAndNoneIsOlderThanTheOneBefore) {
+  const TortureCount count = torture_frames(kCount);
+  EXPECT_EQ(count.torn, 0u);
+  EXPECT_EQ(count.reordered, 0u);
+  EXPECT_GE(count.read, kCount);
+  EXPECT_GE(count.written, kCount);
+  EXPECT_GT(count.distinct, 100u);  // how often the two meet is the machine's affair
+}
+
+TEST(ProcessTorture, EveryRowComesOnceWholeAndInOrder) {
+  const TortureCount count = torture_ring(kCount);
+  EXPECT_EQ(count.torn, 0u);
+  EXPECT_EQ(count.reordered, 0u);
+  EXPECT_EQ(count.read, kCount);
+}
+
+}  // namespace
+}  // namespace robot_control
