@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-NAMES = ("step", "plant", "lockstep", "frames")
+NAMES = ("step", "plant", "lockstep", "frames", "stops")
 
 
 def run_program(program: Path, params: Path) -> dict[str, Any]:

@@ -21,7 +21,12 @@ class TelemetryNode final : public Node {
 
   void connect(ros::NodeHandle& /*handle*/) override { ROS_INFO("writing %s", process_.path().c_str()); }
   void poll() override { process_.poll(); }
-  void publish() override { process_.drain(); }
+  void publish() override {
+    process_.drain();
+    if (process_.problem().empty() || told_) return;
+    told_ = true;
+    ROS_ERROR("%s. The loop goes on, its rows are counted and lost", process_.problem().c_str());
+  }
   std::int64_t tick_ns() const override { return lockstep_ ? kLockstepDrainPeriod : kDrainPeriod; }
   bool finished() const override { return false; }
   std::vector<std::string> missing() const override { return process_.missing(); }
@@ -39,15 +44,18 @@ class TelemetryNode final : public Node {
     const TelemetryCounts counts = process_.counts();
     const auto sum = [](const auto& nodes) { return std::accumulate(nodes.begin(), nodes.end(), std::uint64_t{0}); };
     if (counts.dropped + counts.overwritten != 0) report.warn("rows were lost");
+    if (!process_.problem().empty()) report.error(process_.problem());
     report.value("rows", counts.join.emitted);
     report.value("absent", sum(counts.join.absent));
     report.value("late", sum(counts.join.late));
     report.value("dropped", counts.dropped);
     report.value("overwritten", counts.overwritten);
+    report.value("unwritten", process_.problem().empty() ? 0 : counts.unwritten);
   }
 
  private:
   bool lockstep_;
+  bool told_ = false;
   TelemetryProcess process_;
 };
 

@@ -108,7 +108,7 @@ TelemetryProcess::TelemetryProcess(const Parameters& parameters, const RobotMode
     : positions_(bus, ChannelNames::kTraceRead),
       path_(fresh_path(parameters.telemetry.directory)),
       csv_(path_, log_columns(joint_names(robot), parameters.loop.clock == ClockMode::kWall)),
-      join_(parameters.loop.period(), [this](const JoinedRow& row) { csv_.write(row); }),
+      join_(parameters.loop.period(), [this](const JoinedRow& row) { write_down([&] { csv_.write(row); }); }),
       sources_(std::make_unique<Sources>(bus)) {
   positions_.memory()->head.attached_run.store(0);
 }
@@ -124,7 +124,7 @@ void TelemetryProcess::poll() {
     all = all && source.mapped();
   });
   if (all) positions_.memory()->head.attached_run.store(1);
-  csv_.flush();
+  write_down([this] { csv_.flush(); });
 }
 
 std::size_t TelemetryProcess::drain() {
@@ -137,7 +137,17 @@ void TelemetryProcess::finish() {
   positions_.memory()->head.attached_run.store(0);
   drain();
   join_.finish();
-  csv_.close();
+  write_down([this] { csv_.close(); });
+  if (!problem_.empty()) throw LogError(problem_ + "; " + std::to_string(counts().unwritten) + " rows are not in it");
+}
+
+template <class Act>
+void TelemetryProcess::write_down(Act act) {
+  try {
+    act();
+  } catch (const LogError& error) {
+    problem_ = error.what();
+  }
 }
 
 std::vector<std::string> TelemetryProcess::missing() const {
@@ -150,6 +160,7 @@ std::vector<std::string> TelemetryProcess::missing() const {
 
 TelemetryCounts TelemetryProcess::counts() const {
   TelemetryCounts counts{.join = join_.counts()};
+  counts.unwritten = counts.join.emitted - csv_.rows();
   sources_->each([&](const auto& source, std::size_t) { source.count(counts); });
   return counts;
 }

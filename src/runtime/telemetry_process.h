@@ -3,6 +3,9 @@
 ///
 /// It owns the read positions. Only once all four rings are mapped and the positions stored does it say so
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
+///
+/// A disk that takes no more ends the log, not this process: the rings are emptied on, so that nobody waits for room,
+/// and what is not written is counted.
 
 #include <cstdint>
 #include <memory>
@@ -22,6 +25,7 @@ struct TelemetryCounts {
   JoinCounts join;
   std::uint64_t dropped = 0;      ///< by the writers, for want of room, since this process began
   std::uint64_t overwritten = 0;  ///< before they were read
+  std::uint64_t unwritten = 0;    ///< rows that the disk did not take; before `problem`, those that still wait for it
 };
 
 class TelemetryProcess {
@@ -39,13 +43,17 @@ class TelemetryProcess {
   /// Takes all rows that are there; the number of them. Call often: a ring holds 2048 cycles.
   std::size_t drain();
 
-  /// Takes the rest and closes the file. Nothing may be called afterwards.
+  /// Takes the rest and closes the file; throws LogError where rows are missing there. Only `counts` and `problem` may
+  /// be called afterwards.
   void finish();
 
   /// Nodes whose ring is not there or not owned by a living process.
   std::vector<std::string> missing() const;
 
   TelemetryCounts counts() const;
+
+  /// Why the log has ended; empty: it has not.
+  const std::string& problem() const noexcept { return problem_; }
   const std::string& path() const noexcept { return path_; }
 
  private:
@@ -53,9 +61,14 @@ class TelemetryProcess {
   class Source;
   struct Sources;
 
+  /// Notes a LogError.
+  template <class Act>
+  void write_down(Act act);
+
   OwnedChannel<RingPositions> positions_;
   std::string path_;
   CsvWriter csv_;
+  std::string problem_;
   Join join_;
   std::unique_ptr<Sources> sources_;
 };

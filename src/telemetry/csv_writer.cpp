@@ -3,11 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -80,12 +82,26 @@ void CsvWriter::write(const JoinedRow& row) {
 void CsvWriter::flush() {
   std::size_t done = 0;
   while (file_ >= 0 && done < buffer_.size()) {
-    const ssize_t count = ::write(file_, buffer_.data() + done, buffer_.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail("cannot be written", errno);
-    done += static_cast<std::size_t>(count);
+    const ssize_t taken = ::write(file_, buffer_.data() + done, buffer_.size() - done);
+    if (taken < 0 && errno == EINTR) continue;
+    if (taken < 0) {
+      const int error = errno;
+      count(done);
+      // Half a row would be read as one with less columns. A pipe cannot be cut, nor need it be.
+      [[maybe_unused]] const int cut = ::ftruncate(file_, bytes_);
+      fail("cannot be written", error);
+    }
+    done += static_cast<std::size_t>(taken);
   }
+  count(done);
   buffer_.clear();
+}
+
+void CsvWriter::count(std::size_t taken) {
+  const std::string_view text(buffer_.data(), taken);
+  lines_ += static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
+  const std::size_t end = text.rfind('\n');
+  if (end != std::string_view::npos) bytes_ += static_cast<std::int64_t>(end) + 1;
 }
 
 void CsvWriter::close() {

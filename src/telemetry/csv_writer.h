@@ -4,6 +4,8 @@
 /// Reals are the shortest decimals that read back as the same bits ("nan", "inf" where a node computed such),
 /// integers are decimal, a cell whose node has no frame is empty; lines end in LF. Equal rows give equal bytes.
 
+#include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -29,7 +31,8 @@ class CsvWriter {
   CsvWriter(const CsvWriter&) = delete;
   CsvWriter& operator=(const CsvWriter&) = delete;
 
-  /// Throws LogError when the disk does not take the buffer, once; afterwards rows are ignored.
+  /// Throws LogError when the disk does not take the buffer, once; the log then ends with its last whole row, and rows
+  /// are ignored.
   void write(const JoinedRow& row);
 
   /// Hands what is buffered to the system, for those who read along. Throws LogError.
@@ -38,14 +41,20 @@ class CsvWriter {
   /// flush, fsync, close. Throws LogError.
   void close();
 
+  /// Whole rows that the system has taken.
+  std::uint64_t rows() const noexcept { return lines_ == 0 ? 0 : lines_ - 1; }
+
  private:
   void open();
+  void count(std::size_t taken);
   [[noreturn]] void fail(const std::string& what, int error);
 
   std::string path_;
   std::vector<Column> columns_;
   std::string buffer_;
   int file_ = -1;
+  std::int64_t bytes_ = 0;   ///< up to the end of the last whole line
+  std::uint64_t lines_ = 0;  ///< whole, the header's included
 };
 
 }  // namespace robot_control

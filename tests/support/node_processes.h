@@ -154,6 +154,10 @@ class NodeProcesses {
       telemetry.drain();
       const TelemetryCounts counts = telemetry.counts();
       desk_->lost_rows.store(counts.dropped + counts.overwritten);
+      if (!telemetry.problem().empty() && desk_->unwritten_rows.load() == 0) {
+        std::fprintf(stderr, "%s\n", telemetry.problem().c_str());
+      }
+      if (!telemetry.problem().empty()) desk_->unwritten_rows.store(counts.unwritten);
       sleep_ns(kLookNs);
     }
   }
