@@ -15,6 +15,7 @@
 #include "bridge/messages.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
+#include "rt/last_words.h"
 #include "rt/realtime_thread.h"
 
 namespace robot_control {
@@ -134,6 +135,7 @@ class NodeLoop {
 int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
   std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep their point
+  install_last_words(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
     catch_signals();

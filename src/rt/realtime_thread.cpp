@@ -18,6 +18,8 @@
 #include <system_error>
 #include <utility>
 
+#include "rt/last_words.h"
+
 namespace robot_control {
 namespace {
 
@@ -147,6 +149,7 @@ struct RealtimeThread::Thread {
   static void* run(void* argument) {
     auto& self = *static_cast<Thread*>(argument);
     const RealtimeParameters& asked = self.parameters;
+    const AlternateStack last_words;
     pthread_setname_np(pthread_self(), asked.name.substr(0, 15).c_str());
     take_core(asked.core, self.report);
     if (asked.policy != RealtimePolicy::kOff && asked.priority > 0) take_priority(asked.priority, self.report);

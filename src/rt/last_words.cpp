@@ -1,0 +1,135 @@
+#include "rt/last_words.h"
+
+#include <poll.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace robot_control {
+namespace {
+
+struct Death {
+  int signal;
+  std::string_view name;
+  std::string_view what;
+  std::string_view remedy;
+};
+
+constexpr std::string_view kBug = "keep its core dump (coredumpctl) and report it, then start the node again";
+constexpr Death kDeaths[] = {
+    {SIGBUS, "SIGBUS", "shared memory was truncated, or its file system is full",
+     "look at 'df /dev/shm' and at who writes there, then start the node again"},
+    {SIGSEGV, "SIGSEGV", "it used an address that is not its own", kBug},
+    {SIGILL, "SIGILL", "it came to an instruction that cannot be", kBug},
+    {SIGFPE, "SIGFPE", "it divided an integer by zero", kBug},
+    {SIGABRT, "SIGABRT", "it gave up, the message before says why", kBug},
+};
+
+/// What does not fit is cut off.
+template <std::size_t Size>
+class Text {
+ public:
+  void add(std::string_view text) noexcept {
+    const std::size_t fits = std::min(text.size(), Size - size_);
+    std::memcpy(memory_.data() + size_, text.data(), fits);
+    size_ += fits;
+  }
+  void add_address(std::uintptr_t address) noexcept {
+    add("0x");
+    int shift = 8 * static_cast<int>(sizeof address) - 4;
+    while (shift > 0 && address >> shift == 0) shift -= 4;
+    for (; shift >= 0; shift -= 4) add(std::string_view("0123456789abcdef").substr((address >> shift) & 15, 1));
+  }
+  std::string_view view() const noexcept { return {memory_.data(), size_}; }
+
+ private:
+  std::size_t size_ = 0;
+  std::array<char, Size> memory_{};
+};
+
+// Complete before the handlers stand, and never changed afterwards.
+Text<kLongestName> node_name;
+Text<kLongestConsequence> consequence_of_death;
+
+std::atomic<bool> dying{false};
+
+/// A reader that has stopped must not keep a dead process alive.
+void say(std::string_view line) noexcept {
+  pollfd ready{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+  if (poll(&ready, 1, 0) != 1 || (ready.revents & POLLOUT) == 0) return;
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, line.data(), line.size());
+}
+
+void speak(const Death& death, const siginfo_t& info) noexcept {
+  Text<512> line;
+  line.add(node_name.view());
+  line.add(": ");
+  line.add(death.name);
+  if (info.si_code > 0 && death.signal != SIGABRT) {
+    line.add(" at ");
+    line.add_address(reinterpret_cast<std::uintptr_t>(info.si_addr));
+  } else if (info.si_code == SI_USER) {
+    line.add(" from another process");
+  }
+  line.add(": ");
+  line.add(death.what);
+  line.add("; the process ends, ");
+  line.add(consequence_of_death.view());
+  line.add("; remedy: ");
+  line.add(death.remedy);
+  line.add("\n");
+  say(line.view());
+}
+
+/// The default action, with the same cause, as soon as the handler returns to where the fault was.
+void die_of(int signal, siginfo_t& info) noexcept {
+  struct sigaction action {};
+  action.sa_handler = SIG_DFL;
+  sigaction(signal, &action, nullptr);
+  if (syscall(SYS_rt_tgsigqueueinfo, getpid(), gettid(), signal, &info) != 0) raise(signal);
+}
+
+extern "C" void handle_last_words(int signal, siginfo_t* info, void* /*context*/) {
+  // A second thread that dies meanwhile would cut the first one short.
+  while (dying.exchange(true)) pause();
+  for (const Death& death : kDeaths) {
+    if (death.signal == signal) speak(death, *info);
+  }
+  die_of(signal, *info);
+}
+
+}  // namespace
+
+void install_last_words(const std::string& name, const std::string& consequence) {
+  static AlternateStack stack;
+  node_name = {};
+  node_name.add(name);
+  consequence_of_death = {};
+  consequence_of_death.add(consequence);
+  struct sigaction action {};
+  action.sa_sigaction = &handle_last_words;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  sigfillset(&action.sa_mask);
+  for (const Death& death : kDeaths) sigaction(death.signal, &action, nullptr);
+}
+
+AlternateStack::AlternateStack() noexcept {
+  stack_t present{};
+  if (sigaltstack(nullptr, &present) != 0 || (present.ss_flags & SS_DISABLE) == 0) return;
+  const stack_t mine{.ss_sp = memory_.data(), .ss_flags = 0, .ss_size = memory_.size()};
+  mine_ = sigaltstack(&mine, nullptr) == 0;
+}
+
+AlternateStack::~AlternateStack() {
+  if (!mine_) return;
+  const stack_t none{.ss_sp = nullptr, .ss_flags = SS_DISABLE, .ss_size = 0};
+  sigaltstack(&none, nullptr);
+}
+
+}  // namespace robot_control

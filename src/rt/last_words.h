@@ -1,0 +1,42 @@
+#pragma once
+/// A process that dies by its own fault says so, in one line on stderr: who, by which signal, why, what to do.
+///
+///   SIGBUS    memory that was mapped is gone: shared memory truncated, or its file system full
+///   SIGSEGV   an address that is not its own      SIGILL, SIGFPE      an impossible instruction, a division by zero
+///   SIGABRT   it gave up: the message before says why
+///
+/// Then it dies of that very signal: exit status and core dump are those of a process without last words. Between
+/// fault and death there is no lock, no allocation and no wait, and only async-signal-safe calls (signal-safety(7)); a
+/// stderr that takes nothing at once is left alone. The line is one write, so those of dying neighbours do not mix.
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace robot_control {
+
+inline constexpr std::size_t kLongestName = 64;  ///< bytes; more is cut off
+inline constexpr std::size_t kLongestConsequence = 100;
+
+/// `name`: of the node; `consequence`: of its death, "the motors brake without it". Whatever handled these signals
+/// before is forgotten, and the calling thread, the main one, gets an AlternateStack. Once per process, before others
+/// make threads.
+void install_last_words(const std::string& name, const std::string& consequence);
+
+/// Room for the last words of one thread whose own stack has overflowed, as long as this object lives. Where the thread
+/// has such room already (AddressSanitizer gives it), that stays.
+class AlternateStack {
+ public:
+  AlternateStack() noexcept;
+  AlternateStack(const AlternateStack&) = delete;
+  AlternateStack& operator=(const AlternateStack&) = delete;
+  ~AlternateStack();
+
+ private:
+  static constexpr std::size_t kBytes = 32 * 1024;  ///< the registers of the widest x86 take 11 KiB of it
+
+  bool mine_ = false;
+  alignas(64) std::array<std::byte, kBytes> memory_;
+};
+
+}  // namespace robot_control
