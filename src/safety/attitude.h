@@ -11,9 +11,8 @@
 /// Errors of u [rad], T = 1.5 s, b a gyro's bias, A an acceleration along the ground that c does not hold:
 ///
 ///   bias              ≤ b T            0.05 rad/s: 0.075
-///   acceleration      ≤ A/g·(1 − e^{−t/T}) ≤ Δv/(g T)    1 m/s² for 1 s: 0.050; 5 m/s² from 1 m/s: 0.068, and none of
-///   it
-///                                      where the band shuts it out: A > √(2 g kBand + kBand²) = 4.5 m/s²
+///   acceleration      ≤ A/g·(1 − e^{−t/T}) ≤ Δv/(g T)    1 m/s² for 1 s: 0.050; from 1 m/s at 4.5 m/s²: 0.068;
+///                                      5 m/s²: none, above √(2 g kBand + kBand²) = 4.5 m/s² the band shuts it out
 ///   offset of a       δ/g              0.2 m/s²: 0.020
 ///   a start in motion A/g of the first sample, and falls with e^{−t/T}
 ///

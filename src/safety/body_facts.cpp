@@ -43,7 +43,9 @@ BodyFacts::BodyFacts(const SafetyParameters& parameters, const RobotModel& robot
       lift_(kCauseLift, parameters.lift, period),
       impact_(kCauseImpact, parameters.impact, period),
       gyro_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
-      accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}} {
+      accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
+      window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMostSamples)) {
+  across_.fill(Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < wheel_count_; ++i) {
     const WheelModel& wheel = robot.wheels[i];
     wheels_[i] = {.joint = wheel.joint, .rim_per_joint = wheel.sign * wheel.radius};
@@ -59,6 +61,7 @@ void BodyFacts::enter_run() noexcept {
   }
   attitude_.reset();
   force_.setZero();
+  across_.fill(Eigen::Vector3d::Zero());
   shock_ = 0;
   carried_ = 1;
 }
@@ -99,6 +102,15 @@ void BodyFacts::weigh(const SensorFrame& sensors) noexcept {
   if (std::isfinite(sum)) carried_ = sum / weight_;
 }
 
+void BodyFacts::shake(bool felt) noexcept {
+  const Eigen::Vector3d& up = attitude_.up();
+  across_[next_] = felt ? Eigen::Vector3d(force_ - force_.dot(up) * up) : Eigen::Vector3d::Zero();
+  next_ = next_ + 1 == window_ ? 0 : next_ + 1;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < window_; ++i) sum += across_[i];
+  shock_ = sum.norm() / static_cast<double>(window_);
+}
+
 void BodyFacts::step(const SensorFrame& sensors, std::uint64_t elapsed, bool wheels_turn, ActiveCauses& out) noexcept {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   const bool turned = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
@@ -109,7 +121,7 @@ void BodyFacts::step(const SensorFrame& sensors, std::uint64_t elapsed, bool whe
   attitude_.step(turned ? &rate : nullptr, felt ? &gravity : nullptr, static_cast<double>(elapsed) * period_);
   const double tilt = attitude_.tilt();
   const double tilt_rate = attitude_.tilt_rate();
-  shock_ = felt ? (force_ - kGravity * attitude_.up()).norm() : 0;
+  shake(felt);
   weigh(sensors);
 
   const auto judge = [&](ConditionWatch& watch, bool beyond, double value) {

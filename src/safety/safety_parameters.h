@@ -36,7 +36,7 @@ struct SafetyParameters {
   double stop_delay = 0.03;  ///< s, from the fact to the brake torque
   double stop_deceleration = 1.0;  ///< m/s², that braking or ramping reaches on any ground the robot drives on
 
-  Condition wheel_speed{{}, 0.03, Reaction::kBrake};         ///< rad/s; derived
+  Condition wheel_speed{{}, 0.15, Reaction::kBrake};         ///< rad/s; derived
   Condition wheel_acceleration{{}, 0.01, Reaction::kBrake};  ///< rad/s²; derived
   Condition wheel_effort{1.05, 0.02, Reaction::kBrake};      ///< of the joint's effort limit
   Condition power{{}, 0.1, Reaction::kBrake};                ///< W, mechanical, all wheels; derived
@@ -45,11 +45,11 @@ struct SafetyParameters {
   Condition wrong_direction{1.5, 0.05, Reaction::kBrake};    ///< rad/s against the target
   Condition not_stopping{1.0, 0, Reaction::kBrake};          ///< s of motion after the target became zero
   Condition yaw_rate{1.0, 0.2, Reaction::kRamp};             ///< rad/s between gyro and wheels
-  Condition tilt{0.35, 0.05, Reaction::kBrake};              ///< rad from the vertical
+  Condition tilt{0.42, 0.05, Reaction::kBrake};              ///< rad from the vertical
   Condition tip_over{1.5, 0.02, Reaction::kBrake};           ///< rad/s, outwards, when tilted by half the tilt limit
-  Condition free_fall{3.0, 0.05, Reaction::kBrake};          ///< m/s², specific force below it
-  Condition lift{0.2, 0.1, Reaction::kBrake};                ///< of the weight on the wheels; contact sensors only
-  Condition impact{60, 0, Reaction::kBrake};                 ///< m/s² beside gravity
+  Condition free_fall{1.5, 0.15, Reaction::kBrake};          ///< m/s², specific force below it
+  Condition lift{0.2, 0.8, Reaction::kBrake};                ///< of the weight on the wheels; contact sensors only
+  Condition impact{80, 0, Reaction::kBrake};                 ///< m/s² along the ground, mean over 10 ms
   Condition encoders_lost{0, 0.01, Reaction::kBrake};        ///< limit unused
   Condition imu_lost{0, 0.1, Reaction::kSlow};               ///< limit unused
   Condition imu_stuck{0, 0.25, Reaction::kSlow};             ///< limit unused
