@@ -26,6 +26,12 @@ void DiagnosticReport::value(const std::string& key, double number) {
   value(key, std::string(text.data()));
 }
 
+void DiagnosticReport::reasons(const std::string& whose, std::span<const BitName> table, std::uint64_t bits) {
+  for (const BitName& row : table) {
+    if ((bits & row.bit) != 0) value(whose + ": " + std::string(row.name), sentences_of({&row, 1}, row.bit));
+  }
+}
+
 void DiagnosticReport::raise(msg::DiagnosticStatus::_level_type level, const std::string& sentence) {
   if (level < message_.level) return;
   if (level > message_.level) message_.message.clear();
@@ -59,6 +65,7 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
   report.value("commands_missed", sensors.gate.missed);
   report.value("permits_late", sensors.gate.late_permits);
   report.value("frames_refused", sensors.gate.refused);
+  report.reasons("gate", kGateReasonNames, sensors.gate.reasons);
 }
 
 void report_state(DiagnosticReport& report, const StateFrame& state) {
@@ -70,13 +77,27 @@ void report_state(DiagnosticReport& report, const StateFrame& state) {
   report.value("skipped", state.skipped);
 }
 
+void report_command(DiagnosticReport& report, const CommandFrame& command) {
+  report.value("cycle", command.head.cycle);
+  report.value("reasons", names_of(kCommandReasonNames, command.reasons));
+  report.value("commands_received", command.requests_received);
+  report.value("commands_refused", command.requests_refused);
+  report.value("timeouts", command.timeouts);
+  report.value("requested_m_s", command.twist_requested.linear[0]);
+  report.value("requested_rad_s", command.twist_requested.angular[2]);
+  report.reasons("command", kCommandReasonNames, command.reasons);
+}
+
 void report_permit(DiagnosticReport& report, const Permit& permit) {
   if (permit.causes != 0) report.error(sentences_of(kStopCauseNames, permit.causes));
+  if (permit.warnings != 0) report.warn(sentences_of(kStopCauseNames, permit.warnings));
   report.value("cycle", permit.head.cycle);
   report.value("state", std::string(name_of(permit.state)));
   report.value("permit", std::string(name_of(permit.action)));
   report.value("causes", names_of(kStopCauseNames, permit.causes));
   report.value("active", names_of(kStopCauseNames, permit.active));
+  report.value("warnings", names_of(kStopCauseNames, permit.warnings));
+  if (permit.speed_limit < kNoSpeedLimit) report.value("speed_limit_m_s", permit.speed_limit);
 }
 
 }  // namespace robot_control

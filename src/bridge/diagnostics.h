@@ -2,10 +2,13 @@
 /// One node's entry on /diagnostics (REP 107): worst level, one sentence, named values.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bridge/messages.h"
+#include "signals/bit_name.h"
+#include "signals/command_frame.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -23,6 +26,9 @@ class DiagnosticReport {
   void value(const std::string& key, double number);
   void value(const std::string& key, std::uint64_t number) { value(key, std::to_string(number)); }
 
+  /// One value per bit set, "gate: command_held" = "the command is older than one cycle and is held".
+  void reasons(const std::string& whose, std::span<const BitName> table, std::uint64_t bits);
+
   const msg::DiagnosticStatus& message() const noexcept { return message_; }
 
  private:
@@ -36,6 +42,7 @@ void report_missing(DiagnosticReport& report, const std::vector<std::string>& mi
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor);
 void report_state(DiagnosticReport& report, const StateFrame& state);
+void report_command(DiagnosticReport& report, const CommandFrame& command);
 void report_permit(DiagnosticReport& report, const Permit& permit);
 
 }  // namespace robot_control

@@ -6,11 +6,11 @@
 
 #include "bridge/command_report.h"
 #include "bridge/diagnostics.h"
+#include "bridge/input_topic.h"
 #include "bridge/motion_messages.h"
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
 #include "runtime/controller_process.h"
-#include "signals/names.h"
 
 namespace robot_control {
 namespace {
@@ -24,12 +24,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
-    const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-    cmd_vel_ = handle.subscribe<msg::Twist>(
-        "cmd_vel", 1, [this](const msg::Twist::ConstPtr& message) { receive(*message); }, nullptr, hints);
-    cmd_vel_stamped_ = handle.subscribe<msg::TwistStamped>(
-        "cmd_vel_stamped", 1, [this](const msg::TwistStamped::ConstPtr& message) { receive(message->twist); }, nullptr,
-        hints);
+    cmd_vel_.connect(handle, [this](const msg::Twist& message) { receive(message); });
+    cmd_vel_stamped_.connect(handle, [this](const msg::TwistStamped& message) { receive(message.twist); });
   }
 
   std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {report().command_rate}); }
@@ -48,13 +44,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     tell();
   }
 
-  void diagnose(DiagnosticReport& report) override {
-    report.value("cycle", command_.head.cycle);
-    report.value("reasons", names_of(kCommandReasonNames, command_.reasons));
-    report.value("commands_received", command_.requests_received);
-    report.value("commands_refused", command_.requests_refused);
-    report.value("timeouts", command_.timeouts);
-  }
+  void diagnose(DiagnosticReport& report) override { report_command(report, command_); }
 
  private:
   /// Two topics, two threads, one inbox.
@@ -78,8 +68,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   ros::Publisher joint_commands_;
   ros::Publisher joint_targets_;
   ros::Publisher velocity_out_;
-  ros::Subscriber cmd_vel_;
-  ros::Subscriber cmd_vel_stamped_;
+  InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
+  InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   std::mutex received_mutex_;
   VelocityCommand received_;
   Pacer pace_;

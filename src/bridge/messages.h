@@ -15,6 +15,7 @@
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Bool.h>
 #include <std_msgs/Empty.h>
+#include <std_msgs/Float64.h>
 #include <std_msgs/Float64MultiArray.h>
 #include <std_srvs/TriggerRequest.h>
 #include <std_srvs/TriggerResponse.h>
@@ -48,6 +49,7 @@ using Clock = rosgraph_msgs::Clock_<Allocator>;
 using DiagnosticArray = diagnostic_msgs::DiagnosticArray_<Allocator>;
 using DiagnosticStatus = diagnostic_msgs::DiagnosticStatus_<Allocator>;
 using Empty = std_msgs::Empty_<Allocator>;
+using Float64 = std_msgs::Float64_<Allocator>;
 using Float64MultiArray = std_msgs::Float64MultiArray_<Allocator>;
 using Imu = sensor_msgs::Imu_<Allocator>;
 using JointState = sensor_msgs::JointState_<Allocator>;

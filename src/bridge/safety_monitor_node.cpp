@@ -7,6 +7,7 @@
 
 #include "bridge/diagnostics.h"
 #include "bridge/graph.h"
+#include "bridge/input_topic.h"
 #include "bridge/messages.h"
 #include "bridge/process_node.h"
 #include "bridge/status_messages.h"
@@ -29,11 +30,11 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   void connect(ros::NodeHandle& handle) override {
     command_topics_ = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
     status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
-    const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-    e_stop_ = handle.subscribe<msg::Bool>(
-        "e_stop", 10, [this](const msg::Bool::ConstPtr& message) { hear_e_stop(message->data != 0); }, nullptr, hints);
-    heartbeat_ = handle.subscribe<msg::Empty>(
-        "heartbeat", 1, [this](const msg::Empty::ConstPtr&) { add(&OperatorInput::heartbeats); }, nullptr, hints);
+    // What is no Bool stops, too: who sends it means something by it.
+    e_stop_.connect(
+        handle, [this](const msg::Bool& message) { hear_e_stop(message.data != 0); }, [this] { hear_e_stop(true); });
+    heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
+    clearance_.connect(handle, [this](const msg::Float64& message) { hear_clearance(message.data); });
     trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
     reset_ = handle.advertiseService("e_stop_reset", &SafetyMonitorNode::reset, this);
   }
@@ -49,7 +50,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     const std::int64_t silence_ns = now_ns - told_ns_;
     if (told_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
     if (SensorFrame sensors; live(sensors)) time().follow(sensors);
-    status_.publish(found ? safety_status(permit, absent, time(), parameters().loop.period_ns())
+    status_.publish(found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns())
                           : waiting_status(absent));
     told_permit_ = found;
     told_missing_ = absent;
@@ -88,6 +89,13 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     process().cycle().inbox().store(input_);
   }
 
+  void hear_clearance(double clearance) {
+    const std::lock_guard lock(input_mutex_);
+    input_.clearance = clearance;
+    ++input_.clearances;
+    process().cycle().inbox().store(input_);
+  }
+
   bool trigger(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
     add(&OperatorInput::e_stop_services);
     const std::vector<std::string> absent = missing();
@@ -98,7 +106,12 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   }
 
   bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
-    const std::lock_guard one_at_a_time(reset_mutex_);
+    const std::unique_lock one_at_a_time(reset_mutex_, std::try_to_lock);
+    if (!one_at_a_time) {  // waiting here would leave no thread to hear e_stop
+      response.success = 0;
+      response.message = "another reset is being answered: ask again";
+      return true;
+    }
     Permit permit;
     Permit before;
     if (seen(permit)) before = permit;
@@ -121,8 +134,9 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
 
   std::vector<std::string> command_topics_;
   ros::Publisher status_;
-  ros::Subscriber e_stop_;
-  ros::Subscriber heartbeat_;
+  InputTopic<BoundedBool> e_stop_{"e_stop", 10};
+  InputTopic<BoundedEmpty> heartbeat_{"heartbeat", 1};
+  InputTopic<BoundedFloat64> clearance_{"clearance", 1};
   ros::ServiceServer trigger_;
   ros::ServiceServer reset_;
   std::mutex input_mutex_;

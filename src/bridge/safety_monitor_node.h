@@ -1,5 +1,5 @@
 #pragma once
-/// safety_monitor: e_stop, heartbeat in; safety_status (latched) out; services e_stop_trigger, e_stop_reset.
+/// safety_monitor: e_stop, heartbeat, clearance in; safety_status (latched) out; services e_stop_trigger, e_stop_reset.
 
 #include <memory>
 

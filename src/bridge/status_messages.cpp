@@ -1,5 +1,9 @@
 #include "bridge/status_messages.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
 #include <span>
 
 #include "signals/names.h"
@@ -28,10 +32,38 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// "17.3 rad/s"
+std::string quantity(double value, std::string_view unit) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g ", value);
+  return std::string(text.data()).append(unit);
+}
+
+/// "the battery is low: 20.9 V, limit 21 V (charge it soon)"
+std::string warning_sentence(const BitName& row, const std::string& measured) {
+  std::string text(row.sentence);
+  if (!measured.empty()) text.append(": ").append(measured);
+  return text.append(" (").append(row.remedy).append(")");
+}
+
 }  // namespace
 
-msg::SafetyStatus safety_status(const Permit& permit, const std::vector<std::string>& absent, const TimeMap& time,
-                                std::int64_t period_ns) {
+std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& robot) {
+  const auto* evidence = std::ranges::find(permit.evidence, cause, &CauseEvidence::cause);
+  const BitName* row = row_of(kStopCauseNames, cause);
+  if (evidence == permit.evidence.end() || row == nullptr) return {};
+  std::string text;
+  if (!row->unit.empty()) {
+    text = quantity(evidence->value, row->unit) + ", limit " + quantity(evidence->limit, row->unit);
+  }
+  if (evidence->joint < robot.joints.size()) {
+    text.append(text.empty() ? "" : ", ").append(robot.joints[evidence->joint].name);
+  }
+  return text;
+}
+
+msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, const std::vector<std::string>& absent,
+                                const TimeMap& time, std::int64_t period_ns) {
   msg::SafetyStatus message;
   message.header.stamp = time.at(permit.head.stamp_ns);
   message.state = static_cast<std::uint8_t>(permit.state);
@@ -42,11 +74,19 @@ msg::SafetyStatus safety_status(const Permit& permit, const std::vector<std::str
   message.since = time.at(permit.head.stamp_ns - cycles * period_ns);
   for (const BitName& row : kStopCauseNames) {
     if ((permit.active & row.bit) != 0) message.active.emplace_back(row.name);
+    if ((permit.warnings & row.bit) != 0) {
+      message.warnings.emplace_back(row.name);
+      message.warning_sentences.push_back(warning_sentence(row, detail(permit, row.bit, robot)));
+    }
     if ((permit.causes & row.bit) == 0) continue;
     message.causes.emplace_back(row.name);
     message.sentences.emplace_back(row.sentence);
     message.remedies.emplace_back(row.remedy);
+    message.actors.emplace_back(row.actor);
+    message.details.push_back(detail(permit, row.bit, robot));
   }
+  message.speed_limit =
+      permit.speed_limit < kNoSpeedLimit ? permit.speed_limit : std::numeric_limits<double>::infinity();
   message.first_cause = names_of(kStopCauseNames, permit.first_cause);
   assign(message.missing, absent);
   if (absent.empty() && permit.state == SupervisorState::kInit) {
@@ -65,13 +105,15 @@ msg::SafetyStatus waiting_status(const std::vector<std::string>& missing) {
   message.state_name = name_of(SupervisorState::kInit);
   message.permit = msg::SafetyStatus::PERMIT_BRAKE;
   message.permit_name = name_of(PermitAction::kBrake);
+  message.speed_limit = std::numeric_limits<double>::infinity();
   assign(message.missing, missing);
   return message;
 }
 
 bool news(const Permit& last, const Permit& now) {
   return last.state != now.state || last.action != now.action || last.causes != now.causes ||
-         last.active != now.active || last.first_cause != now.first_cause || last.missing != now.missing ||
+         last.active != now.active || last.warnings != now.warnings || last.speed_limit != now.speed_limit ||
+         last.first_cause != now.first_cause || last.missing != now.missing ||
          last.resets_handled != now.resets_handled || last.reset_refusal != now.reset_refusal ||
          last.head.run != now.head.run;
 }

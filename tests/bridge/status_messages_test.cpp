@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <ros/time.h>
 
+#include <limits>
+
 namespace robot_control {
 namespace {
 
@@ -21,9 +23,13 @@ class SafetyStatusTest : public testing::Test {
     permit_.action = PermitAction::kDrive;
     permit_.state = SupervisorState::kReady;
     permit_.since_cycle = 500;
+    permit_.speed_limit = kNoSpeedLimit;
+    robot_.joints.resize(2);
+    robot_.joints[0].name = "left_wheel_joint";
+    robot_.joints[1].name = "right_wheel_joint";
   }
 
-  msg::SafetyStatus message() const { return safety_status(permit_, absent_, time_, kPeriod); }
+  msg::SafetyStatus message() const { return safety_status(permit_, robot_, absent_, time_, kPeriod); }
 
   Permit stopped() const {
     Permit stopped = permit_;
@@ -35,6 +41,7 @@ class SafetyStatusTest : public testing::Test {
   std::vector<std::string> absent_;
   TimeMap time_{ClockMode::kLockstep};  // stamps are ROS time
   Permit permit_;
+  RobotModel robot_;
 };
 
 TEST_F(SafetyStatusTest, SaysThatAHealthyRobotMayDrive) {
@@ -66,6 +73,43 @@ TEST_F(SafetyStatusTest, HasASentenceAndARemedyForEveryCause) {
   for (const std::string& text : status.remedies) EXPECT_THAT(text, Not(IsEmpty()));
 }
 
+TEST_F(SafetyStatusTest, SaysWhoHasToActForEveryCause) {
+  permit_.causes = kCauseEmergencyStopTopic | kCauseControllerLost | kCauseStall;
+  EXPECT_THAT(message().actors, ElementsAre("operator", "integrator", "technician"));
+}
+
+TEST_F(SafetyStatusTest, HasWhatWasMeasuredBesideItsCause) {
+  permit_.causes = kCauseEmergencyStopTopic | kCauseWheelSpeed | kCauseTilt;
+  permit_.evidence[0] = {.cause = kCauseTilt, .value = 0.4, .limit = 0.35};
+  permit_.evidence[1] = {.cause = kCauseWheelSpeed, .joint = 0, .value = 17.3, .limit = 15};
+  EXPECT_THAT(message().details,
+              ElementsAre("", "17.3 rad/s, limit 15 rad/s, left_wheel_joint", "0.4 rad, limit 0.35 rad"));
+}
+
+// A joint of another robot's model, or a cause whose evidence found no room.
+TEST_F(SafetyStatusTest, InventsNoEvidence) {
+  permit_.causes = kCauseTilt;
+  EXPECT_THAT(message().details, ElementsAre(""));
+  permit_.evidence[0] = {.cause = kCauseTilt, .joint = 7, .value = 0.4, .limit = 0.35};
+  EXPECT_THAT(message().details, ElementsAre("0.4 rad, limit 0.35 rad"));
+}
+
+TEST_F(SafetyStatusTest, TellsWarningsBesideTheCauses) {
+  permit_.warnings = kCauseBatteryLow;
+  permit_.evidence[0] = {.cause = kCauseBatteryLow, .value = 20.9, .limit = 21};
+  const msg::SafetyStatus status = message();
+  EXPECT_THAT(status.warnings, ElementsAre("battery_low"));
+  EXPECT_THAT(status.warning_sentences, ElementsAre("the battery is low: 20.9 V, limit 21 V (charge it soon)"));
+  EXPECT_THAT(status.causes, IsEmpty());
+}
+
+TEST_F(SafetyStatusTest, TellsTheSpeedLimitWhereThereIsOne) {
+  EXPECT_EQ(message().speed_limit, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(waiting_status({}).speed_limit, std::numeric_limits<double>::infinity());
+  permit_.speed_limit = 0.3;
+  EXPECT_EQ(message().speed_limit, 0.3);
+}
+
 TEST_F(SafetyStatusTest, NamesWhoIsMissingInInitAlone) {
   permit_.missing = kMissingState;
   EXPECT_THAT(message().missing, IsEmpty());
@@ -81,6 +125,12 @@ TEST_F(SafetyStatusTest, TellsNewsFromRepetition) {
   EXPECT_TRUE(news(permit_, later));
   later = permit_;
   later.resets_handled = 1;
+  EXPECT_TRUE(news(permit_, later));
+  later = permit_;
+  later.warnings = kCauseBatteryLow;
+  EXPECT_TRUE(news(permit_, later));
+  later = permit_;
+  later.speed_limit = 0.3;
   EXPECT_TRUE(news(permit_, later));
 }
 

@@ -1,0 +1,57 @@
+#pragma once
+/// A topic into the loop: sent without delay, its queue bounded, its messages of the right length.
+///
+/// A flood costs the ordinary threads of ROS time and nobody else: the queue drops its oldest message, and what is
+/// heard goes into an inbox that keeps the latest value alone (rt/latest_value.h).
+
+#include <ros/ros.h>
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "bridge/bounded_message.h"
+#include "rt/clock.h"
+
+namespace robot_control {
+
+template <class BoundedMessage>
+class InputTopic {
+ public:
+  using Message = decltype(BoundedMessage::message);
+
+  /// Queue lengths: 1 where only the latest message counts, more where none must be lost.
+  InputTopic(std::string name, std::uint32_t queue) : name_(std::move(name)), queue_(queue) {}
+  InputTopic(const InputTopic&) = delete;
+  InputTopic& operator=(const InputTopic&) = delete;
+
+  /// `malformed`: called instead of `hear` for what cannot be a message of this type. That is told every 10 s at most.
+  void connect(
+      ros::NodeHandle& handle, std::function<void(const Message&)> hear, std::function<void()> malformed = [] {}) {
+    subscriber_ = handle.subscribe<BoundedMessage>(
+        name_, queue_,
+        [this, hear, malformed](const typename BoundedMessage::ConstPtr& heard) {
+          if (heard->accepted) return hear(heard->message);
+          malformed();
+          tell();
+        },
+        nullptr, ros::TransportHints().tcpNoDelay());
+  }
+
+ private:
+  void tell() {
+    constexpr std::int64_t kSilence = 10'000'000'000;  // ns
+    const std::int64_t now_ns = monotonic_ns();
+    if (told_ns_ != 0 && now_ns - told_ns_ < kSilence) return;
+    told_ns_ = now_ns;
+    ROS_WARN("%s: a message of the wrong length was refused; look who publishes it: rostopic info %s", name_.c_str(),
+             subscriber_.getTopic().c_str());
+  }
+
+  std::string name_;
+  std::uint32_t queue_;
+  ros::Subscriber subscriber_;
+  std::atomic<std::int64_t> told_ns_{0};
+};
+
+}  // namespace robot_control

@@ -1,0 +1,79 @@
+#include "bridge/diagnostics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+using testing::HasSubstr;
+
+std::string value_of(const DiagnosticReport& report, const std::string& key) {
+  for (const msg::KeyValue& pair : report.message().values) {
+    if (pair.key == key) return pair.value;
+  }
+  return "(none)";
+}
+
+class PermitReport : public testing::Test {
+ protected:
+  PermitReport() {
+    permit_.state = SupervisorState::kDrive;
+    permit_.action = PermitAction::kDrive;
+    permit_.speed_limit = kNoSpeedLimit;
+  }
+
+  DiagnosticReport report() const {
+    DiagnosticReport report("safety_monitor", "diffbot");
+    report_permit(report, permit_);
+    return report;
+  }
+
+  Permit permit_;
+};
+
+TEST_F(PermitReport, IsContentWithAHealthyRobot) {
+  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+  EXPECT_EQ(value_of(report(), "state"), "DRIVE");
+  EXPECT_EQ(value_of(report(), "speed_limit_m_s"), "(none)");
+}
+
+TEST_F(PermitReport, WarnsOfWarnings) {
+  permit_.warnings = kCauseBatteryLow;
+  permit_.speed_limit = 0.3;
+  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_THAT(report().message().message, HasSubstr("the battery is low"));
+  EXPECT_EQ(value_of(report(), "warnings"), "battery_low");
+  EXPECT_EQ(value_of(report(), "speed_limit_m_s"), "0.3");
+}
+
+TEST_F(PermitReport, ACauseOutweighsAWarning) {
+  permit_.warnings = kCauseBatteryLow;
+  permit_.causes = kCauseTilt;
+  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::ERROR));
+  EXPECT_THAT(report().message().message, HasSubstr("tilted too far"));
+}
+
+TEST(CommandReasons, AreEachAValueInWords) {
+  CommandFrame command;
+  command.reasons = kReasonTimedOut | kReasonHolding;
+  command.twist_requested.linear[0] = 0.5;
+  DiagnosticReport report("diff_drive_controller", "diffbot");
+  report_command(report, command);
+  EXPECT_EQ(value_of(report, "reasons"), "timed_out holding");
+  EXPECT_THAT(value_of(report, "command: timed_out"), HasSubstr("older than cmd_vel_timeout (publish on cmd_vel"));
+  EXPECT_EQ(value_of(report, "command: holding"), "standing with zero command: the brake holds the position");
+  EXPECT_EQ(value_of(report, "command: no_command"), "(none)");
+  EXPECT_EQ(value_of(report, "requested_m_s"), "0.5");
+}
+
+TEST(GateReasons, AreEachAValueInWords) {
+  SensorFrame sensors;
+  sensors.gate.reasons = kGatePermitBrake;
+  DiagnosticReport report("mujoco_plant", "diffbot");
+  report_driver(report, sensors, 1.0);
+  EXPECT_EQ(value_of(report, "gate: permit_brake"), "the permit orders the brake (read the cause in safety_status)");
+}
+
+}  // namespace
+}  // namespace robot_control
