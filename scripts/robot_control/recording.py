@@ -11,6 +11,7 @@ TOPICS = (
     "cmd_vel_stamped",
     "e_stop",
     "heartbeat",
+    "clearance",
     "joint_commands",
     "joint_targets",
     "joint_states",

@@ -1,0 +1,322 @@
+"""Why does it not move? From what is known of a robot, the one answer; no ROS in here."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
+LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
+
+SILENCE = 3.0
+"""s; every node reports once per second: after three it is not there, or hangs."""
+
+MOVING = 0.01
+"""m/s and rad/s; slower is standing."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What stopped the robot."""
+
+    name: str
+    sentence: str
+    remedy: str
+    actor: str = ""  # operator, integrator, technician
+    detail: str = ""  # measured value and limit
+    first: bool = False  # it came first
+    active: bool = False  # it is still true
+
+
+@dataclass(frozen=True)
+class Safety:
+    """What safety_monitor said last."""
+
+    state: str  # INIT, READY, DRIVE, STOPPING, STOPPED, FAULT
+    permit: str  # brake, ramp, drive
+    held: float = 0.0  # s in this state
+    age: float = 0.0  # s since it was said
+    causes: tuple[Cause, ...] = ()
+    warnings: tuple[str, ...] = ()
+    speed_limit: float = float("inf")  # m/s
+    missing: tuple[str, ...] = ()  # nodes, or what of them was not seen
+    refusal: tuple[str, ...] = ()  # of the last reset
+
+
+@dataclass(frozen=True)
+class Report:
+    """A node's entry on /diagnostics."""
+
+    message: str = ""
+    values: Mapping[str, str] = field(default_factory=dict)
+    age: float = 0.0  # s since it was heard
+
+    def reasons(self, whose: str) -> dict[str, str]:
+        """Name → sentence of the values "whose: name"."""
+        start = f"{whose}: "
+        return {key.removeprefix(start): text for key, text in self.values.items() if key.startswith(start)}
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Everything that the answer depends on."""
+
+    master: str  # URI
+    master_answers: bool = True
+    namespace: str = "/"
+    safety: Safety | None = None
+    reports: Mapping[str, Report] = field(default_factory=dict)  # by node, below the namespace
+    registered: frozenset[str] = frozenset()  # nodes that the master knows, below the namespace
+    elsewhere: tuple[str, ...] = ()  # namespaces of other robots
+    senders: tuple[str, ...] = ()  # on cmd_vel and cmd_vel_stamped
+    limited: tuple[float, float] | None = None  # m/s, rad/s: the command after limits
+    measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
+
+    def there(self, node: str) -> bool:
+        """Does it speak?"""
+        report = self.reports.get(node)
+        return report is not None and report.age < SILENCE
+
+    def heard(self) -> Safety | None:
+        """The monitor's word, unless it is too old to count."""
+        fresh = self.safety is not None and self.safety.age < SILENCE
+        return self.safety if fresh else None
+
+    def value(self, node: str, key: str) -> str:
+        """Of a node that speaks; else empty."""
+        return self.reports[node].values.get(key, "") if self.there(node) else ""
+
+    def reasons(self, node: str, whose: str) -> dict[str, str]:
+        """Likewise."""
+        return self.reports[node].reasons(whose) if self.there(node) else {}
+
+    def path(self, name: str) -> str:
+        """The absolute name of a topic or service."""
+        return f"{self.namespace.rstrip('/')}/{name}"
+
+
+class Verdict(Enum):
+    """Into how many words the answer fits."""
+
+    STOPPED = "stopped"  # something stands against motion
+    IDLE = "idle"  # it may move, and nobody tells it to
+    MOVING = "moving"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a user wants to know first."""
+
+    verdict: Verdict
+    headline: str
+    actions: tuple[tuple[str, str], ...] = ()  # who has to act ("" where anybody may), what to do
+    commands: tuple[str, ...] = ()  # lines for a shell
+
+
+def judge(facts: Facts) -> Answer:
+    """The answer: of all that stands against motion, what has to be mended first."""
+    for look in (_nobody, _paused, _stopped, _gate, _controller):
+        answer = look(facts)
+        if answer is not None:
+            return answer
+    return _moving(facts)
+
+
+def missing_nodes(facts: Facts) -> tuple[str, ...]:
+    """Nodes of the loop that are not there; the monitor, which sees their locks, knows it sooner than reports do."""
+    safety = facts.heard()
+    if safety is None:
+        return tuple(node for node in LOOP if not facts.there(node))
+    return tuple(node for node in LOOP if node in safety.missing)
+
+
+def senders_in_words(senders: tuple[str, ...]) -> str:
+    """Who publishes on cmd_vel."""
+    if not senders:
+        return "nobody"
+    if len(senders) == 1:
+        return senders[0]
+    return f"{', '.join(senders)} ({len(senders)} senders: each message overrides the one before)"
+
+
+def _launch(facts: Facts) -> str:
+    namespace = f" __ns:={facts.namespace}" if facts.namespace != "/" else ""
+    return f"roslaunch robot_control sim.launch{namespace}"
+
+
+def _run(facts: Facts, node: str) -> str:
+    namespace = f" __ns:={facts.namespace}" if facts.namespace != "/" else ""
+    return f"rosrun robot_control {node}{namespace}"
+
+
+def _nobody(facts: Facts) -> Answer | None:
+    safety = facts.heard()
+    if safety is None and not facts.master_answers:
+        return Answer(
+            Verdict.STOPPED,
+            f"There is no ROS master at {facts.master}.",
+            (("", "start it with the robot, or set ROS_MASTER_URI to where it runs"),),
+            (_launch(facts),),
+        )
+    absent = missing_nodes(facts)
+    if safety is None and len(absent) == len(LOOP):
+        where = "" if facts.namespace == "/" else f" in {facts.namespace}"
+        commands = [_launch(facts)]
+        commands += [f"rosrun robot_control why.py __ns:={other}" for other in facts.elsewhere]
+        text = f"a robot runs in {', '.join(facts.elsewhere)}: ask there, or start" if facts.elsewhere else "start"
+        return Answer(Verdict.STOPPED, f"No node of the robot runs{where}.", (("", f"{text} one"),), tuple(commands))
+    if safety is None:
+        state = "hangs" if MONITOR in facts.registered and facts.there(MONITOR) else "does not run"
+        return Answer(
+            Verdict.STOPPED,
+            f"{MONITOR} {state}: without its permit the gate brakes.",
+            (("integrator", f"start {MONITOR}"),),
+            (_run(facts, MONITOR),),
+        )
+    return None
+
+
+def _paused(facts: Facts) -> Answer | None:
+    if facts.value(PLANT, "driver_state") != "paused":
+        return None
+    return Answer(
+        Verdict.STOPPED,
+        "The simulation is paused.",
+        (("", "let it run"),),
+        (f"rosservice call {facts.path(PLANT)}/set_pause false",),
+    )
+
+
+def _stopped(facts: Facts) -> Answer | None:
+    safety = facts.heard()
+    if safety is None or safety.state in {"READY", "DRIVE"}:
+        return None
+    absent = missing_nodes(facts)
+    if safety.state == "INIT" or not safety.causes:
+        who = ", ".join(safety.missing) or "the first cycles"
+        return Answer(
+            Verdict.STOPPED,
+            f"Not ready: the monitor waits for {who}.",
+            tuple(("integrator", f"start {node}") for node in absent),
+            tuple(_run(facts, node) for node in absent),
+        )
+    causes = sorted(safety.causes, key=lambda cause: not cause.first)
+    doing = "Stopping" if safety.state == "STOPPING" else "Stopped"
+    measured = f" ({causes[0].detail})" if causes[0].detail else ""
+    return Answer(
+        Verdict.STOPPED,
+        f"{doing}: {causes[0].sentence}{measured}.",
+        tuple(_actions(facts, causes, absent)),
+        tuple(_commands(facts, causes, absent)),
+    )
+
+
+def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    for node in absent:
+        yield "integrator", f"start {node}"
+    told = set()
+    for cause in causes:
+        remedy = cause.remedy.removesuffix("then call e_stop_reset").rstrip(", ")
+        if remedy and remedy != "call e_stop_reset" and remedy not in told:
+            told.add(remedy)
+            yield cause.actor, remedy
+    asked = any(facts.value(CONTROLLER, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
+    if asked and facts.senders:
+        yield "operator", f"stop {', '.join(facts.senders)}: while a motion is asked for, a reset is refused"
+    yield "operator", "then call e_stop_reset" if told or absent or asked else "call e_stop_reset"
+
+
+def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[str]:
+    for node in absent:
+        yield _run(facts, node)
+    if any(cause.name == "e_stop_topic" and cause.active for cause in causes):
+        yield f"rostopic pub -1 {facts.path('e_stop')} std_msgs/Bool false"
+    yield f"rosservice call {facts.path('e_stop_reset')}"
+
+
+def _gate(facts: Facts) -> Answer | None:
+    # What follows from permit or command is told by those; a report is a second old, a permit is not.
+    theirs = {"permit_brake", "controller_brake", "first_tick", "command_held"}
+    reasons = {name: text for name, text in facts.reasons(PLANT, "gate").items() if name not in theirs}
+    if facts.value(PLANT, "gate_verdict") != "brake" or not reasons:
+        return None
+    return Answer(
+        Verdict.STOPPED,
+        f"The gate brakes: {bare(next(iter(reasons.values())))}.",
+        tuple(("integrator", remedy_of(text)) for text in reasons.values() if remedy_of(text)),
+    )
+
+
+def _controller(facts: Facts) -> Answer | None:
+    absent = [node for node in (ESTIMATOR, CONTROLLER) if node in missing_nodes(facts)]
+    if absent:
+        return Answer(
+            Verdict.STOPPED,
+            f"{' and '.join(absent)} {'do' if len(absent) > 1 else 'does'} not run.",
+            tuple(("integrator", f"start {node}") for node in absent),
+            tuple(_run(facts, node) for node in absent),
+        )
+    reasons = facts.reasons(CONTROLLER, "command")
+    for name in ("bad_sensors", "no_state", "no_permit"):
+        if name in reasons:
+            return Answer(
+                Verdict.STOPPED, f"The controller brakes: {bare(reasons[name])}.", (("", remedy_of(reasons[name])),)
+            )
+    for name in ("refused", "timed_out", "no_command"):
+        if name not in reasons:
+            continue
+        text = bare(reasons[name])
+        if name == "timed_out" and facts.value(CONTROLLER, "requested_m_s"):
+            text += " and so is taken for zero"
+        remedy = remedy_of(reasons[name])
+        if facts.senders:
+            remedy = f"look at {', '.join(facts.senders)}: {remedy}"
+        return Answer(
+            Verdict.IDLE,
+            f"It may move, but nobody tells it to: {text}.",
+            (("operator", remedy),),
+            () if facts.senders else (f"rosrun robot_control send_cmd.py{_namespace(facts)}",),
+        )
+    if "holding" in reasons and not _told(facts):
+        return Answer(
+            Verdict.IDLE,
+            "It may move, but is told to stand: cmd_vel is zero.",
+            (("operator", f"publishing on cmd_vel: {senders_in_words(facts.senders)}"),),
+        )
+    return None
+
+
+def _namespace(facts: Facts) -> str:
+    return "" if facts.namespace == "/" else f" __ns:={facts.namespace}"
+
+
+def _told(facts: Facts) -> bool:
+    return facts.limited is not None and max(map(abs, facts.limited)) > MOVING
+
+
+def speeds(pair: tuple[float, float]) -> str:
+    """Both with their units."""
+    return f"{pair[0]:.2f} m/s, {pair[1]:.2f} rad/s"
+
+
+def _moving(facts: Facts) -> Answer:
+    safety = facts.heard()
+    slow = f", no faster than {safety.speed_limit:.2g} m/s" if safety and safety.speed_limit < float("inf") else ""
+    if facts.measured is not None and max(map(abs, facts.measured)) > MOVING:
+        return Answer(Verdict.MOVING, f"It moves: {speeds(facts.measured)}{slow}.")
+    if _told(facts) and facts.limited is not None:
+        return Answer(
+            Verdict.MOVING,
+            f"It is told to move ({speeds(facts.limited)}) and has not begun to{slow}.",
+            (("", "if it stays so: look at ground, motors and torque limits"),),
+        )
+    return Answer(Verdict.IDLE, f"It may move{slow}; nothing stands against it, and nothing is asked of it.")
+
+
+def bare(text: str) -> str:
+    """A sentence without the remedy in brackets behind it."""
+    return text.partition(" (")[0]
+
+
+def remedy_of(text: str) -> str:
+    """The remedy in brackets behind a sentence; empty where there is none."""
+    return text.partition(" (")[2].removesuffix(")")

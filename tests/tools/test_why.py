@@ -1,0 +1,283 @@
+"""What why.py answers, without ROS. The fixture drives; each test breaks one thing."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from robot_control.why import CONTROLLER, ESTIMATOR, LOOP, MONITOR, PLANT, Cause, Facts, Report, Safety, Verdict, judge
+from robot_control.why_screen import Look, render
+
+E_STOP = Cause(
+    "e_stop_topic",
+    "the topic e_stop said true",
+    "publish false on e_stop, then call e_stop_reset",
+    "operator",
+    first=True,
+    active=True,
+)
+FAST = Cause(
+    "wheel_speed",
+    "a wheel is faster than allowed",
+    "look at load, slope, encoder and motor of that wheel, then call e_stop_reset",
+    "technician",
+    "17.3 rad/s, limit 15 rad/s, left_wheel_joint",
+)
+PAUSED = {"driver_state": "paused"}
+
+
+@pytest.fixture
+def driving() -> Facts:
+    return Facts(
+        master="http://127.0.0.1:11311",
+        safety=Safety("DRIVE", "drive", held=12.0),
+        reports={
+            PLANT: Report("running", {"driver_state": "running", "gate_verdict": "passed", "injected": "none"}),
+            ESTIMATOR: Report("running", {"flags": "valid"}),
+            CONTROLLER: Report("running", {"requested_m_s": "0.5", "requested_rad_s": "0.2"}),
+            MONITOR: Report("running"),
+        },
+        registered=frozenset(LOOP),
+        senders=("/send_cmd",),
+        limited=(0.5, 0.2),
+        measured=(0.5, 0.2),
+    )
+
+
+def without(facts: Facts, *nodes: str) -> Facts:
+    """These nodes are gone, and the monitor, if there, says so."""
+    reports = {name: report for name, report in facts.reports.items() if name not in nodes}
+    safety = None if MONITOR in nodes else replace(facts.safety, missing=nodes)
+    return replace(facts, reports=reports, safety=safety, measured=None)
+
+
+def saying(facts: Facts, node: str, **values: str) -> Facts:
+    """A node reports these values, too; `gate__x` stands for the key "gate: x"."""
+    old = facts.reports[node]
+    keys = {key.replace("__", ": "): value for key, value in values.items()}
+    return replace(facts, reports={**facts.reports, node: replace(old, values={**old.values, **keys})})
+
+
+def stopped(facts: Facts, *causes: Cause, state: str = "STOPPED") -> Facts:
+    return replace(
+        facts, safety=Safety(state, "brake", held=3.0, causes=causes), measured=(0.0, 0.0), limited=(0.0, 0.0)
+    )
+
+
+def text(facts: Facts, **look) -> str:
+    return "\n".join(render(facts, Look(**look)))
+
+
+def test_a_moving_robot_moves(driving):
+    answer = judge(driving)
+    assert answer.verdict is Verdict.MOVING
+    assert answer.headline == "It moves: 0.50 m/s, 0.20 rad/s."
+    assert not answer.actions
+
+
+def test_without_a_master_it_says_what_to_start():
+    answer = judge(Facts(master="http://127.0.0.1:11311", master_answers=False))
+    assert answer.verdict is Verdict.STOPPED
+    assert answer.headline == "There is no ROS master at http://127.0.0.1:11311."
+    assert answer.commands == ("roslaunch robot_control sim.launch",)
+
+
+def test_a_master_alone_is_no_robot():
+    answer = judge(Facts(master="http://127.0.0.1:11311"))
+    assert answer.headline == "No node of the robot runs."
+    assert answer.commands == ("roslaunch robot_control sim.launch",)
+
+
+def test_it_names_the_namespace_in_which_a_robot_runs():
+    facts = Facts(master="http://127.0.0.1:11311", elsewhere=("/robot2",))
+    assert "rosrun robot_control why.py __ns:=/robot2" in judge(facts).commands
+
+
+def test_it_asks_for_a_robot_in_its_own_namespace():
+    answer = judge(Facts(master="http://127.0.0.1:11311", namespace="/robot2"))
+    assert answer.headline == "No node of the robot runs in /robot2."
+    assert answer.commands == ("roslaunch robot_control sim.launch __ns:=/robot2",)
+
+
+def test_without_a_monitor_the_gate_brakes(driving):
+    answer = judge(without(driving, MONITOR))
+    assert "safety_monitor does not run" in answer.headline
+    assert answer.commands == ("rosrun robot_control safety_monitor",)
+
+
+def test_what_the_monitor_said_long_ago_does_not_count(driving):
+    late = replace(driving, safety=replace(driving.safety, age=10.0))
+    assert "safety_monitor" in judge(late).headline
+
+
+def test_before_everybody_was_seen_it_names_who_is_missing(driving):
+    waiting = without(driving, PLANT)
+    waiting = replace(waiting, safety=replace(waiting.safety, state="INIT", permit="brake"))
+    answer = judge(waiting)
+    assert answer.headline == "Not ready: the monitor waits for mujoco_plant."
+    assert answer.commands == ("rosrun robot_control mujoco_plant",)
+    assert "mujoco_plant MISSING" in text(waiting)
+
+
+def test_a_stop_is_told_by_its_first_cause_with_value_and_limit(driving):
+    facts = stopped(driving, E_STOP, replace(FAST, first=True), state="STOPPED")
+    facts = replace(
+        facts, safety=replace(facts.safety, causes=(replace(E_STOP, first=False), replace(FAST, first=True)))
+    )
+    assert judge(facts).headline == (
+        "Stopped: a wheel is faster than allowed (17.3 rad/s, limit 15 rad/s, left_wheel_joint)."
+    )
+    lines = text(facts)
+    assert lines.index("wheel_speed:") < lines.index("e_stop_topic:")
+    assert "[first]" in lines
+    assert "[still true]" in lines
+
+
+def test_who_has_to_act_stands_before_what(driving):
+    answer = judge(stopped(saying(driving, CONTROLLER, requested_m_s="0", requested_rad_s="0"), E_STOP, FAST))
+    assert answer.actions == (
+        ("operator", "publish false on e_stop"),
+        ("technician", "look at load, slope, encoder and motor of that wheel"),
+        ("operator", "then call e_stop_reset"),
+    )
+    assert answer.commands == ("rostopic pub -1 /e_stop std_msgs/Bool false", "rosservice call /e_stop_reset")
+
+
+def test_who_still_asks_for_motion_is_named_before_the_reset(driving):
+    actions = judge(stopped(driving, E_STOP)).actions
+    assert actions[-2] == ("operator", "stop /send_cmd: while a motion is asked for, a reset is refused")
+    assert actions[-1] == ("operator", "then call e_stop_reset")
+
+
+def test_a_ramp_is_told_as_going_on(driving):
+    assert judge(stopped(driving, FAST, state="STOPPING")).headline.startswith("Stopping: ")
+
+
+def test_a_lost_node_is_started_first(driving):
+    cause = Cause(
+        "controller_lost", "the controller published no command", "look whether it runs, then call e_stop_reset"
+    )
+    facts = stopped(without(driving, CONTROLLER), cause)
+    facts = replace(facts, safety=replace(facts.safety, missing=(CONTROLLER,)))
+    assert judge(facts).commands[0] == "rosrun robot_control diff_drive_controller"
+
+
+def test_commands_are_for_the_robots_own_namespace(driving):
+    facts = replace(stopped(driving, E_STOP), namespace="/robot2")
+    assert "rosservice call /robot2/e_stop_reset" in judge(facts).commands
+
+
+def test_a_paused_simulation_is_told_before_a_stop(driving):
+    facts = saying(stopped(driving, E_STOP), PLANT, **PAUSED)
+    answer = judge(facts)
+    assert answer.headline == "The simulation is paused."
+    assert answer.commands == ("rosservice call /mujoco_plant/set_pause false",)
+    assert "e_stop_topic" in text(facts)
+
+
+def test_nobody_who_commands_is_no_fault(driving):
+    facts = saying(
+        driving, CONTROLLER, command__no_command="nothing was received on cmd_vel in this run (publish on cmd_vel)"
+    )
+    answer = judge(replace(facts, senders=(), limited=(0.0, 0.0), measured=(0.0, 0.0)))
+    assert answer.verdict is Verdict.IDLE
+    assert answer.headline == "It may move, but nobody tells it to: nothing was received on cmd_vel in this run."
+    assert answer.commands == ("rosrun robot_control send_cmd.py",)
+
+
+def test_a_silent_sender_is_named(driving):
+    facts = saying(
+        driving, CONTROLLER, command__timed_out="the last cmd_vel is older than cmd_vel_timeout (publish more often)"
+    )
+    answer = judge(replace(facts, measured=(0.0, 0.0)))
+    assert "older than cmd_vel_timeout" in answer.headline
+    assert answer.actions == (("operator", "look at /send_cmd: publish more often"),)
+
+
+def test_zero_on_cmd_vel_is_told_as_such(driving):
+    facts = saying(driving, CONTROLLER, command__holding="standing with zero command: the brake holds the position")
+    answer = judge(replace(facts, limited=(0.0, 0.0), measured=(0.0, 0.0)))
+    assert answer.headline == "It may move, but is told to stand: cmd_vel is zero."
+
+
+def test_several_senders_are_all_named(driving):
+    lines = " ".join(text(replace(driving, senders=("/send_cmd", "/teleop"))).split())
+    assert "published by /send_cmd, /teleop (2 senders: each message overrides the one before)" in lines
+
+
+def test_a_gate_that_brakes_by_itself_is_told(driving):
+    facts = saying(
+        driving,
+        PLANT,
+        gate_verdict="brake",
+        gate__no_command="there is no command of the last 4 cycles (look whether diff_drive_controller runs)",
+    )
+    answer = judge(facts)
+    assert answer.headline == "The gate brakes: there is no command of the last 4 cycles."
+    assert answer.actions == (("integrator", "look whether diff_drive_controller runs"),)
+
+
+def test_a_gate_that_obeys_a_permit_of_a_second_ago_is_no_answer(driving):
+    facts = saying(driving, PLANT, gate_verdict="brake", gate__permit_brake="the permit orders the brake")
+    assert judge(facts).verdict is Verdict.MOVING
+
+
+def test_a_controller_without_state_is_told(driving):
+    facts = saying(driving, CONTROLLER, command__no_state="the state of this cycle is missing (start state_estimator)")
+    assert judge(facts).headline == "The controller brakes: the state of this cycle is missing."
+
+
+def test_told_to_move_and_standing_is_not_called_moving(driving):
+    assert "has not begun to" in judge(replace(driving, measured=(0.0, 0.0))).headline
+
+
+def test_warnings_and_the_speed_limit_they_bring_are_shown(driving):
+    warning = "the battery is low: 20.9 V, limit 21 V (charge it soon)"
+    facts = replace(driving, safety=replace(driving.safety, warnings=(warning,), speed_limit=0.3))
+    assert "no faster than 0.3 m/s" in judge(facts).headline
+    assert warning in text(facts)
+    assert "no rim faster than 0.3 m/s" in text(facts)
+
+
+def test_a_refused_reset_says_why(driving):
+    facts = stopped(driving, E_STOP)
+    facts = replace(
+        facts, safety=replace(facts.safety, refusal=("a motion is still being asked for (stop the sender)",))
+    )
+    assert "refused: a motion is still being asked for" in text(facts)
+
+
+def test_a_master_that_died_is_told_while_the_robot_drives_on(driving):
+    facts = replace(driving, master_answers=False)
+    assert judge(facts).verdict is Verdict.MOVING
+    assert "does not answer" in text(facts)
+
+
+def test_injected_faults_and_slip_are_shown(driving):
+    facts = saying(saying(driving, PLANT, injected="gyro stuck"), ESTIMATOR, flags="valid slip")
+    assert "gyro stuck" in text(facts)
+    assert "wheels and inertial sensors disagree" in text(facts)
+
+
+@pytest.mark.parametrize("width", [40, 80, 132])
+def test_no_line_is_wider_than_the_screen(driving, width):
+    facts = stopped(replace(driving, senders=("/send_cmd", "/teleop")), E_STOP, FAST)
+    assert max(map(len, render(facts, Look(width=width)))) <= width
+
+
+def test_a_stop_with_two_causes_fits_one_screen(driving):
+    assert len(render(stopped(driving, E_STOP, FAST), Look(width=80))) <= 23
+
+
+def test_colours_are_for_terminals_and_change_no_word(driving):
+    plain, coloured = text(driving), text(driving, colour=True)
+    assert "\x1b" not in plain
+    assert "\x1b[32;1m" in coloured
+    assert re.sub(r"\x1b\[[0-9;]*m", "", coloured) == plain
+
+
+def test_without_times_the_same_answer_looks_the_same(driving):
+    later = replace(
+        driving, safety=replace(driving.safety, held=60.0, age=0.5), measured=(0.4, 0.1), limited=(0.4, 0.1)
+    )
+    assert text(driving, times=False) == text(later, times=False)
+    assert text(driving) != text(later)
