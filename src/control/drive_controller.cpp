@@ -112,6 +112,17 @@ std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint6
   return usable_now ? 0u : std::uint64_t{kReasonNoState};
 }
 
+/// What was asked for, as far as the permit lets it.
+PlanarTwist DriveController::wish(const Permit* permit, CommandFrame& out) const noexcept {
+  const PlanarTwist requested{out.twist_requested.linear[0], out.twist_requested.angular[2]};
+  if ((out.reasons & kReasonPermitRamp) != 0) return {};
+  if ((out.reasons & (kReasonNoPermit | kReasonPermitBrake)) != 0) return requested;  // it brakes all the same
+  if (permit->speed_limit >= kNoSpeedLimit) return requested;
+  const double scale = kinematics_.rim_speed_scale(requested, permit->speed_limit);
+  if (scale < 1) out.reasons |= kReasonPermitSlow;
+  return {scale * requested.linear, scale * requested.angular};
+}
+
 bool DriveController::slow() const noexcept {
   return std::all_of(loops_.begin(), loops_.end(),
                      [](const WheelLoop& loop) { return std::abs(loop.velocity()) < kStandstillSpeed; });
@@ -167,9 +178,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   if (input.permit != nullptr) permit_cycle_ = input.permit->head.cycle;
 
   if (measure(sensors)) {
-    PlanarTwist wish{out.twist_requested.linear[0], out.twist_requested.angular[2]};
-    if (out.reasons & kReasonPermitRamp) wish = {};
-    drive(wish, sensors, out);
+    drive(wish(input.permit, out), sensors, out);
     for (std::size_t i = 0; i < loops_.size(); ++i) out.velocity_measured[i] = loops_[i].velocity();
   } else {
     out.reasons |= kReasonBadSensors;

@@ -8,7 +8,8 @@
 ///   - the robot holds: zero wish, zero limited twist and all wheels standing (standstill.h); straight after a brake
 ///     all wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
 ///     wish ≠ 0 ends it.
-/// Under a ramp permit the wish is zero and the limits apply. Joints that are not wheels are always braked.
+/// Under a ramp permit the wish is zero and the limits apply; under a permit with a speed limit the wish is scaled
+/// until no rim is faster, along the same curve. Joints that are not wheels are always braked.
 ///
 /// While the wheels do not follow this controller (it brakes, or the gate reports that tick k−1 was braked) limiter
 /// and wheel loops are seeded with the measured speed, cycle by cycle, so nothing jumps at release: the first torque
@@ -67,6 +68,7 @@ class DriveController {
   bool track(const WheelValues& angle, const SensorFrame& sensors) noexcept;
   std::uint64_t permit_reasons(const Permit* permit, std::uint64_t cycle) const noexcept;
   std::uint64_t state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept;
+  PlanarTwist wish(const Permit* permit, CommandFrame& out) const noexcept;
   bool slow() const noexcept;
   void follow_measured(const SensorFrame& sensors) noexcept;
   void drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept;

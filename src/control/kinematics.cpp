@@ -62,4 +62,11 @@ double DriveKinematics::wheel_speed_scale(const PlanarTwist& twist) const noexce
   return scale;
 }
 
+double DriveKinematics::rim_speed_scale(const PlanarTwist& twist, double limit) const noexcept {
+  const SidePair rim = rim_speeds(twist);
+  const double fastest = std::max(std::abs(rim.left), std::abs(rim.right));
+  const double allowed = limit > 0 ? limit : 0;
+  return fastest <= allowed ? 1 : allowed / fastest;
+}
+
 }  // namespace robot_control

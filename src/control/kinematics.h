@@ -32,6 +32,10 @@ class DriveKinematics {
   /// axes by it keeps the curvature ω/v. A velocity limit of 0 means none.
   double wheel_speed_scale(const PlanarTwist& twist) const noexcept;
 
+  /// The largest s ≤ 1 for which no rim runs faster over the ground than `limit` [m/s] at s·twist. Keeps the
+  /// curvature, too. A limit that is no speed (below zero, NaN) lets nothing move.
+  double rim_speed_scale(const PlanarTwist& twist, double limit) const noexcept;
+
  private:
   std::size_t wheels_;
   double half_base_;

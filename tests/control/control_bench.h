@@ -20,6 +20,7 @@ class ControlBench {
       : period(period_s), controller(parameters, model, period_s), plant(truth.value_or(model)), robot(model) {
     controller.reset(0);
     permit.action = PermitAction::kDrive;
+    permit.speed_limit = kNoSpeedLimit;
     state.flags = kStateValid;
     sensors.valid = kValidJoints;
     sensors.joint_count = model.joints.size();

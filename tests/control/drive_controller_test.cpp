@@ -282,6 +282,7 @@ TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyTha
   sensors.joint_count = 4;
   Permit permit;
   permit.action = PermitAction::kDrive;
+  permit.speed_limit = kNoSpeedLimit;
   VelocityCommand request;
   request.twist = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
   CommandFrame out;
