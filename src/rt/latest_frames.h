@@ -157,10 +157,11 @@ class FrameReader {
     return Lookup::kMissing;
   }
 
-  /// The newest frame of cycles first … last of this run (both included), searched downwards.
-  /// A corrupt frame ends the search. A token counts as missing.
+  /// The newest frame of cycles first … last of this run (both included), searched downwards, no farther than
+  /// frames are kept. A corrupt frame ends the search. A token counts as missing.
   Lookup newest_within(std::uint64_t run, std::uint64_t first, std::uint64_t last, Frame& out) const noexcept {
-    for (std::uint64_t cycle = last + 1; cycle-- > first;) {
+    std::uint64_t cycle = last;
+    for (std::size_t looks = 0; looks < kSlots && cycle >= first && cycle <= last; ++looks, --cycle) {
       const Lookup found = at(run, cycle, out);
       if (found == Lookup::kFrame || found == Lookup::kCorrupt) return found;
     }
@@ -208,7 +209,8 @@ class FrameReader {
   static Lookup judge(const Frame& frame) noexcept {
     if (frame.head.run == 0) return Lookup::kMissing;  // a slot never written
     if (!intact(frame)) return Lookup::kCorrupt;
-    return frame.head.kind == FrameKind::kToken ? Lookup::kToken : Lookup::kFrame;
+    if (frame.head.kind == FrameKind::kToken) return Lookup::kToken;
+    return frame.head.kind == FrameKind::kFrame ? Lookup::kFrame : Lookup::kCorrupt;
   }
 
   std::atomic<const Frames*> memory_;

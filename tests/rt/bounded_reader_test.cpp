@@ -1,0 +1,81 @@
+/// Against a writer that changes any word between any two looks, a reader still ends within a fixed number of
+/// loads: the atomics of this test give another value at every load.
+
+#include <gtest/gtest.h>
+
+#include "rt/latest_frames.h"
+#include "rt/latest_value.h"
+#include "rt/ring.h"
+#include "support/damage.h"
+
+namespace robot_control {
+namespace {
+
+constexpr int kLooks = 100'000;
+
+Damage hostile(1);
+std::uint64_t loads = 0;
+
+template <class T>
+struct HostileAtomic {
+  HostileAtomic() = default;
+  HostileAtomic(T) {}  // NOLINT: as std::atomic
+  T load(std::memory_order) const noexcept {
+    ++loads;
+    return static_cast<T>(hostile.number());
+  }
+  void store(T, std::memory_order) noexcept {}
+};
+
+struct Frame {
+  FrameHead head;
+};
+
+struct Row {
+  std::array<std::uint64_t, 3> values{};
+};
+
+/// The most loads that one call made.
+template <class Look>
+std::uint64_t most_loads(Look look) {
+  std::uint64_t most = 0;
+  for (int i = 0; i < kLooks; ++i) {
+    loads = 0;
+    look();
+    most = std::max(most, loads);
+  }
+  return most;
+}
+
+TEST(BoundedReader, OfFramesTriesAsOftenAsItMay) {
+  const LatestFrames<Frame, HostileAtomic> memory{};
+  const FrameReader<Frame, HostileAtomic> reader(&memory);
+  Frame frame;
+  constexpr std::uint64_t kCopy = 2 + kFrameWords<Frame>;  // the version before and after
+  const std::uint64_t newest = most_loads([&] { reader.newest(frame); });
+  EXPECT_LE(newest, kReadTries * (2 + kCopy));
+  EXPECT_GT(newest, 2 + kCopy);  // it does try again
+  EXPECT_LE(most_loads([&] { reader.at(7, 9, frame); }), kReadTries * kCopy);
+  EXPECT_LE(most_loads([&] { reader.newest_within(7, hostile.number(), hostile.number(), frame); }),
+            kFrameSlots * kReadTries * kCopy);
+}
+
+TEST(BoundedReader, OfAValueTriesAsOftenAsItMay) {
+  const LatestValue<Row, HostileAtomic> latest;
+  Row value;
+  const std::uint64_t most = most_loads([&] { latest.load(value); });
+  EXPECT_LE(most, 4u * (2 + 3));
+  EXPECT_GT(most, 2u + 3u);
+}
+
+TEST(BoundedReader, OfARingTriesAsOftenAsItMay) {
+  const Ring<Row, HostileAtomic, 16> ring{};
+  RingReader<Row, HostileAtomic, 16> reader(&ring, 0);
+  Row row;
+  const std::uint64_t most = most_loads([&] { reader.take(row); });
+  EXPECT_LE(most, kReadTries * (1 + 2 + 3));
+  EXPECT_GT(most, 1u + 2u + 3u);
+}
+
+}  // namespace
+}  // namespace robot_control
