@@ -30,6 +30,7 @@ JointCommand effort_command(double velocity, double effort) noexcept {
   return {.mode = JointMode::kEffort, .velocity = velocity, .effort = effort};
 }
 
+constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 constexpr std::uint64_t kBrakeReasons = kReasonNoPermit | kReasonPermitBrake | kReasonBadSensors | kReasonHolding;
 
 }  // namespace
@@ -157,8 +158,10 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
   const WheelValues velocity = kinematics_.joint_speeds(limited);
   const WheelValues acceleration = kinematics_.joint_speeds(limiter_.acceleration());
   const WheelValues feed_forward = followed_ ? feed_forward_.efforts(limited, limiter_.acceleration()) : WheelValues{};
+  const bool clamped = followed_ && (sensors.gate.reasons & kGateClamps) != 0;
+  if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_);
+    const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
     out.joints[i] = effort_command(velocity[i], effort);
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }

@@ -40,11 +40,12 @@ void WheelLoop::carry(double effort) noexcept {
   load_ = integral_;
 }
 
-double WheelLoop::step(const WheelPlan& plan, double periods) noexcept {
+double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noexcept {
   const double error = plans_[1].velocity - velocity();
   const double direct = plan.feed_forward + gains_.kp * error - gains_.kd * tracking_.acceleration();
   const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
-  const bool winds_up = std::abs(direct + integral) > effort_limit_ && (direct + integral) * error > 0;
+  const bool at_limit = clamped || std::abs(direct + integral) > effort_limit_;
+  const bool winds_up = at_limit && (direct + integral) * error > 0;
   if (!winds_up) integral_ = integral;
 
   const double wanted = direct + integral_;

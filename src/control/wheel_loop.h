@@ -16,9 +16,9 @@
 /// that, the tracking loop's lag makes a lifted wheel unstable at any useful kp. Plan and torque need not be right: the
 /// loop's residual finds the rest.
 ///
-/// Anti-windup by conditional integration: the integrator stops while the clamped sum is pushed further out, and
-/// |integral| ≤ effort_limit. Bumpless: `carry` gives the integrator the load that the brake was holding, so the first
-/// torque after a brake is the torque before it and a robot on a slope does not sag.
+/// Anti-windup by conditional integration: the integrator stops while the clamped sum is pushed further out, be it
+/// clamped here or by the gate, and |integral| ≤ effort_limit. Bumpless: `carry` gives the integrator the load that the
+/// brake was holding, so the first torque after a brake is the torque before it and a robot on a slope does not sag.
 ///
 /// Gains for 12 kg, 1 kHz, 20 Hz, as wheel_loop_gains.h derives them for that robot (wheel inertia J: lifted 0.005,
 /// turning 0.045, straight 0.065 kg·m²):
@@ -83,8 +83,8 @@ class WheelLoop {
   /// The next torque of an unaccelerated plan shall be `effort`, N·m.
   void carry(double effort) noexcept;
 
-  /// N·m.
-  double step(const WheelPlan& plan, double periods) noexcept;
+  /// N·m. `clamped`: the gate took something away from the last torque.
+  double step(const WheelPlan& plan, double periods, bool clamped = false) noexcept;
 
   double velocity() const noexcept { return tracking_.velocity(); }  ///< rad/s
   double integral() const noexcept { return integral_; }             ///< N·m

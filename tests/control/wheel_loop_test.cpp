@@ -79,6 +79,22 @@ TEST(WheelLoop, NeverExceedsTheEffortLimitAndSaysThatItIsThere) {
   EXPECT_TRUE(loop.saturated());
 }
 
+// 1 rad/s too slow: kp alone, 2 N·m, and what the integrator learnt before.
+TEST(WheelLoop, DoesNotWindUpWhileTheGateClamps) {
+  WheelLoop loop = seeded(0);
+  for (int k = 0; k < 100; ++k) loop.step({.velocity = 1}, 1, true);
+  EXPECT_EQ(loop.integral(), 0);
+  loop.step({.velocity = 1}, 1);
+  EXPECT_GT(loop.integral(), 0);
+}
+
+TEST(WheelLoop, UnwindsWhileTheGateClamps) {
+  WheelLoop loop = seeded(0);
+  loop.carry(1);
+  for (int k = 0; k < 3; ++k) loop.step({.velocity = -0.4}, 1, true);  // 1 − 0.8 N·m: still upwards
+  EXPECT_LT(loop.integral(), 1);
+}
+
 TEST(WheelLoop, DoesNotWindUpWhileItIsBlocked) {
   WheelLoop loop = seeded();
   const auto push = [&](int cycles) {

@@ -67,5 +67,25 @@ TEST_F(GateInTheLoop, DoesNotTakeACoarseEncoderForATooFastWheel) {
   expect_no_clamp([](double) { return twist(1, 0); }, 5);
 }
 
+// Uphill at the wheels' speed limit the gate's taper and the load leave a gap that no torque may close. An integrator
+// that wound up on it would hold the speed for another tenth of a second: 5 cm.
+TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerDoesNotWindUp) {
+  parameters_.plant.slope = 0.0873;
+  parameters_.robot.wheel_velocity_limit = 8;
+  ClosedLoop loop(parameters_);
+  const auto drive = [&](double wish, double until) {
+    while (loop.time() < until) {
+      loop.command(twist(wish, 0));
+      loop.step();
+    }
+    return loop.row().driver->truth.twist_base.linear[0];
+  };
+  EXPECT_NEAR(drive(1, 4), 0.8, 0.02);  // within the taper's tenth
+  EXPECT_NE(loop.row().driver->gate.reasons & kGateSpeedClamped, 0u);
+  EXPECT_NE(loop.row().controller->command.reasons & kReasonSaturated, 0u);
+  const double limited = drive(0, 4.2);
+  EXPECT_NEAR(limited, loop.row().controller->command.twist_limited.linear[0], 0.02);
+}
+
 }  // namespace
 }  // namespace robot_control
