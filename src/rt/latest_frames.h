@@ -47,8 +47,8 @@ struct ChannelHead {
   std::array<std::atomic<char>, 256> robot_source;  ///< where that robot was read, zero-terminated
 };
 
-/// Atomic and kSlots differ from their defaults in the model of the tests alone.
-template <class Frame, template <class> class Atomic = std::atomic, std::size_t kSlots = kFrameSlots>
+/// Atomic and SlotCount differ from their defaults in the model of the tests alone.
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
 struct LatestFrames {
   struct Slot {
     Atomic<std::uint64_t> version;
@@ -57,7 +57,7 @@ struct LatestFrames {
   ChannelHead head;
   alignas(64) Atomic<std::uint32_t> sequence;  ///< futex word
   Atomic<std::uint64_t> newest;                ///< slot of the last publication + 1; 0 = none
-  alignas(64) std::array<Slot, kSlots> slots;
+  alignas(64) std::array<Slot, SlotCount> slots;
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
@@ -67,10 +67,10 @@ enum class Lookup { kMissing, kFrame, kToken, kCorrupt };
 /// Whom a publication wakes. A loop in one thread, on private memory, saves the system call.
 enum class Wake { kReaders, kNobody };
 
-template <class Frame, template <class> class Atomic = std::atomic, std::size_t kSlots = kFrameSlots>
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
 class FrameWriter {
  public:
-  using Frames = LatestFrames<Frame, Atomic, kSlots>;
+  using Frames = LatestFrames<Frame, Atomic, SlotCount>;
 
   /// `memory`: zeroed, or left by an earlier writer of the same layout. Not owned.
   explicit FrameWriter(Frames* memory = nullptr, Wake wake = Wake::kReaders) noexcept : memory_(memory), wake_(wake) {}
@@ -93,7 +93,7 @@ class FrameWriter {
   /// Stores without sealing or waking: for tests that plant a broken frame.
   void store(const Frame& frame) noexcept {
     const auto words = std::bit_cast<std::array<std::uint64_t, kFrameWords<Frame>>>(frame);
-    const std::size_t index = frame.head.cycle % kSlots;
+    const std::size_t index = frame.head.cycle % SlotCount;
     auto& slot = memory_->slots[index];
     const std::uint64_t version = slot.version.load(std::memory_order_relaxed) | 1;  // odd also after a crash
     slot.version.store(version, std::memory_order_release);
@@ -114,10 +114,10 @@ class FrameWriter {
   Wake wake_;
 };
 
-template <class Frame, template <class> class Atomic = std::atomic, std::size_t kSlots = kFrameSlots>
+template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
 class FrameReader {
  public:
-  using Frames = LatestFrames<Frame, Atomic, kSlots>;
+  using Frames = LatestFrames<Frame, Atomic, SlotCount>;
 
   explicit FrameReader(const Frames* memory = nullptr) noexcept : memory_(memory) {}
   FrameReader(const FrameReader& other) noexcept : memory_(other.memory_.load()) {}
@@ -135,7 +135,7 @@ class FrameReader {
     if (memory == nullptr) return Lookup::kMissing;
     for (int tries = 0; tries < kReadTries; ++tries) {
       const std::uint64_t newest = memory->newest.load(std::memory_order_acquire);
-      if (newest == 0 || newest > kSlots) return Lookup::kMissing;
+      if (newest == 0 || newest > SlotCount) return Lookup::kMissing;
       if (!copy(memory->slots[newest - 1], out)) continue;
       // A reader that slept in between holds the slot's next frame already: taking it, and then the one
       // before it, would turn time back.
@@ -149,7 +149,7 @@ class FrameReader {
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
     for (int tries = 0; tries < kReadTries; ++tries) {
-      if (!copy(memory->slots[cycle % kSlots], out)) continue;
+      if (!copy(memory->slots[cycle % SlotCount], out)) continue;
       const Lookup found = judge(out);
       if (found == Lookup::kCorrupt) return found;
       return out.head.run == run && out.head.cycle == cycle ? found : Lookup::kMissing;
@@ -161,7 +161,7 @@ class FrameReader {
   /// frames are kept. A corrupt frame ends the search. A token counts as missing.
   Lookup newest_within(std::uint64_t run, std::uint64_t first, std::uint64_t last, Frame& out) const noexcept {
     std::uint64_t cycle = last;
-    for (std::size_t looks = 0; looks < kSlots && cycle >= first && cycle <= last; ++looks, --cycle) {
+    for (std::size_t looks = 0; looks < SlotCount && cycle >= first && cycle <= last; ++looks, --cycle) {
       const Lookup found = at(run, cycle, out);
       if (found == Lookup::kFrame || found == Lookup::kCorrupt) return found;
     }

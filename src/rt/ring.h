@@ -32,8 +32,8 @@ struct RingPositions {
   alignas(64) std::array<std::atomic<std::uint64_t>, kTraceRings> read;
 };
 
-/// Atomic and kRows differ from their defaults in the model of the tests alone.
-template <class Row, template <class> class Atomic = std::atomic, std::size_t kRows = kRingRows>
+/// Atomic and SlotCount differ from their defaults in the model of the tests alone.
+template <class Row, template <class> class Atomic = std::atomic, std::size_t SlotCount = kRingRows>
 struct Ring {
   static_assert(std::is_trivially_copyable_v<Row> && sizeof(Row) % 8 == 0);
   static constexpr std::size_t kWords = sizeof(Row) / 8;
@@ -44,13 +44,13 @@ struct Ring {
   ChannelHead head;
   alignas(64) Atomic<std::uint64_t> written;  ///< rows ever appended
   Atomic<std::uint64_t> dropped;              ///< rows ever dropped by the writer
-  alignas(64) std::array<Slot, kRows> slots;
+  alignas(64) std::array<Slot, SlotCount> slots;
 };
 
-template <class Row, template <class> class Atomic = std::atomic, std::size_t kRows = kRingRows>
+template <class Row, template <class> class Atomic = std::atomic, std::size_t SlotCount = kRingRows>
 class RingWriter {
  public:
-  using Rows = Ring<Row, Atomic, kRows>;
+  using Rows = Ring<Row, Atomic, SlotCount>;
 
   explicit RingWriter(Rows* memory = nullptr) noexcept : memory_(memory) {}
 
@@ -61,7 +61,7 @@ class RingWriter {
       memory_->dropped.fetch_add(1, std::memory_order_relaxed);
       return false;
     }
-    auto& slot = memory_->slots[position % kRows];
+    auto& slot = memory_->slots[position % SlotCount];
     const auto words = std::bit_cast<std::array<std::uint64_t, Rows::kWords>>(row);
     slot.version.store(2 * position + 1, std::memory_order_relaxed);
     for (std::size_t i = 0; i < words.size(); ++i) slot.words[i].store(words[i], std::memory_order_release);
@@ -79,16 +79,16 @@ class RingWriter {
   static bool full_at(std::uint64_t position, const Atomic<std::uint64_t>* read) noexcept {
     if (read == nullptr) return false;
     const std::uint64_t done = read->load(std::memory_order_acquire);
-    return position >= done && position - done >= kRows;
+    return position >= done && position - done >= SlotCount;
   }
 
   Rows* memory_;
 };
 
-template <class Row, template <class> class Atomic = std::atomic, std::size_t kRows = kRingRows>
+template <class Row, template <class> class Atomic = std::atomic, std::size_t SlotCount = kRingRows>
 class RingReader {
  public:
-  using Rows = Ring<Row, Atomic, kRows>;
+  using Rows = Ring<Row, Atomic, SlotCount>;
 
   /// Starts at the row that will be written next.
   explicit RingReader(const Rows* memory) noexcept
@@ -106,11 +106,11 @@ class RingReader {
         position_ = written;  // an earlier reader's position in an object that was made anew since
         return false;
       }
-      if (written - position_ > kRows) {
-        overwritten_ += written - position_ - kRows;
-        position_ = written - kRows;
+      if (written - position_ > SlotCount) {
+        overwritten_ += written - position_ - SlotCount;
+        position_ = written - SlotCount;
       }
-      const auto& slot = memory_->slots[position_ % kRows];
+      const auto& slot = memory_->slots[position_ % SlotCount];
       const std::uint64_t expected = 2 * (position_ + 1);
       std::array<std::uint64_t, Rows::kWords> words;
       if (slot.version.load(std::memory_order_relaxed) == expected) {

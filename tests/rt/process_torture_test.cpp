@@ -17,7 +17,7 @@ TEST(ProcessTorture, NoFrameIsTornAndNoneIsOlderThanTheOneBefore) {
   EXPECT_EQ(count.reordered, 0u);
   EXPECT_GE(count.read, kCount);
   EXPECT_GE(count.written, kCount);
-  EXPECT_GT(count.distinct, 100u);  // how often the two meet is the machine's affair
+  EXPECT_GE(count.distinct, kCount / 100'000);
 }
 
 TEST(ProcessTorture, EveryRowComesOnceWholeAndInOrder) {

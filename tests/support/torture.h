@@ -118,8 +118,9 @@ inline int write_torture_frames(const TortureMemory<LatestFrames<TortureFrame>>&
   return 0;
 }
 
-/// Until as many were written, and as many look-ups, of the newest frame and of one shortly before it in turn,
-/// found one; or until the first error.
+/// Until as many were written, as many look-ups, of the newest frame and of one shortly before it in turn, found
+/// one, and at least every 100 000th of these another one (on one core the two take turns); or until the first
+/// error.
 inline TortureCount torture_frames(std::uint64_t frames) {
   const TortureMemory<LatestFrames<TortureFrame>> memory;
   const AnonymousMemory<TortureControl> control;
@@ -132,8 +133,8 @@ inline TortureCount torture_frames(std::uint64_t frames) {
   std::uint64_t last = 0;
   const std::int64_t begin_ns = monotonic_ns();
   const auto written = [&] { return control->written.load(std::memory_order_acquire); };
-  while ((count.read < frames || written() < frames) && count.errors() == 0 &&
-         monotonic_ns() < begin_ns + kTorturePatienceNs) {
+  const auto enough = [&] { return count.read >= frames && written() >= frames && count.distinct >= frames / 100'000; };
+  while (!enough() && count.errors() == 0 && monotonic_ns() < begin_ns + kTorturePatienceNs) {
     const Lookup newest = reader.newest(frame);
     if (newest == Lookup::kMissing) {
       count.overtaken += last == 0 ? 0 : 1;
@@ -158,13 +159,13 @@ inline TortureCount torture_frames(std::uint64_t frames) {
   return count;
 }
 
-/// As many rows through a ring whose writer waits for room: each must come once, whole and in order.
+/// As many rows through a ring whose writer waits for room: each must come once, whole and in order. On any core:
+/// the two wait for each other, and on two busy cores they would wait for their turns as well.
 inline TortureCount torture_ring(std::uint64_t rows) {
   const TortureMemory<Ring<TortureRow>> memory;
   const AnonymousMemory<RingPositions> positions;
   std::atomic<std::uint64_t>& read = positions->read[0];
   ChildProcess other([&] {
-    const OnCore core(1);
     const MemoryMapping mapping = memory.map(Access::kReadWrite);
     RingWriter<TortureRow> writer(static_cast<Ring<TortureRow>*>(mapping.data()));
     TortureRow row;
@@ -175,7 +176,6 @@ inline TortureCount torture_ring(std::uint64_t rows) {
     }
     return 0;
   });
-  const OnCore core(0);
   const MemoryMapping mapping = memory.map(Access::kReadOnly);
   RingReader<TortureRow> reader(static_cast<const Ring<TortureRow>*>(mapping.data()), 0);
   TortureCount count;
