@@ -18,9 +18,11 @@ class ActiveCauses {
     count_ = 0;
   }
 
+  /// Of a cause that was added already the first finding stays.
   void add(StopCause cause, Reaction reaction, const Finding& finding = {}) noexcept {
-    bits_[static_cast<std::size_t>(reaction)] |= cause;
-    if (count_ == findings_.size()) return;
+    std::uint64_t& bits = bits_[static_cast<std::size_t>(reaction)];
+    if ((bits & cause) != 0 || count_ == findings_.size()) return;
+    bits |= cause;
     findings_[count_] = {.cause = cause, .joint = finding.joint, .value = finding.value, .limit = finding.limit};
     ++count_;
   }

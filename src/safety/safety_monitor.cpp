@@ -33,7 +33,7 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
       standstill_(parameters.standstill_speed, period),
       targets_(robot.wheels.size()),
       wheel_limits_(parameters, robot, period),
-      wheel_following_(parameters, period),
+      wheel_following_(parameters, robot.wheels.size(), period),
       yaw_agreement_(parameters.yaw_rate, robot, period),
       gate_facts_(parameters.loss_cycles, period),
       machine_facts_(parameters, period),

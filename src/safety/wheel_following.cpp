@@ -14,69 +14,104 @@ double along(double target, double speed) noexcept {
   return target < 0 ? -speed : speed;
 }
 
-Finding run_away(const WheelTargets& targets, const WheelMotion& motion, double limit) noexcept {
-  Finding finding = kNothingFound;
-  for (std::size_t i = 0; i < motion.wheels(); ++i) {
-    if (!targets.has(i)) continue;
-    const double target = targets[i];
-    const double speed = target == 0 ? std::abs(motion.speed(i)) : along(target, motion.speed(i));
-    finding = worse(finding, beyond(i, speed - std::abs(target), limit + motion.speed_tolerance(i)));
-  }
-  return finding;
-}
-
-Finding turned_wrongly(const WheelTargets& targets, const WheelMotion& motion, double limit) noexcept {
-  Finding finding = kNothingFound;
-  for (std::size_t i = 0; i < motion.wheels(); ++i) {
-    if (!targets.has(i) || targets[i] == 0) continue;
-    finding = worse(finding, beyond(i, -along(targets[i], motion.speed(i)), limit + motion.speed_tolerance(i)));
-  }
-  return finding;
-}
-
 }  // namespace
 
-WheelFollowing::WheelFollowing(const SafetyParameters& parameters, double period) noexcept
+WheelFollowing::WheelFollowing(const SafetyParameters& parameters, std::size_t wheels, double period)
     : period_(period),
       stall_(kCauseStall, parameters.stall, period),
-      runaway_(kCauseRunaway, parameters.runaway, period),
-      wrong_direction_(kCauseWrongDirection, parameters.wrong_direction, period),
-      not_stopping_(kCauseNotStopping, parameters.not_stopping, period) {}
+      not_stopping_(kCauseNotStopping, parameters.not_stopping, period),
+      runaway_(wheels, {.watch = ConditionWatch(kCauseRunaway, parameters.runaway, period)}),
+      wrong_direction_(wheels, {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}) {}
 
 void WheelFollowing::enter_run() noexcept {
-  for (ConditionWatch* watch : {&stall_, &runaway_, &wrong_direction_, &not_stopping_}) watch->reset();
-  missed_ = {};
-  still_moving_ = 0;
+  stall_.reset();
+  not_stopping_.reset();
+  for (Excess& excess : runaway_) excess.reset();
+  for (Excess& excess : wrong_direction_) excess.reset();
+  stalls_ = {};
+  moved_ = rested_ = 0;
 }
 
 void WheelFollowing::step(const WheelTargets& targets, const WheelMotion& motion, const JointStandstill& standstill,
                           std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  if (motion.speed_known()) {
-    out.judge(stall_, stalled(targets, motion, static_cast<double>(elapsed) * period_), elapsed);
-    out.judge(runaway_, run_away(targets, motion, runaway_.limit()), elapsed);
-    out.judge(wrong_direction_, turned_wrongly(targets, motion, wrong_direction_.limit()), elapsed);
-  } else {
-    for (ConditionWatch* watch : {&stall_, &runaway_, &wrong_direction_}) out.judge(*watch, kNothingFound, elapsed);
+  const bool known = motion.speed_known();
+  for (std::size_t i = 0; i < runaway_.size(); ++i) {
+    if (!known || !targets.has(i)) {
+      runaway_[i].reset();
+      wrong_direction_[i].reset();
+      continue;
+    }
+    judge_runaway(targets, motion, i, elapsed, out);
+    judge_direction(targets, motion, i, elapsed, out);
   }
+  const double dt = static_cast<double>(elapsed) * period_;
+  out.judge(stall_, known ? stalled(targets, motion, dt) : kNothingFound, elapsed);
   out.judge(not_stopping_, not_stopped(targets, standstill, elapsed), elapsed);
+}
+
+void WheelFollowing::Excess::reset() noexcept {
+  watch.reset();
+  mark = 0;
+}
+
+void WheelFollowing::Excess::step(Finding finding, double speed, double progress, std::uint64_t elapsed,
+                                  ActiveCauses& out) noexcept {
+  if (!finding.beyond) {
+    mark = 0;
+  } else if (mark == 0) {
+    mark = speed;
+  } else if (speed < mark - progress) {
+    mark = speed;
+    finding.beyond = false;
+  }
+  out.judge(watch, finding, elapsed);
+}
+
+void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                                   std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  Excess& excess = runaway_[wheel];
+  const double target = targets[wheel];
+  const double speed = target == 0 ? std::abs(motion.speed(wheel)) : along(target, motion.speed(wheel));
+  const double tolerance = motion.speed_tolerance(wheel);
+  excess.step(beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance), speed, kProgress + tolerance,
+              elapsed, out);
+}
+
+void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                                     std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  Excess& excess = wrong_direction_[wheel];
+  const double target = targets[wheel];
+  const double speed = target == 0 ? 0 : -along(target, motion.speed(wheel));
+  const double tolerance = motion.speed_tolerance(wheel);
+  excess.step(beyond(wheel, speed, excess.watch.limit() + tolerance), speed, kProgress + tolerance, elapsed, out);
 }
 
 Finding WheelFollowing::stalled(const WheelTargets& targets, const WheelMotion& motion, double dt) noexcept {
   Finding finding = kNothingFound;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
+    Stall& stall = stalls_[i];
     const double wanted = targets.has(i) ? std::abs(targets[i]) : 0;
-    const bool follows = wanted == 0 || along(targets[i], motion.speed(i)) >= kFollows * wanted;
-    missed_[i] = follows ? 0 : missed_[i] + wanted * dt;
-    finding = worse(finding, beyond(i, missed_[i], stall_.limit() + motion.quantum(i)));
+    const double speed = along(targets[i], motion.speed(i));
+    const bool turns = std::abs(speed) >= kTurns * wanted;
+    if (turns || speed > stall.mark + kProgress + motion.speed_tolerance(i)) {
+      stall = {.missed = 0, .mark = speed};
+    } else {
+      stall.missed += wanted * dt;
+    }
+    finding = worse(finding, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));
   }
   return finding;
 }
 
 Finding WheelFollowing::not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
                                     std::uint64_t elapsed) noexcept {
-  const bool moves_on = targets.told_to_stand() && standstill.moving();
-  still_moving_ = moves_on ? still_moving_ + elapsed : 0;
-  return beyond(kMaxJoints, static_cast<double>(still_moving_) * period_, not_stopping_.limit());
+  rested_ = standstill.moving() ? 0 : rested_ + elapsed;
+  if (!targets.told_to_stand() || static_cast<double>(rested_) * period_ >= kRest) {
+    moved_ = 0;
+  } else if (standstill.moving()) {
+    moved_ += elapsed;
+  }
+  return beyond(kMaxJoints, static_cast<double>(moved_) * period_, not_stopping_.limit());
 }
 
 }  // namespace robot_control

@@ -4,16 +4,24 @@
 /// With s the sign of the target q̇*, ω the measured speed (wheel_motion.h), δ its tolerance, both in the joint's sign;
 /// only where a target reaches the wheel (wheel_targets.h):
 ///
-///   stall            the angle ∫|q̇*|dt that the wheel should have turned since it was last seen to follow, that is, to
-///                    turn with s·ω ≥ kFollows·|q̇*|; limit rad + 1 quantum: a wheel that follows slowly shows a count
-///                    each quantum
+///   stall            the angle ∫|q̇*|dt that the wheel should have turned since it was last seen to turn, that is, with
+///                    |ω| ≥ kTurns·|q̇*|, or to gain kProgress + δ towards its target; limit rad + 1 quantum: a wheel
+///                    that follows slowly shows a count each quantum
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| where the target is 0
 ///   wrong_direction  −s·ω > limit + δ
-///   not_stopping     s since the robot was told to stand while it has not stood (standstill.h): who rolls on, who is
-///                    pushed, and who swings about his rest
+///
+/// The last two only while the wheel does not slow down: one that lost kProgress + δ of that speed since its
+/// persistence began begins it anew. A drive at the limit of its torque, or a skid steer that scrubs, lags behind a
+/// target that turns round; a wheel that runs away gets faster, or stays.
+///
+///   not_stopping     s of motion (standstill.h) since the robot was told to stand, until it stood for kRest: who rolls
+///   on,
+///                    who is pushed, and who swings about his rest, standing at the turning points
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "robot/robot_model.h"
 #include "safety/active_causes.h"
@@ -25,26 +33,49 @@ namespace robot_control {
 
 class WheelFollowing {
  public:
-  static constexpr double kFollows = 0.2;
+  static constexpr double kTurns = 0.2;
+  static constexpr double kProgress = 0.1;  ///< rad/s
+  static constexpr double kRest = 0.5;      ///< s
 
   /// `period` s.
-  WheelFollowing(const SafetyParameters& parameters, double period) noexcept;
+  WheelFollowing(const SafetyParameters& parameters, std::size_t wheels, double period);
 
   void enter_run() noexcept;
   void step(const WheelTargets& targets, const WheelMotion& motion, const JointStandstill& standstill,
             std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
+  /// Of one wheel.
+  struct Stall {
+    double missed = 0;  ///< rad
+    double mark = 0;    ///< rad/s towards the target, when `missed` began
+  };
+
+  /// A speed that is beyond its limit, of one wheel, as long as the wheel does not lose it.
+  struct Excess {
+    ConditionWatch watch;
+    double mark = 0;  ///< rad/s, since its persistence began; 0: not beyond
+
+    void reset() noexcept;
+    /// `speed` rad/s in the direction that is judged, `progress` what begins the persistence anew.
+    void step(Finding finding, double speed, double progress, std::uint64_t elapsed, ActiveCauses& out) noexcept;
+  };
+
+  void judge_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
+                     ActiveCauses& out) noexcept;
+  void judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
+                       ActiveCauses& out) noexcept;
   Finding stalled(const WheelTargets& targets, const WheelMotion& motion, double dt) noexcept;
   Finding not_stopped(const WheelTargets& targets, const JointStandstill& standstill, std::uint64_t elapsed) noexcept;
 
   double period_;
   ConditionWatch stall_;
-  ConditionWatch runaway_;
-  ConditionWatch wrong_direction_;
   ConditionWatch not_stopping_;
-  std::array<double, kMaxWheels> missed_{};  ///< rad
-  std::uint64_t still_moving_ = 0;           ///< cycles
+  std::vector<Excess> runaway_;          ///< by wheel
+  std::vector<Excess> wrong_direction_;  ///< by wheel
+  std::array<Stall, kMaxWheels> stalls_{};
+  std::uint64_t moved_ = 0;   ///< cycles of motion since it was told to stand
+  std::uint64_t rested_ = 0;  ///< cycles in a row
 };
 
 }  // namespace robot_control

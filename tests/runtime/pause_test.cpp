@@ -99,11 +99,22 @@ TEST_F(PausedLoop, RefusesAResetBecauseNothingCanBeJudged) {
   EXPECT_EQ(loop.newest_permit().reset_refusal, std::uint64_t{kRefusalPaused});
 }
 
-TEST_F(PausedLoop, LatchesAnEmergencyStopOfThePauseInTheNextCycle) {
+TEST_F(PausedLoop, LatchesAnEmergencyStopAtOnce) {
   loop.monitor->inbox().store({.e_stop_services = 1});
   pause();
-  loop.step();
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+  EXPECT_EQ(loop.newest_permit().first_cause, std::uint64_t{kCauseEmergencyStopService});
+  loop.step();
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake) << "before the machine moves again";
+}
+
+TEST_F(PausedLoop, SaysOnceThatTheTopicSaidTrue) {
+  loop.monitor->inbox().store({.e_stop_level = 1, .e_stop_messages = 1, .e_stop_triggers = 1});
+  pause();
+  const std::uint32_t sequence = loop.permit.reader.sequence();
+  pause(5);
+  EXPECT_EQ(loop.permit.reader.sequence(), sequence);
+  EXPECT_EQ(loop.newest_permit().causes, std::uint64_t{kCauseEmergencyStopTopic});
 }
 
 TEST_F(PausedLoop, IsTakenForAFrameByAMonitorThatHasNotSeenItsCycle) {

@@ -1,0 +1,208 @@
+// Every condition under every reaction: the right permit in the right cycle, and the brake behind it.
+//
+// `onset`: a robot that drives at 5 rad/s (0.5 m/s) begins to break one thing, and goes on. `seen`: after so many
+// cycles at most the fact is beyond its limit: a window of wheel speeds is 20 cycles long, so that a speed that jumps
+// beyond is beyond within 20; other facts are there at once. From then on its persistence counts.
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "safety/monitor_fixture.h"
+#include "safety/stop_category.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::uint64_t kWindow = 20;
+constexpr std::uint64_t kToBrake = 3;  // cycles from a cause to the brake
+
+/// What a row may change in each cycle.
+struct Robot {
+  SensorFrame& sensors;
+  std::array<double, 2>& speed;
+  bool& noisy;
+  double t = 0;  ///< s since the onset
+};
+
+struct Row {
+  StopCause cause;
+  Condition SafetyParameters::*condition;
+  double limit;
+  double persistence;
+  std::uint64_t seen;
+  std::function<void(Robot&)> onset;
+  bool told_to_stand = false;
+};
+
+const std::vector<Row>& rows() {
+  using P = SafetyParameters;
+  static const std::vector<Row> kRows{
+      {kCauseWheelSpeed, &P::wheel_speed, 18, 0.03, kWindow, [](Robot& r) { r.speed[0] = 25; }},
+      // (100 − 5)/20 ms = 4750 rad/s² at the most; half of it is reached after a half of the window, and kept as long.
+      {kCauseWheelAcceleration, &P::wheel_acceleration, 2300, 0.01, kWindow, [](Robot& r) { r.speed[0] = 100; }},
+      {kCauseWheelEffort, &P::wheel_effort, 1.05, 0.02, 0, [](Robot& r) { r.sensors.joints[1].effort = -3.3; }},
+      {kCausePower, &P::power, 60, 0.1, 0,  // 15 N·m · 5 rad/s = 75 W
+       [](Robot& r) { r.sensors.joints[1].effort = 15; }},
+      // Slower than a fifth of the target after a window, then 0.3 rad at 5 rad/s, and a count.
+      {kCauseStall, &P::stall, 0.3, 0, kWindow + 62, [](Robot& r) { r.speed[0] = 0; }},
+      {kCauseRunaway, &P::runaway, 4, 0.05, kWindow, [](Robot& r) { r.speed[1] = 12; }},
+      {kCauseWrongDirection, &P::wrong_direction, 1.5, 0.05, kWindow, [](Robot& r) { r.speed[1] = -5; }},
+      {kCauseNotStopping, &P::not_stopping, 1.0, 0, 1001, [](Robot&) {}, true},
+      {kCauseYawRate, &P::yaw_rate, 1.0, 0.2, 0, [](Robot& r) { r.sensors.imu.angular_velocity[2] = -1.2; }},
+      // It rolls at 1 rad/s up to 0.6 rad, and the accelerometer with it.
+      {kCauseTilt, &P::tilt, 0.35, 0.05, 400,
+       [](Robot& r) {
+         const double roll = std::min(r.t, 0.6);
+         r.sensors.imu.angular_velocity[0] = roll < 0.6 ? 1 : 0;
+         r.sensors.imu.linear_acceleration = {0, 9.81 * std::sin(roll), 9.81 * std::cos(roll)};
+         r.noisy = false;
+       }},
+      // At 2 rad/s, from half of the tilt limit (0.35 rad by default; here what `parameters` says) on.
+      {kCauseTipOver, &P::tip_over, 1.5, 0.02, 250,
+       [](Robot& r) {
+         const double roll = std::min(2 * r.t, 1.5);
+         r.sensors.imu.angular_velocity[0] = roll < 1.5 ? 2 : 0;
+         r.sensors.imu.linear_acceleration = {0, 9.81 * std::sin(roll), 9.81 * std::cos(roll)};
+         r.noisy = false;
+       }},
+      {kCauseFreeFall, &P::free_fall, 3, 0.05, 0,
+       [](Robot& r) {
+         r.sensors.imu.linear_acceleration = {0, 0, 0};
+         r.noisy = false;
+       }},
+      {kCauseLift, &P::lift, 0.2, 0.1, 0, [](Robot& r) { r.sensors.contact_forces = {}; }},
+      // An impact may be looked at over a window of its own.
+      {kCauseImpact, &P::impact, 60, 0, kWindow,
+       [](Robot& r) {
+         r.sensors.imu.linear_acceleration[0] = -200;
+         r.noisy = false;
+       }},
+      {kCauseEncodersLost, &P::encoders_lost, 0, 0.01, 0, [](Robot& r) { r.sensors.valid &= ~kValidJoints; }},
+      {kCauseImuLost, &P::imu_lost, 0, 0.1, 0, [](Robot& r) { r.sensors.valid &= ~kValidGyro; }},
+      {kCauseImuStuck, &P::imu_stuck, 0, 0.25, 1, [](Robot& r) { r.noisy = false; }},
+      // 51 at once, then 100 a second.
+      {kCauseOverruns, &P::overruns, 50, 1, 0,
+       [](Robot& r) { r.sensors.overruns += r.t < 1e-9 ? 51 : (std::lround(r.t * 1000) % 10 == 0 ? 1 : 0); }},
+      {kCauseBatteryLow, &P::battery_low, 22, 1, 0, [](Robot& r) { r.sensors.battery_voltage = 21.9; }},
+      {kCauseBatteryEmpty, &P::battery_empty, 20, 1, 0, [](Robot& r) { r.sensors.battery_voltage = 19.9; }},
+  };
+  return kRows;
+}
+
+/// All conditions but one are off, so that nothing else stops the robot.
+SafetyParameters only(const SafetyParameters& given, const Row& row, Reaction reaction) {
+  SafetyParameters parameters = given;
+  for (const Row& other : rows()) (parameters.*other.condition).reaction = Reaction::kOff;
+  parameters.tilt.limit = 0.35;
+  parameters.heartbeat_timeout = 0;
+  parameters.*row.condition = {row.limit, row.persistence, reaction};
+  return parameters;
+}
+
+class Conditions : public MonitorTest, public testing::WithParamInterface<std::tuple<std::size_t, Reaction>> {
+ protected:
+  Conditions() : row_(rows()[std::get<0>(GetParam())]), reaction_(std::get<1>(GetParam())) {
+    const SafetyParameters chosen = only(parameters(), row_, reaction_);
+    persistence_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(row_.persistence / kPeriod)));
+    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
+    sensors_.valid |= kValidBattery | kValidContacts;
+    sensors_.battery_voltage = 24;
+    sensors_.contact_forces[0][2] = sensors_.contact_forces[1][2] = 6 * 9.81;
+    new_run();
+    steps(kStart);
+    drive();
+    steps(100);
+  }
+
+  /// Cycles from the onset to the first in which `told` says so; `patience` at most.
+  template <class Told>
+  std::uint64_t break_until(std::uint64_t patience, Told told) {
+    Robot robot{sensors_, speed_, noisy_gyro_};
+    if (row_.told_to_stand) target(0);
+    for (std::uint64_t k = 0; k < patience; ++k) {
+      robot.t = static_cast<double>(k) * kPeriod;
+      row_.onset(robot);
+      step();
+      if (told()) return k;
+    }
+    return patience;
+  }
+
+  std::uint64_t latest() const { return row_.seen + persistence_ - 1; }
+
+  const Row& row_;
+  Reaction reaction_;
+  std::uint64_t persistence_;
+};
+
+TEST_P(Conditions, ReactAsTheyAreToldInTheirCycle) {
+  ASSERT_EQ(permit_.action, PermitAction::kDrive);
+  ASSERT_EQ(permit_.causes | permit_.warnings, 0u);
+  const std::uint64_t patience = latest() + 200;
+  const auto told = [&] { return ((permit_.causes | permit_.warnings) & row_.cause) != 0; };
+  const std::uint64_t k = break_until(patience, told);
+  if (reaction_ == Reaction::kOff) {
+    EXPECT_EQ(k, patience);
+    EXPECT_EQ(permit_.action, PermitAction::kDrive);
+    return;
+  }
+  ASSERT_LE(k, latest());
+  ASSERT_GE(k + 1, persistence_) << "before it had persisted";
+  EXPECT_EQ(permit_.evidence[0].cause, std::uint64_t{row_.cause});
+  EXPECT_EQ(permit_.evidence[0].cycle, cycle());
+
+  const bool latches = reaction_ == Reaction::kRamp || reaction_ == Reaction::kBrake;
+  EXPECT_EQ(permit_.causes, latches ? std::uint64_t{row_.cause} : 0u);
+  EXPECT_EQ(permit_.warnings, latches ? 0u : std::uint64_t{row_.cause});
+  EXPECT_EQ(permit_.speed_limit, reaction_ == Reaction::kSlow ? parameters().slow_speed : kNoSpeedLimit);
+  EXPECT_EQ(permit_.action, reaction_ == Reaction::kBrake  ? PermitAction::kBrake
+                            : reaction_ == Reaction::kRamp ? PermitAction::kRamp
+                                                           : PermitAction::kDrive);
+}
+
+TEST_P(Conditions, ReachTheMotorsWithinThreeCyclesOrAtTheRampsDeadline) {
+  if (reaction_ != Reaction::kBrake && reaction_ != Reaction::kRamp) return;
+  break_until(latest() + 1, [&] { return permit_.causes != 0; });
+  ASSERT_EQ(permit_.causes, std::uint64_t{row_.cause});
+  const std::uint64_t latched = cycle();
+  const std::uint64_t deadline = permit_.ramp_until;
+  EXPECT_EQ(deadline, reaction_ == Reaction::kRamp ? latched + kRamp : 0);
+  if (!row_.told_to_stand) target(kSpeed);  // the controller knows of nothing
+  const std::uint64_t k = break_until(kRamp + 10, [&] { return !gate_passes(); });
+  const std::uint64_t braked_tick = cycle() - 1;
+  ASSERT_LT(k, kRamp + 10);
+  if (reaction_ == Reaction::kBrake) {
+    EXPECT_LE(braked_tick, latched + kToBrake);
+  } else if (!row_.told_to_stand) {
+    EXPECT_LE(braked_tick, deadline + kToBrake);
+    EXPECT_GE(braked_tick, deadline);
+  }
+}
+
+std::string name_of_row(const testing::TestParamInfo<Conditions::ParamType>& info) {
+  constexpr std::array<const char*, 5> kNames{"off", "warn", "slow", "ramp", "brake"};
+  const Row& row = rows()[std::get<0>(info.param)];
+  return std::string(row_of(kStopCauseNames, row.cause)->name) + "_" +
+         kNames[static_cast<std::size_t>(std::get<1>(info.param))];
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Conditions,
+                         testing::Combine(testing::Range<std::size_t>(0, rows().size()),
+                                          testing::Values(Reaction::kOff, Reaction::kWarn, Reaction::kSlow,
+                                                          Reaction::kRamp, Reaction::kBrake)),
+                         name_of_row);
+
+// The rows are all that can be set: whatever is not fixed is in the table.
+TEST(ConditionTable, HasEveryCauseThatIsNotFixed) {
+  std::uint64_t all = kAllCauses;
+  for (const StopRule& rule : kStopRules) all &= ~std::uint64_t{rule.cause};
+  for (const Row& row : rows()) all &= ~std::uint64_t{row.cause};
+  EXPECT_EQ(all, 0u) << names_of(kStopCauseNames, all);
+}
+
+}  // namespace
+}  // namespace robot_control

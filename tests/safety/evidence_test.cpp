@@ -1,0 +1,121 @@
+// What a permit tells of its causes, and for how long.
+
+#include "safety/monitor_fixture.h"
+
+namespace robot_control {
+namespace {
+
+class EvidenceTest : public MonitorTest {
+ protected:
+  static constexpr double kSlow = 0.6;  // m/s; the robot drives at 0.5
+
+  EvidenceTest() {
+    SafetyParameters chosen = parameters();
+    chosen.heartbeat_timeout = 0;
+    chosen.slow_speed = kSlow;
+    chosen.battery_low = {22, 0, Reaction::kSlow};
+    chosen.imu_lost.reaction = Reaction::kWarn;
+    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
+    sensors_.valid |= kValidBattery;
+    sensors_.battery_voltage = 24;
+    new_run();
+    steps(kStart);
+    drive();
+  }
+  std::vector<std::uint64_t> told() const {
+    std::vector<std::uint64_t> causes;
+    for (const CauseEvidence& evidence : permit_.evidence) {
+      if (evidence.cause != 0) causes.push_back(evidence.cause);
+    }
+    return causes;
+  }
+  using Causes = std::vector<std::uint64_t>;
+};
+
+TEST_F(EvidenceTest, AWarningStaysForASecondAfterItsFactAndSlowsDownAsLong) {
+  sensors_.battery_voltage = 21;
+  step();
+  const std::uint64_t since = cycle();
+  steps(10);
+  sensors_.battery_voltage = 24;
+  steps(1000);
+  EXPECT_EQ(permit_.warnings, std::uint64_t{kCauseBatteryLow});
+  EXPECT_EQ(permit_.speed_limit, kSlow);
+  EXPECT_EQ(permit_.evidence[0].cycle, since);
+  EXPECT_EQ(permit_.evidence[0].value, 21);
+  EXPECT_EQ(permit_.evidence[0].limit, 22);
+  step();
+  EXPECT_EQ(permit_.warnings, 0u);
+  EXPECT_EQ(permit_.speed_limit, kNoSpeedLimit);
+  EXPECT_EQ(told(), Causes());
+}
+
+TEST_F(EvidenceTest, AFactThatComesAndGoesIsOneWarning) {
+  sensors_.battery_voltage = 21;
+  step();
+  const std::uint64_t since = cycle();
+  for (int i = 0; i < 50; ++i) {
+    sensors_.battery_voltage = i % 2 == 0 ? 24 : 21;
+    steps(100);
+    ASSERT_EQ(permit_.warnings, std::uint64_t{kCauseBatteryLow});
+  }
+  EXPECT_EQ(permit_.evidence[0].cycle, since);
+}
+
+TEST_F(EvidenceTest, StandsInTheOrderInWhichCausesCameWithWarningsLast) {
+  sensors_.battery_voltage = 21;
+  step();
+  ++input_.operator_input.e_stop_services;
+  step();
+  const std::uint64_t stopped = cycle();
+  input_.command = nullptr;
+  steps(kLoss);
+  EXPECT_EQ(told(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseBatteryLow}));
+  EXPECT_EQ(permit_.evidence[0].cycle, stopped);
+  EXPECT_EQ(permit_.evidence[1].cycle, cycle());
+  EXPECT_EQ(permit_.evidence[1].value, static_cast<double>(kLoss));
+}
+
+TEST_F(EvidenceTest, NamesTheJoint) {
+  speed_[1] = 12;
+  steps(80);
+  ASSERT_NE(permit_.causes & kCauseRunaway, 0u);
+  EXPECT_EQ(permit_.evidence[0].joint, 1u);
+  EXPECT_GT(permit_.evidence[0].value, permit_.evidence[0].limit);
+}
+
+TEST_F(EvidenceTest, IsClearedByAnAcceptedReset) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  stand();
+  ASSERT_EQ(reset(), 0u);
+  EXPECT_EQ(told(), Causes());
+}
+
+TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  input_.command = nullptr;
+  steps(kLoss);
+  const Permit last = permit_;
+  input_.command = &command_;
+  input_.operator_input = {};
+  monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
+  monitor_.resume(last);
+  monitor_.reset({});
+  step();
+  EXPECT_EQ(told(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));
+  EXPECT_EQ(permit_.evidence[0].cycle, last.evidence[0].cycle);
+  EXPECT_EQ(permit_.evidence[1].value, last.evidence[1].value);
+}
+
+TEST_F(EvidenceTest, OutlivesANewRun) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  new_run();
+  steps(5);
+  EXPECT_EQ(told(), Causes{kCauseEmergencyStopService});
+}
+
+}  // namespace
+}  // namespace robot_control

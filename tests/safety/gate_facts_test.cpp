@@ -1,0 +1,121 @@
+// What the gate does against what the permits say.
+
+#include <cmath>
+
+#include "safety/monitor_fixture.h"
+
+namespace robot_control {
+namespace {
+
+/// Driving, without a heartbeat.
+class GateFactsTest : public MonitorTest {
+ protected:
+  GateFactsTest() {
+    SafetyParameters patient = parameters();
+    patient.heartbeat_timeout = 0;
+    monitor_ = SafetyMonitor(patient, robot(), kPeriod);
+    new_run();
+    steps(kStart);
+    drive();
+    steps(50);
+  }
+  /// One command in `of` is missing for longer than a command lives.
+  std::uint64_t braked_ticks_until_refused(std::uint64_t period, std::uint64_t braked, std::uint64_t patience) {
+    for (std::uint64_t k = 0; k < patience; ++k) {
+      gate_works_ = k % period >= braked;
+      step();
+      if (permit_.causes != 0) return k + 1;
+    }
+    return patience;
+  }
+};
+
+TEST_F(GateFactsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossCycles) {
+  gate_works_ = false;
+  steps(kLoss - 1);
+  EXPECT_EQ(permit_.causes, 0u);
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.evidence[0].value, static_cast<double>(kLoss));
+}
+
+// 6 ticks of 10, as of a controller whose commands come every tenth cycle: more than a half of 1000 after 833 ticks.
+TEST_F(GateFactsTest, AGateThatBrakesInMoreThanHalfOfASecondIsRefusing) {
+  const std::uint64_t ticks = braked_ticks_until_refused(10, 6, 2000);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
+  EXPECT_NEAR(static_cast<double>(ticks), 501 / 0.6, 10);
+}
+
+TEST_F(GateFactsTest, AGateThatBrakesInHalfOfTheTicksAtMostIsTolerated) {
+  EXPECT_EQ(braked_ticks_until_refused(10, 5, 5000), 5000u);
+}
+
+TEST_F(GateFactsTest, ABrakeThatTheControllerAskedForIsNoRefusal) {
+  stand();
+  steps(2000);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
+TEST_F(GateFactsTest, AGateThatRefusesFramesIsRefusing) {
+  for (std::uint64_t i = 0; i < kLoss; ++i) {
+    ++sensors_.gate.refused;
+    const std::uint64_t refused = sensors_.gate.refused;
+    gate_works_ = false;
+    sensors_.gate.refused = refused;
+    step();
+  }
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
+}
+
+// The monitor's permits expire before it notices that it is late; a gate that brakes then is right.
+TEST_F(GateFactsTest, ABrakeUnderAnExpiredPermitIsNoRefusal) {
+  for (int i = 0; i < 100; ++i) {
+    skip(kPermitLife + 2);
+    step();
+    ASSERT_FALSE(gate_passes());
+  }
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
+TEST_F(GateFactsTest, AGateThatPassesUnderABrakeDisobeysAndWaitsForARepair) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  steps(5);
+  ASSERT_EQ(permit_.causes, std::uint64_t{kCauseEmergencyStopService});
+  gate_obeys_ = false;
+  step();
+  EXPECT_EQ(permit_.causes, kCauseEmergencyStopService | kCauseGateDisobeys);
+  EXPECT_EQ(permit_.state, SupervisorState::kFault);
+}
+
+TEST_F(GateFactsTest, AGateThatPassesWhatExpiredDisobeys) {
+  gate_obeys_ = false;
+  steps(10);
+  EXPECT_EQ(permit_.causes, 0u) << "the permits allow it";
+  skip(kPermitLife + 2);
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateDisobeys});
+}
+
+// In the tick after the stop the gate still used the permit before it, as it should.
+TEST_F(GateFactsTest, ThePermitOnItsWayIsNoDisobedience) {
+  ++input_.operator_input.e_stop_services;
+  step();
+  step();
+  ASSERT_TRUE(gate_passes());
+  steps(10);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEmergencyStopService});
+}
+
+TEST_F(GateFactsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
+  const Permit last = permit_;
+  monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
+  monitor_.resume(last);
+  monitor_.reset({});
+  steps(10);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});
+}
+
+}  // namespace
+}  // namespace robot_control

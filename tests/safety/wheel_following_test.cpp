@@ -1,0 +1,93 @@
+// A wheel against its target, where the table of conditions says nothing.
+
+#include "safety/monitor_fixture.h"
+
+namespace robot_control {
+namespace {
+
+class WheelFollowingTest : public MonitorTest {
+ protected:
+  WheelFollowingTest() {
+    SafetyParameters chosen = parameters();
+    chosen.heartbeat_timeout = 0;
+    chosen.yaw_rate.reaction = Reaction::kOff;
+    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
+    new_run();
+    steps(kStart);
+    drive();
+    steps(100);
+  }
+};
+
+// From 5 rad/s to −5 rad/s at 10 rad/s², by a drive that reaches 6 rad/s²: up to 4 rad/s against the target.
+TEST_F(WheelFollowingTest, AWeakDriveThatTurnsRoundIsNotWrong) {
+  double wanted = kSpeed;
+  double speed = kSpeed;
+  while (speed > -kSpeed) {
+    wanted = std::max(wanted - 10 * kPeriod, -kSpeed);
+    speed -= 6 * kPeriod;
+    target(wanted);
+    turn_wheels(speed);
+    step();
+    ASSERT_EQ(permit_.causes, 0u) << speed;
+  }
+}
+
+TEST_F(WheelFollowingTest, AWheelThatKeepsTurningWronglyIs) {
+  target(-kSpeed);
+  steps(50 + 1);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
+}
+
+TEST_F(WheelFollowingTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
+  turn_wheels(0.25 * kSpeed);
+  steps(5000);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
+TEST_F(WheelFollowingTest, WithoutATargetNothingIsCompared) {
+  target(0);
+  turn_wheels(0);
+  steps(3000);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
+TEST_F(WheelFollowingTest, WhatTheGateDidNotPassIsNotCompared) {
+  gate_works_ = false;
+  target(-kSpeed);
+  steps(kLoss);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
+}
+
+TEST_F(WheelFollowingTest, AWheelThatTurnsUnderATargetOfZeroRunsAway) {
+  for (JointCommand& joint : command_.joints) joint.velocity = 0;  // in kEffort
+  steps(60);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseRunaway});
+}
+
+TEST_F(WheelFollowingTest, ARobotThatSwingsAboutItsRestDoesNotStop) {
+  target(0);
+  for (int i = 0; i < 3500; ++i) {
+    turn_wheels(0.3 * std::cos(10.0 * i * kPeriod));  // ±30 mrad
+    step();
+  }
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseNotStopping});
+}
+
+TEST_F(WheelFollowingTest, ACommandThatDescendsFromAnOldStateIsStaleAfterLossCycles) {
+  fresh_state_ = false;
+  steps(kLoss - 1);
+  EXPECT_EQ(permit_.causes, 0u);
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseCommandStale});
+}
+
+TEST_F(WheelFollowingTest, ACommandIsNotStaleForWantOfAState) {
+  fresh_state_ = false;
+  input_.state_seen = false;
+  steps(kLoss);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEstimatorLost});
+}
+
+}  // namespace
+}  // namespace robot_control
