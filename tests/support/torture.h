@@ -4,10 +4,12 @@
 
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdint>
 #include <string>
 
@@ -107,6 +109,7 @@ bool all_are(const Values& values, std::uint64_t number) {
 
 /// One frame after the other, without pause, until told to stop.
 inline int write_torture_frames(const TortureMemory<LatestFrames<TortureFrame>>& memory, TortureControl& control) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a benchmark that is interrupted leaves no writer behind
   const OnCore core(1);
   const MemoryMapping mapping = memory.map(Access::kReadWrite);
   FrameWriter<TortureFrame> writer(static_cast<LatestFrames<TortureFrame>*>(mapping.data()), Wake::kNobody);
@@ -166,6 +169,7 @@ inline TortureCount torture_ring(std::uint64_t rows) {
   const AnonymousMemory<RingPositions> positions;
   std::atomic<std::uint64_t>& read = positions->read[0];
   ChildProcess other([&] {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     const MemoryMapping mapping = memory.map(Access::kReadWrite);
     RingWriter<TortureRow> writer(static_cast<Ring<TortureRow>*>(mapping.data()));
     TortureRow row;
