@@ -20,7 +20,7 @@
 /// beginning.
 ///
 /// What normal driving does, in these facts: 13 robots of 1 … 450 kg at up to 1 m/s, 2 rad/s and 1 m/s², with the
-/// errors of a BMI088, three hours of flat ground, a slope of 5°, ice and bumps of 5 … 15 mm. The defaults bear 1.5
+/// errors of a BMI088, 2.8 hours of flat ground, a slope of 5°, ice and bumps of 5 … 15 mm. The defaults bear 1.5
 /// times that:
 ///
 ///   tilt       0.27 rad, a light robot that rocks on its body; of it 0.1 are errors    0.42 rad
