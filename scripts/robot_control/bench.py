@@ -2,6 +2,8 @@
 
 Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
+
+Of the same form is what the trials give that judge, too: campaign.py, driving.py.
 """
 
 from __future__ import annotations
@@ -10,11 +12,15 @@ import argparse
 import json
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-NAMES = ("step", "plant", "lockstep", "frames", "stops")
+from robot_control.fault_sequence import ALL_RUNS
+
+MEASURED = ("step", "plant", "lockstep", "frames", "stops")
+JUDGED = ("campaign", "driving")  # only when they are named
+NAMES = MEASURED + JUDGED
 
 
 def run_program(program: Path, params: Path) -> dict[str, Any]:
@@ -22,6 +28,24 @@ def run_program(program: Path, params: Path) -> dict[str, Any]:
     done = subprocess.run([program, params], stdout=subprocess.PIPE, check=True, text=True, stdin=subprocess.DEVNULL)
     result: dict[str, Any] = json.loads(done.stdout)
     return result
+
+
+def tell(text: str) -> None:
+    """Progress, and what went wrong."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    """What NAME measured, and whether that is as it has to be."""
+    if name == "campaign":
+        from robot_control import campaign
+
+        return campaign.bench(given.first, given.runs, tell)
+    if name == "driving":
+        from robot_control import driving
+
+        return driving.bench(given.share, tell)
+    return run_program(given.programs / f"bench_{name}", given.params), True
 
 
 def to_table(result: dict[str, Any]) -> str:
@@ -43,10 +67,33 @@ def _writable_file(text: str) -> Path:
     return path
 
 
+def _whole(least: int) -> Callable[[str], int]:
+    def convert(text: str) -> int:
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text} is no whole number ≥ {least}")
+        return int(text)
+
+    return convert
+
+
+def _share(text: str) -> float:
+    try:
+        share = float(text)
+    except ValueError:
+        share = 0.0
+    if not 0 < share <= 100:
+        raise argparse.ArgumentTypeError(f"{text} is no number above 0, up to 100")
+    return share
+
+
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/bench; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(NAMES)} (default: all)")
+    which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
+    parser.add_argument("names", nargs="*", metavar="NAME", help=which)
+    parser.add_argument("--first", type=_whole(0), default=0, help="campaign: first seed")
+    parser.add_argument("--runs", type=_whole(1), default=ALL_RUNS, help="campaign: number of seeds")
+    parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
@@ -54,7 +101,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     unknown = [name for name in given.names if name not in NAMES]
     if unknown:
         parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(NAMES)}")
-    given.names = given.names or list(NAMES)
+    given.names = given.names or list(MEASURED)
     return given
 
 
@@ -64,12 +111,13 @@ def main() -> int:
     results, failed = [], 0
     for name in given.names:
         try:
-            result = run_program(given.programs / f"bench_{name}", given.params)
+            result, good = run(name, given)
         except (OSError, subprocess.CalledProcessError, json.JSONDecodeError) as error:
             print(f"scripts/bench: {name}: {error}", file=sys.stderr)
             failed += 1
             continue
         results.append(result)
+        failed += not good
         print(f"\n{to_table(result)}", flush=True)
     if given.json is not None:
         given.json.write_text(json.dumps(results, indent=2) + "\n")

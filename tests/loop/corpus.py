@@ -1,31 +1,19 @@
 """Real robots to try: where their descriptions lie, and what is true of them.
 
-A folder per robot with `robot.urdf` and the ROS packages of its meshes, and TRUTH.json. Looked for in the folder named
-by ROBOT_CORPUS, else beside the repository in `shared/robots`; tests that need them skip where they are absent.
+Where the folder is looked for: robot_control/robots.py. Tests that need it skip where it is absent.
 """
 
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from robot_control.robots import corpus_folder, robot_names
 
-def _folder() -> Path | None:
-    named = os.environ.get("ROBOT_CORPUS")
-    if named:
-        return Path(named)
-    for parent in Path(__file__).resolve().parents:
-        if (parent / "shared" / "robots" / "TRUTH.json").is_file():
-            return parent / "shared" / "robots"
-    return None
-
-
-FOLDER = _folder()
+FOLDER = corpus_folder()
 ABSENT = "no folder of real robots: set ROBOT_CORPUS"
-REFUSED = ("my_bot", "p3dx_amr")  # an empty template; wheels on fixed joints
 
 
 @dataclass(frozen=True)
@@ -50,4 +38,4 @@ def drivable_robots() -> list[CorpusRobot]:
     if FOLDER is None:
         return []
     truths = json.loads((FOLDER / "TRUTH.json").read_text())
-    return [CorpusRobot(name, truth) for name, truth in sorted(truths.items()) if name not in REFUSED]
+    return [CorpusRobot(name, truths[name]) for name in robot_names()[1:]]

@@ -55,4 +55,7 @@ def test_a_file_that_cannot_be_written_to_is_refused_before_anything_is_measured
 def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])
-    assert "no benchmark warp; there are step, plant, lockstep, frames, stops" in capsys.readouterr().err
+    assert (
+        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving"
+        in capsys.readouterr().err
+    )

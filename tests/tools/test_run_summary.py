@@ -58,6 +58,7 @@ def test_the_vocabulary_is_that_of_the_frames():
     names = (ROOT / "src/signals/names.h").read_text()
     states = re.search(r"name_of\(SupervisorState.*?kNames\{(.*?)\}", names, re.DOTALL).group(1)
     assert tuple(re.findall(r'"(\w+)"', states)) == SUPERVISOR_STATES
+    names = (ROOT / "src/signals/cause_names.h").read_text()
     causes = re.search(r"kStopCauseNames = .*?\n\}\);", names, re.DOTALL).group(0)
     assert tuple(re.findall(r'\{kCause\w+, "(\w+)"', causes)) == STOP_CAUSES
 

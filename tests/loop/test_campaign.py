@@ -1,0 +1,135 @@
+"""Random fault sequences end at standstill; and who judges them would notice if they did not."""
+
+import numpy as np
+import pytest
+from robot_control.campaign import campaign, run_seed
+from robot_control.fault_sequence import ALL_RUNS, COMPONENTS, FaultSequence, draw_sequence
+from robot_control.random_drive import Leg
+from robot_control.robots import robot_names
+from robot_control.sequence_judge import RULES, judge
+from robot_control.sequence_run import COLUMNS
+
+SAMPLE = range(0, ALL_RUNS, 100)  # one seed in a hundred
+
+PERIOD, WHEEL_BASE, FASTEST = 0.001, 0.5, 1.5  # s, m, m/s
+STOPPED, READY = 4, 1  # SupervisorState
+BRAKE, PASSED, DRIVE = 0, 1, 2  # GateVerdict, PermitAction
+DRIVEN = 1.0  # s
+
+
+def test_one_in_a_hundred_of_all_sequences_is_survived():
+    lines = []
+    tally = campaign(SAMPLE, lines.append)
+    assert tally.runs == len(SAMPLE)
+    assert not tally.failed, "\n".join(lines)
+    assert len(tally.stops) >= 5, "hardly anything was put to the test"
+
+
+def test_a_seed_is_the_same_sequence_each_time():
+    robots = robot_names()
+    assert draw_sequence(3, robots) == draw_sequence(3, robots) != draw_sequence(4, robots)
+
+
+def test_a_seed_gives_the_same_outcome_each_time():
+    assert run_seed(7, robot_names()) == run_seed(7, robot_names())
+
+
+@pytest.fixture
+def sequence():
+    return FaultSequence(0, "diffbot", "flat", [Leg(0, 1, 0)], 0.1, DRIVEN, False, False)
+
+
+@pytest.fixture
+def log(sequence):
+    """Drives at 1 m/s, ramps down at 1 m/s², stands under the brake."""
+    cycles = round(sequence.released / PERIOD)
+    time = np.arange(cycles) * PERIOD
+    log = {name: np.zeros(cycles) for name in COLUMNS}
+    log["cycle"] = np.arange(cycles, dtype=float)
+    log["truth_linear"] = np.clip(1.0 - (time - DRIVEN), 0.0, 1.0)
+    log["requested_linear"] = np.where(time < DRIVEN, 1.0, 0.0)
+    log["permit_action"][:] = DRIVE
+    log["supervisor_state"][:] = READY
+    log["gate_verdict"] = np.where(log["truth_linear"] > 0, PASSED, BRAKE).astype(float)
+    log["gate_permit_cycle"] = np.maximum(log["cycle"] - 1, 0)
+    log["gate_verdict"][0] = BRAKE
+    return log
+
+
+def rules_broken(sequence, log):
+    return {violation.rule for violation in judge(sequence, log, WHEEL_BASE, PERIOD, FASTEST)}
+
+
+def rows(first, end):
+    """From `first` to `end`, s."""
+    return slice(round(first / PERIOD), round(end / PERIOD))
+
+
+def test_a_healthy_drive_breaks_no_rule(sequence, log):
+    assert rules_broken(sequence, log) == set()
+
+
+def test_a_passed_command_under_a_brake_permit_is_noticed(sequence, log):
+    log["permit_action"][500] = 0
+    assert rules_broken(sequence, log) == {"permit"}
+
+
+def test_a_passed_command_under_an_old_permit_is_noticed(sequence, log):
+    log["gate_permit_cycle"][500] -= 4
+    assert rules_broken(sequence, log) == {"permit"}
+
+
+def test_a_robot_that_speeds_up_under_the_brake_is_noticed(sequence, log):
+    log["gate_verdict"][rows(0.5, 0.6)] = BRAKE
+    log["truth_linear"][rows(0.55, 0.6)] = 1.21
+    assert rules_broken(sequence, log) == {"brake"}
+
+
+def test_a_robot_that_goes_on_under_the_brake_is_noticed(sequence, log):
+    log["truth_linear"][rows(1.0, 4.0)] = 1.0
+    log["gate_verdict"][rows(1.0, 8.0)] = BRAKE
+    assert rules_broken(sequence, log) == {"brake"}
+
+
+def test_a_runaway_is_noticed(sequence, log):
+    log["truth_linear"][500] = 1.5 * FASTEST + 0.31
+    assert rules_broken(sequence, log) == {"speed"}
+
+
+def test_a_robot_that_turns_too_fast_is_noticed(sequence, log):
+    log["truth_angular"][500] = 10.0  # 2.5 m/s at the wheels, and 1 m/s of the drive
+    assert rules_broken(sequence, log) == {"speed"}
+
+
+def test_a_robot_that_creeps_at_the_end_is_noticed(sequence, log):
+    log["truth_linear"][rows(sequence.rested - 0.4, sequence.rested)] = 0.011
+    assert "rest" in rules_broken(sequence, log)
+
+
+def test_a_start_without_a_command_after_a_reset_is_noticed(sequence, log):
+    reset = round(sequence.rested / PERIOD)
+    log["supervisor_state"][reset - 1000 : reset] = STOPPED
+    assert rules_broken(sequence, log) == set()
+    log["gate_verdict"][reset + 100 :] = PASSED
+    log["truth_linear"][reset + 100 :] = 0.011
+    assert rules_broken(sequence, log) == {"release"}
+
+
+def test_a_lean_is_noticed(sequence, log):
+    log["truth_tilt"][500] = np.radians(10.1)
+    assert rules_broken(sequence, log) == {"tilt"}
+
+
+def test_a_diverged_simulation_is_noticed(sequence, log):
+    log["driver_state"][500] = 3
+    assert rules_broken(sequence, log) == {"machine"}
+
+
+def test_who_has_no_brakes_need_not_stand(sequence, log):
+    log["injected"][:] = 1 << (3 * COMPONENTS.index("left_motor"))  # off
+    log["truth_linear"][rows(2.0, 7.0)] = 0.5
+    assert rules_broken(sequence, log) == set()
+
+
+def test_every_rule_was_broken_above():
+    assert set(RULES) == {"permit", "brake", "speed", "rest", "release", "tilt", "machine"}

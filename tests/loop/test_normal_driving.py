@@ -1,0 +1,27 @@
+"""Who drives normally is not stopped, and not warned."""
+
+import pytest
+from robot_control.driving import Drive, all_drives, bench, carry_out
+from robot_control.robots import DIFFBOT, SCENES
+
+SHARE = 1 / 12  # ten minutes of the two hours
+
+
+def test_ten_minutes_over_all_scenes_robots_and_rates_without_a_false_stop():
+    lines = []
+    result, fine = bench(SHARE, lines.append)
+    assert fine, "\n".join(lines)
+    figures = {row["name"]: row["value"] for row in result["rows"]}
+    assert figures["distance"] / figures["simulated"] > 0.5, "km/h: it hardly moved"
+
+
+def test_all_of_it_takes_an_hour_and_a_half_of_the_own_robot():
+    own = [drive for drive in all_drives(1.0) if drive.robot == DIFFBOT]
+    assert sum(drive.seconds for drive in own) >= 1.5 * 3600
+    assert {drive.scene for drive in own} == set(SCENES)
+
+
+@pytest.mark.parametrize("scene", ["flat", "bumps"])
+def test_a_drive_is_the_same_each_time(scene):
+    drive = Drive(DIFFBOT, scene, 1000, 5.0, 1)
+    assert carry_out(drive) == carry_out(drive)
