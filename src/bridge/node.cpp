@@ -12,6 +12,7 @@
 
 #include "bridge/description.h"
 #include "bridge/diagnostics.h"
+#include "bridge/loopback.h"
 #include "bridge/messages.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
@@ -136,6 +137,7 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
   std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep their point
   install_last_words(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
+  bind_as_ros_is_told();
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
     catch_signals();
