@@ -17,7 +17,7 @@ import rostest
 from robot_control.recording import TOPICS
 from system_support import LIMIT, MONITOR, refusal, repository, wait_for
 
-SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "tf_static", "/clock", "/rosout"}
+SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "clearance", "tf_static", "/clock", "/rosout"}
 """Topics without messages, certainly or perhaps: nobody commands, no transform is static, /clock is of lockstep alone,
 and what the nodes log they may have logged before the recorder came."""
 LAUNCH_LIMIT = 3 * LIMIT

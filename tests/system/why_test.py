@@ -1,0 +1,121 @@
+#!/usr/bin/python3
+"""why.py beside a running robot, and beside none."""
+
+import signal
+import socket
+
+import rospy
+import rostest
+from std_srvs.srv import SetBool
+from system_support import LIMIT, LOOP, MONITOR, PLANT, Program, RobotTestCase, wait_for
+
+
+def answer(*arguments: str, **environment: str) -> tuple[int, str]:
+    """Exit code and words of `why.py --once`."""
+    program = Program("why.py", "--once", *arguments, environment=environment)
+    try:
+        return program.wait(), program.output
+    finally:
+        program.end()
+
+
+class WhyTest(RobotTestCase):
+    def setUp(self) -> None:
+        self.robot.await_ready()
+
+    def ask_until(self, words: str) -> tuple[int, str]:
+        """The answer that begins so; what a node reports is up to a second old."""
+        last = (0, "")
+
+        def found() -> bool:
+            nonlocal last
+            last = answer()
+            return last[1].startswith(words)
+
+        try:
+            wait_for(words, found, every=lambda: self.robot.send(0.5, 0.2))
+        except AssertionError as error:
+            raise AssertionError(f"{error}\n{last[1]}") from error
+        return last
+
+    def test_without_a_master_it_says_so(self) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            uri = f"http://127.0.0.1:{free.getsockname()[1]}"
+        code, words = answer(ROS_MASTER_URI=uri)
+        self.assertEqual(code, 1)
+        self.assertTrue(words.startswith(f"There is no ROS master at {uri}."), words)
+        self.assertIn("roslaunch robot_control sim.launch", words)
+
+    def test_where_no_robot_is_it_says_where_one_is(self) -> None:
+        code, words = answer("__ns:=nowhere")
+        self.assertEqual(code, 1)
+        self.assertTrue(words.startswith("No node of the robot runs in /nowhere."), words)
+        self.assertIn("why.py __ns:=/\n", words)
+
+    def test_a_driving_robot_moves_and_its_sender_is_named(self) -> None:
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+        sender = Program("send_cmd.py", "--seconds", str(LIMIT))
+        try:
+            code, words = self.ask_until("It moves: ")
+            self.assertEqual(code, 0, words)
+            self.assertIn("/send_cmd", words)
+            for node in LOOP:
+                self.assertIn(node, words)
+        finally:
+            sender.end()
+
+    def test_a_stop_is_answered_with_its_cause_and_what_to_do(self) -> None:
+        self.robot.send_e_stop(True)
+        wait_for("the stop", lambda: "e_stop_topic" in self.robot.causes)
+        code, words = answer()
+        self.assertEqual(code, 1)
+        self.assertTrue(words.startswith("Stopped: "), words)
+        self.assertIn("the topic e_stop said true", words)
+        self.assertIn("operator: publish false on e_stop", words)
+        self.assertIn("$ rosservice call /e_stop_reset", words)
+        self.robot.send_e_stop(False)
+        self.robot.release()
+
+    def test_a_killed_monitor_is_missed(self) -> None:
+        self.robot.nodes[MONITOR].kill()
+        code, words = self.ask_until("safety_monitor does not run")
+        self.assertEqual(code, 1)
+        self.assertIn("rosrun robot_control safety_monitor", words)
+        self.robot.start(MONITOR)
+        wait_for("the new one's word", lambda: "monitor_restarted" in self.robot.causes)
+        self.robot.release()
+
+    def test_a_paused_simulation_is_told_with_the_way_out(self) -> None:
+        pause = rospy.ServiceProxy(f"{PLANT}/set_pause", SetBool)
+        pause(True)
+        try:
+            code, words = self.ask_until("The simulation is paused.")
+            self.assertEqual(code, 1)
+            self.assertIn("rosservice call /mujoco_plant/set_pause false", words)
+        finally:
+            pause(False)
+
+    def test_live_and_not_on_a_terminal_it_prints_what_changes_and_nothing_else(self) -> None:
+        self.robot.await_rest()
+        program = Program("why.py")
+        try:
+            wait_for("its first answer", lambda: "It may move" in program.output, every=lambda: self.robot.send(0, 0))
+            self.robot.send_e_stop(True)
+            wait_for("its second answer", lambda: "\nStopped: " in program.output)
+            wait_for("the gate's word", lambda: "gate       brake" in program.output)
+            before = program.output
+            rospy.rostime.wallsleep(3.0)  # 12 frames
+            self.assertLessEqual(program.output.count("\nStopped: "), before.count("\nStopped: ") + 2)
+            program.send_signal(signal.SIGINT)
+            self.assertEqual(program.wait(), 0)
+            self.assertNotIn("Traceback", program.output)
+            self.assertNotIn("\x1b", program.output)
+        finally:
+            program.end()
+            self.robot.send_e_stop(False)
+            self.robot.release()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "why", WhyTest)
