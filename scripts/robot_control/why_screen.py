@@ -109,15 +109,11 @@ def _safety(safety: Safety, look: Look) -> Rows:
 
 
 def _nodes(facts: Facts) -> Rows:
+    if facts.heard() is None and not facts.master_answers:
+        return
     absent = missing_nodes(facts)
-    words = []
-    for node in LOOP:
-        if node in absent or (not facts.there(node) and facts.heard() is None):
-            words.append(f"{node} MISSING")
-        elif not facts.there(node):
-            words.append(f"{node} silent")
-        else:
-            words.append(node)
+    words = [f"{node} MISSING" for node in absent]
+    words += [node if facts.there(node) else f"{node} silent" for node in LOOP if node not in absent]
     yield "nodes", ", ".join(words), ""
 
 
