@@ -295,8 +295,7 @@ def _told(facts: Facts) -> bool:
 
 def speeds(pair: tuple[float, float]) -> str:
     """Both with their units."""
-    linear, angular = (round(value, 2) + 0.0 for value in pair)  # + 0: no -0.00
-    return f"{linear:.2f} m/s, {angular:.2f} rad/s"
+    return f"{pair[0]:.2f} m/s, {pair[1]:.2f} rad/s"
 
 
 def _moving(facts: Facts) -> Answer:

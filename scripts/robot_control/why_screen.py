@@ -109,11 +109,15 @@ def _safety(safety: Safety, look: Look) -> Rows:
 
 
 def _nodes(facts: Facts) -> Rows:
-    if facts.heard() is None and not facts.master_answers:
-        return
     absent = missing_nodes(facts)
-    words = [f"{node} MISSING" for node in absent]
-    words += [node if facts.there(node) else f"{node} silent" for node in LOOP if node not in absent]
+    words = []
+    for node in LOOP:
+        if node in absent or (not facts.there(node) and facts.heard() is None):
+            words.append(f"{node} MISSING")
+        elif not facts.there(node):
+            words.append(f"{node} silent")
+        else:
+            words.append(node)
     yield "nodes", ", ".join(words), ""
 
 

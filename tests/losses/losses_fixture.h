@@ -38,6 +38,14 @@ class Losses : public ::testing::Test {
 
   void expect_lives(LoopNode node) { EXPECT_TRUE(nodes().lives(node)) << name_of(node) << ":\n" << nodes().said(node); }
 
+  /// It died of that signal, and said so in one line.
+  void expect_last_words(LoopNode node, int signal, const std::string& name) {
+    EXPECT_EQ(nodes().process(node).ending_signal(), signal) << name_of(node) << ":\n" << nodes().said(node);
+    const std::string said = nodes().said(node);
+    EXPECT_TRUE(said.starts_with(std::string(name_of(node)) + ": " + name)) << said;
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  }
+
   /// Full speed, as before, and nothing latched but what a stall of this machine latches.
   void expect_undisturbed() {
     constexpr double kFast = 0.9 * DrivingRobot::kFullSpeed;

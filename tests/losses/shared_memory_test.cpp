@@ -105,7 +105,7 @@ TEST_P(AWoundedChannel, CutOffEndsThoseAloneWhoMapItAndTheRobotBrakes) {
       expect_lives(node);
     } else if (!nodes().lives(node)) {
       ended.append(" ").append(name_of(node));
-      EXPECT_EQ(nodes().process(node).ending_signal(), SIGBUS) << name_of(node) << ":\n" << nodes().said(node);
+      expect_last_words(node, SIGBUS, "SIGBUS");
     }
   }
   std::printf("  %s: ended by SIGBUS:%s\n", channel(), ended.c_str());

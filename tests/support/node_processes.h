@@ -16,6 +16,7 @@
 
 #include "drivers/mujoco_plant.h"
 #include "rt/futex.h"
+#include "rt/last_words.h"
 #include "rt/realtime_thread.h"
 #include "runtime/controller_process.h"
 #include "runtime/driver_process.h"
@@ -94,6 +95,7 @@ class NodeProcesses {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int log = open(log_of(node).c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
     dup2(log, STDERR_FILENO);
+    install_last_words(name_of(node), node == LoopNode::kTelemetry ? "the log with it" : "the motors brake without it");
     try {
       if (preparations_[index_of(node)]) preparations_[index_of(node)]();
       prepare_process(parameters_.loop.realtime);

@@ -81,14 +81,6 @@ def test_without_a_master_it_says_what_to_start():
     assert answer.commands == ("roslaunch robot_control sim.launch",)
 
 
-def test_what_cannot_be_known_is_not_called_missing():
-    assert "MISSING" not in text(Facts(master="http://127.0.0.1:11311", master_answers=False))
-
-
-def test_a_standing_robot_has_no_negative_zero_speed(driving):
-    assert "measured 0.00 m/s, 0.00 rad/s" in " ".join(text(replace(driving, measured=(-0.001, -0.0))).split())
-
-
 def test_a_master_alone_is_no_robot():
     answer = judge(Facts(master="http://127.0.0.1:11311"))
     assert answer.headline == "No node of the robot runs."

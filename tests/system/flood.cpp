@@ -1,0 +1,116 @@
+/// flood RATE: RATE messages a second on every input topic of a robot, and calls of its services as often, or as fast
+/// as they are answered. None of them stops the robot. Ends on SIGINT, and then says how many it sent.
+
+#include <ros/ros.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bridge/simulation_messages.h"
+
+namespace robot_control {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// `act` so many times a second, in spells of a millisecond; behind a stop of this program nothing is made up for.
+void at_rate(double rate, const std::function<bool()>& act, std::atomic<std::uint64_t>& count) {
+  constexpr auto kSpell = std::chrono::milliseconds(1);
+  const int each = static_cast<int>(rate / 1000);
+  Clock::time_point next = Clock::now();
+  while (ros::ok()) {
+    for (int i = 0; i < each && ros::ok(); ++i) count += act() ? 1 : 0;
+    next = std::max(next + kSpell, Clock::now());
+    std::this_thread::sleep_until(next);
+  }
+}
+
+struct Flow {
+  std::string name;
+  std::function<bool()> act;
+  std::atomic<std::uint64_t> count{0};
+};
+
+class Flood {
+ public:
+  explicit Flood(double rate) : rate_(rate) {
+    msg::Twist twist;
+    twist.linear.x = 1.0;
+    msg::TwistStamped stamped;
+    stamped.twist = twist;
+    msg::Bool no_stop;
+    no_stop.data = 0;
+    msg::Float64 far;
+    far.data = 1000.0;
+    publish("cmd_vel", twist);
+    publish("cmd_vel_stamped", stamped);
+    publish("e_stop", no_stop);
+    publish("heartbeat", msg::Empty());
+    publish("clearance", far);
+    msg::SetBoolRequest run_on;
+    run_on.data = 0;
+    call<msg::TriggerResponse>("e_stop_reset", msg::TriggerRequest());  // in DRIVE: accepted, without effect
+    call<msg::TriggerResponse>("reset_odometry", msg::TriggerRequest());
+    call<msg::SetBoolResponse>("mujoco_plant/set_pause", run_on);
+  }
+
+  void run() {
+    std::vector<std::thread> threads;
+    for (const auto& flow : flows_) {
+      threads.emplace_back([this, &flow] { at_rate(rate_, flow->act, flow->count); });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& flow : flows_) {
+      std::printf("%s %llu\n", flow->name.c_str(), static_cast<unsigned long long>(flow->count.load()));
+    }
+  }
+
+ private:
+  template <class Message>
+  void publish(const std::string& topic, const Message& message) {
+    const ros::Publisher publisher = handle_.advertise<Message>(topic, 100);
+    add(topic, [publisher, message] {
+      publisher.publish(message);
+      return true;
+    });
+  }
+
+  template <class Response, class Request>
+  void call(const std::string& name, const Request& request) {
+    ros::ServiceClient client = handle_.serviceClient<Request, Response>(name, true);
+    add(name, [client, request]() mutable {
+      Response response;
+      return client.call(request, response);
+    });
+  }
+
+  void add(const std::string& name, std::function<bool()> act) {
+    flows_.push_back(std::make_unique<Flow>());
+    flows_.back()->name = name;
+    flows_.back()->act = std::move(act);
+  }
+
+  ros::NodeHandle handle_;
+  double rate_;
+  std::vector<std::unique_ptr<Flow>> flows_;
+};
+
+}  // namespace
+}  // namespace robot_control
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "flood");
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: flood RATE\n");
+    return 2;
+  }
+  robot_control::Flood(std::atof(argv[1])).run();
+  return 0;
+}

@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+"""roscore is killed while the robot drives: connections that are there stay, and the loop never asked it."""
+
+import time
+
+import rospy
+import rostest
+from losses_support import FAST, FULL_SPEED, KEPT, Master
+from std_srvs.srv import Trigger
+from system_support import LOOP, RobotTestCase, wait_for
+
+MASTER = Master()
+
+
+class LossesMasterTest(RobotTestCase):
+    def test_a_killed_master_changes_no_motion_and_every_stop_still_works(self) -> None:
+        robot = self.robot
+        robot.await_ready()
+        rospy.wait_for_service("e_stop_reset")
+        reset = rospy.ServiceProxy("e_stop_reset", Trigger, persistent=True)
+        reset()  # connects
+        robot.drive_until("1 m/s", lambda: robot.speed > FAST, FULL_SPEED, 0.0)
+        MASTER.kill()
+        end = time.monotonic() + 3.0  # twice cmd_vel_timeout
+        slowest = FULL_SPEED
+        while time.monotonic() < end:
+            robot.send(FULL_SPEED, 0.0)
+            slowest = min(slowest, robot.speed)
+            time.sleep(0.02)
+        print(f"  slowest after the master's death: {slowest:.3f} m/s")
+        self.assertEqual(robot.causes, set())
+        self.assertGreater(slowest, KEPT)
+        for name in LOOP:
+            self.assertTrue(robot.nodes[name].running, name)
+
+        robot.send_e_stop(True)
+        wait_for("the stop", lambda: "e_stop_topic" in robot.causes, every=lambda: robot.send(FULL_SPEED, 0.0))
+        wait_for("standstill", lambda: abs(robot.speed) < 0.01, every=lambda: robot.send(FULL_SPEED, 0.0))
+        self.assertIn("e_stop", reset().message)
+        robot.send_e_stop(False)
+        wait_for("a release", lambda: bool(reset().success), every=lambda: robot.send(0.0, 0.0))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "losses_master", LossesMasterTest)
