@@ -3,7 +3,10 @@
 import contextlib
 import ctypes
 import os
+<<<<<<< HEAD
 import socket
+=======
+>>>>>>> c716fbe (wip3)
 import struct
 import subprocess
 import time
@@ -15,14 +18,23 @@ CLONE_NEWNET = 0x40000000
 """unshare(2)"""
 FULL_SPEED = 1.0
 """m/s: max_linear_speed."""
+<<<<<<< HEAD
 FAST = 0.97 * FULL_SPEED
 """m/s; who is faster than that is there."""
 KEPT = 0.9 * FULL_SPEED
 """m/s; who is never slower than that has not been told to stop: the brake passes it in 30 ms."""
+=======
+FAST = 0.9 * FULL_SPEED
+>>>>>>> c716fbe (wip3)
 
 
 def free_port(address: str) -> int:
     """Of TCP, on that address."""
+<<<<<<< HEAD
+=======
+    import socket
+
+>>>>>>> c716fbe (wip3)
     with socket.socket() as probe:
         probe.bind((address, 0))
         return int(probe.getsockname()[1])
@@ -126,7 +138,11 @@ class JumpingClock:
     def jump(self, seconds: float) -> None:
         """From the true time."""
         # One write of eight bytes, in place: who has the file mapped never sees a part of it.
+<<<<<<< HEAD
         with self._file.open("r+b" if self._file.exists() else "w+b", buffering=0) as file:
+=======
+        with open(self._file, "r+b" if self._file.exists() else "w+b", buffering=0) as file:
+>>>>>>> c716fbe (wip3)
             file.write(struct.pack("=q", int(seconds * 1e9)))
 
     @contextlib.contextmanager
