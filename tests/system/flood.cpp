@@ -1,38 +1,21 @@
 /// flood RATE: RATE messages a second on every input topic of a robot, and calls of its services as often, or as fast
 /// as they are answered. None of them stops the robot. Ends on SIGINT, and then says how many it sent.
 
-<<<<<<< HEAD
 #include <ros/ros.h>
-=======
-#include <geometry_msgs/Twist.h>
-#include <geometry_msgs/TwistStamped.h>
-#include <ros/ros.h>
-#include <std_msgs/Bool.h>
-#include <std_msgs/Empty.h>
-#include <std_msgs/Float64.h>
-#include <std_srvs/SetBool.h>
-#include <std_srvs/Trigger.h>
->>>>>>> c716fbe (wip3)
 
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-<<<<<<< HEAD
 #include <memory>
-=======
->>>>>>> c716fbe (wip3)
 #include <string>
 #include <thread>
 #include <vector>
 
-<<<<<<< HEAD
 #include "bridge/simulation_messages.h"
 
 namespace robot_control {
-=======
->>>>>>> c716fbe (wip3)
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -58,7 +41,6 @@ struct Flow {
 class Flood {
  public:
   explicit Flood(double rate) : rate_(rate) {
-<<<<<<< HEAD
     msg::Twist twist;
     twist.linear.x = 1.0;
     msg::TwistStamped stamped;
@@ -66,20 +48,10 @@ class Flood {
     msg::Bool no_stop;
     no_stop.data = 0;
     msg::Float64 far;
-=======
-    geometry_msgs::Twist twist;
-    twist.linear.x = 1.0;
-    geometry_msgs::TwistStamped stamped;
-    stamped.twist = twist;
-    std_msgs::Bool no_stop;
-    no_stop.data = 0;
-    std_msgs::Float64 far;
->>>>>>> c716fbe (wip3)
     far.data = 1000.0;
     publish("cmd_vel", twist);
     publish("cmd_vel_stamped", stamped);
     publish("e_stop", no_stop);
-<<<<<<< HEAD
     publish("heartbeat", msg::Empty());
     publish("clearance", far);
     msg::SetBoolRequest run_on;
@@ -87,15 +59,6 @@ class Flood {
     call<msg::TriggerResponse>("e_stop_reset", msg::TriggerRequest());  // in DRIVE: accepted, without effect
     call<msg::TriggerResponse>("reset_odometry", msg::TriggerRequest());
     call<msg::SetBoolResponse>("mujoco_plant/set_pause", run_on);
-=======
-    publish("heartbeat", std_msgs::Empty());
-    publish("clearance", far);
-    std_srvs::SetBool run_on;
-    run_on.request.data = 0;
-    call("e_stop_reset", std_srvs::Trigger());  // in DRIVE: accepted, without effect
-    call("reset_odometry", std_srvs::Trigger());
-    call("mujoco_plant/set_pause", run_on);
->>>>>>> c716fbe (wip3)
   }
 
   void run() {
@@ -119,7 +82,6 @@ class Flood {
     });
   }
 
-<<<<<<< HEAD
   template <class Response, class Request>
   void call(const std::string& name, const Request& request) {
     ros::ServiceClient client = handle_.serviceClient<Request, Response>(name, true);
@@ -127,12 +89,6 @@ class Flood {
       Response response;
       return client.call(request, response);
     });
-=======
-  template <class Service>
-  void call(const std::string& name, Service service) {
-    ros::ServiceClient client = handle_.serviceClient<Service>(name, true);
-    add(name, [client, service]() mutable { return client.call(service); });
->>>>>>> c716fbe (wip3)
   }
 
   void add(const std::string& name, std::function<bool()> act) {
@@ -147,10 +103,7 @@ class Flood {
 };
 
 }  // namespace
-<<<<<<< HEAD
 }  // namespace robot_control
-=======
->>>>>>> c716fbe (wip3)
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "flood");
@@ -158,10 +111,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: flood RATE\n");
     return 2;
   }
-<<<<<<< HEAD
   robot_control::Flood(std::atof(argv[1])).run();
-=======
-  Flood(std::atof(argv[1])).run();
->>>>>>> c716fbe (wip3)
   return 0;
 }

@@ -41,11 +41,7 @@ class FloodTest(RobotTestCase):
         self.folder = Path(tempfile.mkdtemp())
         self.robot.await_ready()
         self.telemetry = Program("telemetry", f"_directory:={self.folder}")
-<<<<<<< HEAD
         wait_for("a log", (self.folder / "run.csv").exists)
-=======
-        wait_for("a log", lambda: (self.folder / "run.csv").exists())
->>>>>>> c716fbe (wip3)
         self.drive()
         self.flood = subprocess.Popen([os.environ["FLOOD"], str(RATE)], stdout=subprocess.PIPE, text=True)
         time.sleep(2.0)  # it connects

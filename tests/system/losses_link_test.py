@@ -28,18 +28,22 @@ class LossesLinkTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
         if cls.refused:
-            raise unittest.SkipTest(f"a network namespace is not granted ({cls.refused})")
+            return
         cls.link = Link()
         cls.master = Master(Link.HERE)
         init_test_node("losses_link")
 
     @classmethod
     def tearDownClass(cls) -> None:
+        if cls.refused:
+            return
         cls.link.end()
         rospy.signal_shutdown("done")
         cls.master.kill()
 
     def setUp(self) -> None:
+        if self.refused:
+            self.skipTest(f"no network namespace is granted ({self.refused})")
         self.link.plug(True)
         self.teleop: list[subprocess.Popen[bytes]] = []
         self.robot = Robot()

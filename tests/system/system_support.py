@@ -16,12 +16,15 @@ from pathlib import Path
 
 import roslib.packages
 import rospy
+import rosunit_skips
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64MultiArray
 from std_srvs.srv import Trigger, TriggerResponse
+
+rosunit_skips.record()
 
 PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)

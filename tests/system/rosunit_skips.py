@@ -1,0 +1,41 @@
+"""rosunit knows no skips: in its result file a skipped case is a passed one. With `record` it stands there as skipped,
+with its reason, as pytest and gtest write it."""
+
+import unittest
+import xml.etree.ElementTree as ET
+from typing import Any
+
+from rosunit import xmlrunner
+
+
+def record() -> None:
+    """For all result files that this process writes. Twice is once."""
+    result: Any = xmlrunner._XMLTestResult
+    if result.addSkip is not unittest.TestResult.addSkip:
+        return
+    stop_test = result.stopTest
+
+    def add_skip(self: Any, test: unittest.TestCase, reason: str) -> None:
+        unittest.TestResult.addSkip(self, test, reason)
+        self.skip_reason = reason
+
+    def stop_and_note(self: Any, test: unittest.TestCase) -> None:
+        stop_test(self, test)
+        reason = self.__dict__.pop("skip_reason", None)
+        if reason is not None:
+            note_skip(self._tests[-1], reason)
+
+    result.addSkip = add_skip
+    result.stopTest = stop_and_note
+
+
+def note_skip(info: Any, reason: str) -> None:
+    """`info`: what rosunit knows of one case, and writes down by its method `xml`."""
+    write = info.xml
+
+    def write_skipped() -> ET.Element:
+        case: ET.Element = write()
+        ET.SubElement(case, "skipped", message=reason)
+        return case
+
+    info.xml = write_skipped
