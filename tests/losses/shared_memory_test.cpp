@@ -16,7 +16,7 @@
 namespace robot_control {
 namespace {
 
-constexpr auto P = LoopNode::kPlant, E = LoopNode::kEstimator, C = LoopNode::kController, M = LoopNode::kMonitor;
+using enum LoopNode;
 
 constexpr unsigned bits(std::initializer_list<LoopNode> nodes) {
   unsigned all = 0;
@@ -32,15 +32,15 @@ struct Channel {
 };
 
 const Channel kChannels[] = {
-    {"sensors", P, bits({P, E, C, M}), true},
-    {"state", E, bits({E, C, M, P}), false},
-    {"command", C, bits({C, P, M}), false},
-    {"permit", M, bits({M, P, C}), true},
-    {"truth", P, bits({P}), true},
-    {"trace_plant", P, bits({P}), true},
-    {"trace_estimator", E, bits({E}), false},
-    {"trace_controller", C, bits({C}), false},
-    {"trace_monitor", M, bits({M}), false},
+    {"sensors", kPlant, bits({kPlant, kEstimator, kController, kMonitor}), true},
+    {"state", kEstimator, bits({kEstimator, kController, kMonitor, kPlant}), false},
+    {"command", kController, bits({kController, kPlant, kMonitor}), false},
+    {"permit", kMonitor, bits({kMonitor, kPlant, kController}), true},
+    {"truth", kPlant, bits({kPlant}), true},
+    {"trace_plant", kPlant, bits({kPlant}), true},
+    {"trace_estimator", kEstimator, bits({kEstimator}), false},
+    {"trace_controller", kController, bits({kController}), false},
+    {"trace_monitor", kMonitor, bits({kMonitor}), false},
 };
 
 void PrintTo(const Channel& channel, std::ostream* out) {
@@ -79,8 +79,8 @@ class AWoundedChannel : public Losses, public ::testing::WithParamInterface<Chan
 TEST_P(AWoundedChannel, UnlinkedIsStillSharedAndItsNextWriterIsFound) {
   std::filesystem::remove(file());
   expect_undisturbed();
-  if (GetParam().writer == P) {
-    nodes().end(P);
+  if (GetParam().writer == kPlant) {
+    nodes().end(kPlant);
   } else {
     robot_.lose(GetParam().writer, SIGKILL);
   }
@@ -95,7 +95,7 @@ TEST_P(AWoundedChannel, CutOffEndsThoseAloneWhoMapItAndTheRobotBrakes) {
   if (GetParam().by_this_test) robot_.look_away();
   std::filesystem::resize_file(file(), 0);
   EXPECT_TRUE(robot_.await([&] { return !nodes().lives(GetParam().writer); })) << "its writer does not notice";
-  if (!maps(P)) {
+  if (!maps(kPlant)) {
     EXPECT_TRUE(robot_.await([&] { return log().rested(DrivingRobot::kRestCycles); })) << robot_.situation();
     EXPECT_LE(log().braking_since().value_or(before + 1000), before + kBrakeWithin) << robot_.situation();
   }
