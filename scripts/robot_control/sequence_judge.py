@@ -14,8 +14,9 @@ over MEAN_TIME give less than STANDING_SPEED; a robot that rocks on its casters 
 What no brake can do, is not asked for. A motor that is off, intermittent or gives garbage takes its brake with it
 (drivers/motor_faults.h): while one does, s may grow by what the slope gives a free robot, g sin 5° t, and by
 GARBAGE_SPEED, and the robot need not come to rest. A monitor that errs (garbage, wrong) gives permits by itself: then
-"release" is not judged, nor "rest" while it goes on. A blocked wheel stops the robot harder than any brake: its tilt is
-not the brake's. A drive that is slow or delayed learns of the brake LATE_DRIVE later.
+"release" is not judged, nor "rest" while it goes on. A blocked wheel, or a motor that gives what it was not told,
+jolts the robot harder than any brake: its tilt is not the brake's. A drive that is slow or delayed learns of the brake
+LATE_DRIVE later.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ KIND_CODES = {"off": 1, "stuck": 2, "garbage": 3, "wrong": 4, "slow": 5, "delaye
 STANDING_SPEED = 0.01  # m/s
 MEAN_TIME = 0.3  # s
 LATE_DRIVE = 0.02  # s, for 10 cycles of 1 ms, and what it takes to act
-STOP_TIME = 0.7  # s, the mean included
+STOP_TIME = 1.0  # s, the mean included, and that a light robot falls back on its casters
 STOP_DECELERATION = 0.5  # m/s²
 BRAKE_MARGIN = 0.2  # m/s: wheels that spin when the brake comes still pull for a moment; walls turn v into ω
 SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.3  # 1, m/s
@@ -104,7 +105,8 @@ class _Court:
         self._standing = linear + angular * wheel_base / 2 <= STANDING_SPEED
         dead = ("off", "garbage", "intermittent")
         self._unbraked = failing(log, "left_motor", *dead) | failing(log, "right_motor", *dead)
-        self._blocked = failing(log, "left_motor", "stuck") | failing(log, "right_motor", "stuck")
+        jolts = ("stuck", "wrong", "garbage")
+        self._jolted = failing(log, "left_motor", *jolts) | failing(log, "right_motor", *jolts)
         self._late = failing(log, "left_motor", "slow", "delayed") | failing(log, "right_motor", "slow", "delayed")
         self._monitor_errs = failing(log, "monitor", "garbage", "wrong")
         self._new_run = np.concatenate([[True], np.diff(log["run"]) != 0])
@@ -190,9 +192,9 @@ class _Court:
                 yield self._violation("release", row, f"{self._speed[row]:.3f} m/s though nobody asked for it")
 
     def tilt(self) -> Iterator[Violation]:
-        """Upright but where a wheel is or was blocked."""
+        """Upright, but after a motor jolted it."""
         tilt = self._log["truth_tilt"]
-        for row in np.flatnonzero((tilt > TILT_LIMIT) & ~np.logical_or.accumulate(self._blocked)):
+        for row in np.flatnonzero((tilt > TILT_LIMIT) & ~np.logical_or.accumulate(self._jolted)):
             yield self._violation("tilt", row, f"leans by {np.degrees(tilt[row]):.1f}°")
 
     def machine(self) -> Iterator[Violation]:

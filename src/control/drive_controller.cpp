@@ -54,7 +54,7 @@ void DriveController::reset(std::uint64_t request_count) noexcept {
   last_cycle_.reset();
   last_angle_.reset();
   periods_ = 1;
-  driving_ = followed_ = false;
+  driving_ = followed_ = holding_ = false;
   state_cycle_ = permit_cycle_ = 0;
 }
 
@@ -143,8 +143,9 @@ void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
 void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept {
   if (!followed_) follow_measured(sensors);
   const bool at_rest =
-      followed_ ? is_zero(limiter_.value()) && standstill_.standing() : standstill_.standing() || slow();
-  if (is_zero(wish) && at_rest) out.reasons |= kReasonHolding;
+      followed_ ? is_zero(limiter_.value()) && standstill_.standing() : holding_ || standstill_.standing() || slow();
+  holding_ = is_zero(wish) && at_rest;
+  if (holding_) out.reasons |= kReasonHolding;
   driving_ = (out.reasons & kBrakeReasons) == 0;
   if (!driving_) return;
 

@@ -85,6 +85,7 @@ class DriveController {
   std::optional<WheelValues> last_angle_;    ///< rad, of the sample before; none: the loops start anew
   double periods_ = 1;                       ///< between the last two usable samples
   bool driving_ = false;                     ///< the last command was not the brake
+  bool holding_ = false;                     ///< kReasonHolding in the last cycle
   bool followed_ = false;                    ///< the torque before this sample was this controller's
   std::uint64_t state_cycle_ = 0;
   std::uint64_t permit_cycle_ = 0;

@@ -184,10 +184,10 @@ constexpr auto kSafetyMonitor =
          condition<&Safety::wheel_acceleration>("wheel_acceleration", "rad/s²", 0.1, 1.0e7, kOptional),
          condition<&Safety::wheel_effort>("wheel_effort", "of the effort limit", 0.01, 10),
          condition<&Safety::power>("power", "W", 0.01, 1.0e7, kOptional),
-         condition<&Safety::stall>("stall", "rad", 0.001, 1000),
+         condition<&Safety::stall>("stall", "rad", 0.001, 1000, kOptional),
          condition<&Safety::runaway>("runaway", "rad/s", 0.001, 10000, kOptional),
          condition<&Safety::wrong_direction>("wrong_direction", "rad/s", 0.001, 10000),
-         condition<&Safety::not_stopping>("not_stopping", "s", 0.01, 60),
+         condition<&Safety::not_stopping>("not_stopping", "s", 0.01, 60, kOptional),
          condition<&Safety::yaw_rate>("yaw_rate", "rad/s", 0.001, 100),
          condition<&Safety::tilt>("tilt", "rad", 0.01, 1.5),  // below a right angle
          condition<&Safety::tip_over>("tip_over", "rad/s", 0.001, 100),

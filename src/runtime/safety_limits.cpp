@@ -18,7 +18,8 @@ double commanded_wheel_speed(const DriveControllerParameters& controller, const 
 }
 
 SafetyParameters safety_limits(const Parameters& parameters, const RobotModel& robot) {
-  return derived_limits(parameters.safety, robot, commanded_wheel_speed(parameters.controller, robot));
+  return derived_limits(parameters.safety, robot, commanded_wheel_speed(parameters.controller, robot),
+                        parameters.loop.period());
 }
 
 }  // namespace robot_control

@@ -22,7 +22,8 @@ double wheel_speed_limit(const RobotModel& robot, double commanded) {
 
 }  // namespace
 
-SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed) {
+SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed,
+                                double period) {
   SafetyParameters limits = given;
   fill(limits.wheel_speed, wheel_speed_limit(robot, commanded_wheel_speed));
   const double speed = *limits.wheel_speed.limit;
@@ -34,6 +35,8 @@ SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel&
   }
   fill(limits.wheel_acceleration, acceleration);
   fill(limits.power, power);
+  fill(limits.stall, (robot.wheels.size() > 2 ? kScrubbingStall : kStall) * std::max(1.0, period / 0.001));
+  fill(limits.not_stopping, kNotStopping * std::max(1.0, period / kSlowLoop));
   fill(limits.runaway, std::max(0.2 * speed, kLeastRunaway));
   return limits;
 }

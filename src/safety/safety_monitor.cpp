@@ -33,7 +33,7 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
       standstill_(parameters.standstill_speed, period),
       targets_(robot.wheels.size()),
       wheel_limits_(parameters, robot, period),
-      wheel_following_(parameters, robot.wheels.size(), period),
+      wheel_following_(parameters, robot, period),
       yaw_agreement_(parameters.yaw_rate, robot, period),
       gate_facts_(parameters.loss_cycles, period),
       machine_facts_(parameters, period),
@@ -119,7 +119,7 @@ void SafetyMonitor::look_at_motion(const MonitorInput& input, std::uint64_t elap
   standstill_.step(motion_, sensors.head.cycle);
   targets_.step(input);
   wheel_limits_.step(sensors, motion_, targets_.passed(), last_speed_limit_, elapsed, active_);
-  wheel_following_.step(targets_, motion_, standstill_, elapsed, active_);
+  wheel_following_.step(sensors, targets_, motion_, standstill_, elapsed, active_);
   yaw_agreement_.step(sensors, motion_, elapsed, active_);
   body_facts_.step(sensors, elapsed, standstill_.moving(), active_);
 }

@@ -40,11 +40,11 @@ struct SafetyParameters {
   Condition wheel_acceleration{{}, 0.01, Reaction::kBrake};  ///< rad/s²; derived
   Condition wheel_effort{1.05, 0.02, Reaction::kBrake};      ///< of the joint's effort limit
   Condition power{{}, 0.1, Reaction::kBrake};                ///< W, mechanical, all wheels; derived
-  Condition stall{1.0, 0, Reaction::kBrake};                 ///< rad that a standing wheel should have turned
+  Condition stall{{}, 0, Reaction::kBrake};                  ///< rad that a standing wheel should have turned; derived
   Condition runaway{{}, 0.05, Reaction::kBrake};             ///< rad/s beyond the target; derived
-  Condition wrong_direction{1.5, 0.05, Reaction::kBrake};    ///< rad/s against the target
-  Condition not_stopping{2.0, 0, Reaction::kBrake};          ///< s of motion after the target became zero
-  Condition yaw_rate{1.0, 0.2, Reaction::kRamp};             ///< rad/s between gyro and wheels
+  Condition wrong_direction{1.5, 0.15, Reaction::kBrake};    ///< rad/s against the target
+  Condition not_stopping{{}, 0, Reaction::kBrake};           ///< s of motion after the target became zero; derived
+  Condition yaw_rate{1.0, 0.2, Reaction::kSlow};             ///< rad/s between gyro and wheels
   Condition tilt{0.42, 0.05, Reaction::kBrake};              ///< rad from the vertical
   Condition tip_over{1.5, 0.02, Reaction::kBrake};           ///< rad/s, outwards, when tilted by half the tilt limit
   Condition free_fall{1.5, 0.15, Reaction::kBrake};          ///< m/s², specific force below it

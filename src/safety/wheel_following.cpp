@@ -1,5 +1,6 @@
 #include "safety/wheel_following.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace robot_control {
@@ -16,12 +17,17 @@ double along(double target, double speed) noexcept {
 
 }  // namespace
 
-WheelFollowing::WheelFollowing(const SafetyParameters& parameters, std::size_t wheels, double period)
+WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const RobotModel& robot, double period)
     : period_(period),
       stall_(kCauseStall, parameters.stall, period),
       not_stopping_(kCauseNotStopping, parameters.not_stopping, period),
-      runaway_(wheels, {.watch = ConditionWatch(kCauseRunaway, parameters.runaway, period)}),
-      wrong_direction_(wheels, {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}) {}
+      runaway_(robot.wheels.size(), {.watch = ConditionWatch(kCauseRunaway, parameters.runaway, period)}),
+      wrong_direction_(robot.wheels.size(),
+                       {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}) {
+  for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
+    pushes_[i] = kPushedPart * robot.joints[robot.wheels[i].joint].effort_limit;
+  }
+}
 
 void WheelFollowing::enter_run() noexcept {
   stall_.reset();
@@ -32,8 +38,8 @@ void WheelFollowing::enter_run() noexcept {
   moved_ = rested_ = 0;
 }
 
-void WheelFollowing::step(const WheelTargets& targets, const WheelMotion& motion, const JointStandstill& standstill,
-                          std::uint64_t elapsed, ActiveCauses& out) noexcept {
+void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
+                          const JointStandstill& standstill, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   const bool known = motion.speed_known();
   for (std::size_t i = 0; i < runaway_.size(); ++i) {
     if (!known || !targets.has(i)) {
@@ -45,7 +51,7 @@ void WheelFollowing::step(const WheelTargets& targets, const WheelMotion& motion
     judge_direction(targets, motion, i, elapsed, out);
   }
   const double dt = static_cast<double>(elapsed) * period_;
-  out.judge(stall_, known ? stalled(targets, motion, dt) : kNothingFound, elapsed);
+  out.judge(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingFound, elapsed);
   out.judge(not_stopping_, not_stopped(targets, standstill, elapsed), elapsed);
 }
 
@@ -86,7 +92,8 @@ void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMot
   excess.step(beyond(wheel, speed, excess.watch.limit() + tolerance), speed, kProgress + tolerance, elapsed, out);
 }
 
-Finding WheelFollowing::stalled(const WheelTargets& targets, const WheelMotion& motion, double dt) noexcept {
+Finding WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
+                                double dt) noexcept {
   Finding finding = kNothingFound;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     Stall& stall = stalls_[i];
@@ -96,7 +103,8 @@ Finding WheelFollowing::stalled(const WheelTargets& targets, const WheelMotion& 
     if (turns || speed > stall.mark + kProgress + motion.speed_tolerance(i)) {
       stall = {.missed = 0, .mark = speed};
     } else {
-      stall.missed += wanted * dt;
+      const double pushed = std::abs(sensors.joints[i].effort) > pushes_[i] ? kPushed : 0;
+      stall.missed += std::max(wanted, pushed) * dt;
     }
     finding = worse(finding, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));
   }

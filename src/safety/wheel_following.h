@@ -4,9 +4,12 @@
 /// With s the sign of the target q̇*, ω the measured speed (wheel_motion.h), δ its tolerance, both in the joint's sign;
 /// only where a target reaches the wheel (wheel_targets.h):
 ///
-///   stall            the angle ∫|q̇*|dt that the wheel should have turned since it was last seen to turn, that is, with
+///   stall            the angle ∫max(|q̇*|, w)dt that the wheel should have turned since it was last seen to turn, that
+///   is, with
 ///                    |ω| ≥ kTurns·|q̇*|, or to gain kProgress + δ towards its target; limit rad + 1 quantum: a wheel
-///                    that follows slowly shows a count each quantum
+///                    that follows slowly shows a count each quantum. w = kPushed where the motor gives more than
+///                    kPushedPart of its effort limit, else 0: a loop whose encoder is stuck pushes harder and harder,
+///                    however slow its target
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| where the target is 0
 ///   wrong_direction  −s·ω > limit + δ
 ///
@@ -34,15 +37,17 @@ namespace robot_control {
 class WheelFollowing {
  public:
   static constexpr double kTurns = 0.2;
-  static constexpr double kProgress = 0.1;  ///< rad/s
-  static constexpr double kRest = 0.5;      ///< s
+  static constexpr double kProgress = 0.1;    ///< rad/s
+  static constexpr double kRest = 0.5;        ///< s
+  static constexpr double kPushed = 1.0;      ///< rad/s
+  static constexpr double kPushedPart = 0.5;  ///< driving over bumps takes as much for 0.06 s, skid steers for 0.3 s
 
   /// `period` s.
-  WheelFollowing(const SafetyParameters& parameters, std::size_t wheels, double period);
+  WheelFollowing(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
   void enter_run() noexcept;
-  void step(const WheelTargets& targets, const WheelMotion& motion, const JointStandstill& standstill,
-            std::uint64_t elapsed, ActiveCauses& out) noexcept;
+  void step(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
+            const JointStandstill& standstill, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
   /// Of one wheel.
@@ -65,7 +70,8 @@ class WheelFollowing {
                      ActiveCauses& out) noexcept;
   void judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
                        ActiveCauses& out) noexcept;
-  Finding stalled(const WheelTargets& targets, const WheelMotion& motion, double dt) noexcept;
+  Finding stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
+                  double dt) noexcept;
   Finding not_stopped(const WheelTargets& targets, const JointStandstill& standstill, std::uint64_t elapsed) noexcept;
 
   double period_;
@@ -74,8 +80,9 @@ class WheelFollowing {
   std::vector<Excess> runaway_;          ///< by wheel
   std::vector<Excess> wrong_direction_;  ///< by wheel
   std::array<Stall, kMaxWheels> stalls_{};
-  std::uint64_t moved_ = 0;   ///< cycles of motion since it was told to stand
-  std::uint64_t rested_ = 0;  ///< cycles in a row
+  std::array<double, kMaxWheels> pushes_{};  ///< N·m, from which on a motor does
+  std::uint64_t moved_ = 0;                  ///< cycles of motion since it was told to stand
+  std::uint64_t rested_ = 0;                 ///< cycles in a row
 };
 
 }  // namespace robot_control

@@ -49,6 +49,18 @@ TEST_F(HandOver, DoesNotSagOnTheSlope) {
   EXPECT_NEAR(bench.plant.distance, 0.005 * 0.5, 1e-4);
 }
 
+TEST_F(HandOver, HoldsThoughAnEncoderJumpsWhileNobodyAsksForAMotion) {
+  bench.run(0.4);
+  ASSERT_TRUE(bench.command.reasons & kReasonHolding);
+  double jump = 0;
+  bench.spoil = [&jump](SensorFrame& sensors) { sensors.joints[0].position += jump; };
+  jump = 0.3;  // rad, slower than kFastestWheel
+  for (int k = 0; k < 100; ++k) {
+    bench.step();
+    EXPECT_TRUE(bench.command.reasons & kReasonHolding) << k;
+  }
+}
+
 TEST_F(HandOver, SagsWithoutTheLoadInTheIntegrator) {
   // The counter-proof that the test above can fail: a driver that reports no effort.
   bench.spoil = [](SensorFrame& sensors) {

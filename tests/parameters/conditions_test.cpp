@@ -64,7 +64,8 @@ TEST_F(ReadConditions, TakesTheBooleanThatYaml11MakesOfOff) {
 }
 
 TEST_F(ReadConditions, LeavesTheLimitToTheRobotWhereItFollowsFromIt) {
-  for (const char* group : {"wheel_speed", "wheel_acceleration", "power", "runaway", "battery_low", "battery_empty"}) {
+  for (const char* group : {"wheel_speed", "wheel_acceleration", "power", "stall", "runaway", "not_stopping",
+                            "battery_low", "battery_empty"}) {
     ParameterFile one;
     one.set(group, std::string("  ") + group + ": {persistence: 0.1, reaction: warn}");
     EXPECT_EQ(one.refusal(), "") << group;

@@ -74,6 +74,19 @@ TEST_F(DerivedLimits, OfRunawayAreAFifthOfTheSpeedLimitButNeverLessThanTwo) {
   EXPECT_NEAR(limits(1).runaway.limit.value(), kLeastRunaway, kRounding);
 }
 
+TEST_F(DerivedLimits, OfStallAreMoreWhereWheelsDragEachOtherAndWhereLoopsAreSlow) {
+  EXPECT_EQ(limits().stall.limit, kStall);
+  EXPECT_NEAR(derived_limits(given_, robot_, kCommanded, 0.01).stall.limit.value(), 10 * kStall, kRounding);
+  EXPECT_EQ(derived_limits(given_, robot_, kCommanded, 0.0005).stall.limit, kStall);
+  robot_.wheels.resize(4, robot_.wheels[0]);
+  EXPECT_EQ(limits().stall.limit, kScrubbingStall);
+}
+
+TEST_F(DerivedLimits, OfNotStoppingAreLongerOnlyWhereLoopsAreSlow) {
+  EXPECT_EQ(limits().not_stopping.limit, kNotStopping);
+  EXPECT_NEAR(derived_limits(given_, robot_, kCommanded, 0.01).not_stopping.limit.value(), 2 * kNotStopping, kRounding);
+}
+
 TEST_F(DerivedLimits, FollowASpeedLimitThatIsGiven) {
   given_.wheel_speed.limit = 40;
   EXPECT_EQ(wheel_speed(), 40);

@@ -35,7 +35,7 @@ TEST_F(WheelFollowingTest, AWeakDriveThatTurnsRoundIsNotWrong) {
 
 TEST_F(WheelFollowingTest, AWheelThatKeepsTurningWronglyIs) {
   target(-kSpeed);
-  steps(50 + 1);
+  steps(150 + 1);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
 }
 
@@ -43,6 +43,17 @@ TEST_F(WheelFollowingTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
   turn_wheels(0.25 * kSpeed);
   steps(5000);
   EXPECT_EQ(permit_.causes, 0u);
+}
+
+// kStall at kPushed: 0.3 s; a quantum and the window of the speed are less than 30 ms. The target alone: 1.5 s.
+TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverSlowItsTarget) {
+  target(0.2);
+  turn_wheels(0);
+  for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = 0.6 * robot().joints[i].effort_limit;
+  steps(290);
+  EXPECT_EQ(permit_.causes, 0u);
+  steps(40);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
 TEST_F(WheelFollowingTest, WithoutATargetNothingIsCompared) {
