@@ -1,13 +1,17 @@
 #pragma once
-/// A healthy robot around a SafetyMonitor: every cycle there are sensors, a state and a command, and a gate that does
-/// what the permits say.
+/// A healthy robot around a SafetyMonitor: every cycle there are sensors, a state and a command, and the real gate
+/// behind the permits. In cycle k: report of tick k−1 → monitor: permit k → tick k, by permit and command k−1.
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
+#include "hal/gate.h"
 #include "safety/derived_limits.h"
 #include "safety/safety_monitor.h"
 
@@ -75,10 +79,17 @@ class MonitorTest : public testing::Test {
     if (noisy_gyro_) sensors_.imu.linear_acceleration[0] = cycle % 2 == 0 ? 1e-3 : -1e-3;
     command_.head.cycle = cycle == 0 ? 0 : cycle - 1;
     if (fresh_state_) command_.state_cycle = command_.head.cycle;
-    run_gate(cycle);
+    Permit given = permit_;
+    given.head = given_head_;
+    if (sensors_.head.run != given.head.run) {
+      gate_.reset();
+      next_tick_ = cycle;
+    }
+    while (next_tick_ < cycle) tick(given);
+    sensors_.gate = told_of(gate_.report());
     monitor_.step(input_, permit_);
-    given_[1] = given_[0];
-    given_[0] = {true, cycle, permit_.action, permit_.ramp_until};
+    given_head_ = sensors_.head;
+    tick(given);
   }
   void steps(std::uint64_t cycles) {
     for (std::uint64_t i = 0; i < cycles; ++i) step();
@@ -89,7 +100,6 @@ class MonitorTest : public testing::Test {
     ++sensors_.head.run;
     sensors_.head.cycle = 0;
     begun_ = false;
-    given_ = {};
     monitor_.reset(input_.operator_input);
   }
   /// `linear` m/s wished, and the wheels' targets; 0: the brake holds.
@@ -126,6 +136,14 @@ class MonitorTest : public testing::Test {
   std::uint64_t cycle() const { return sensors_.head.cycle; }
   bool gate_passes() const { return sensors_.gate.verdict != GateVerdict::kBrake; }
 
+  /// In the tick of this cycle every motor brakes.
+  bool braked() const {
+    const auto brakes = [](const JointCommand& joint) { return joint.mode == JointMode::kBrake; };
+    return std::all_of(joints_.begin(), joints_.end(), brakes);
+  }
+  /// … the gate passes commands under a ramp.
+  bool ramps() const { return gate_.report().verdict == GateVerdict::kRamp; }
+
   SensorFrame sensors_;
   CommandFrame command_;
   MonitorInput input_;
@@ -134,41 +152,46 @@ class MonitorTest : public testing::Test {
   bool begun_ = false;
   bool noisy_gyro_ = true;
   bool fresh_state_ = true;              ///< the command descends from the state of its own cycle
-  bool gate_obeys_ = true;               ///< false: it lets everything pass
-  bool gate_works_ = true;               ///< false: it brakes always
+  bool gate_obeys_ = true;               ///< false: it tells that it lets everything pass
+  bool gate_works_ = true;               ///< false: it tells that it brakes always
+  std::uint64_t refused_frames_ = 0;     ///< which it counts beyond its own
   std::array<double, kWheels> speed_{};  ///< rad/s, true
 
  private:
-  struct Given {
-    bool there = false;
-    std::uint64_t cycle = 0;
-    PermitAction action = PermitAction::kBrake;
-    std::uint64_t ramp_until = 0;
-  };
+  /// Tick `next_tick_`, with the last permit and a command of the cycle before, or the last one there was.
+  void tick(const Permit& permit) {
+    if (input_.command != nullptr) {
+      heard_ = *input_.command;
+      heard_.head = {.run = sensors_.head.run, .cycle = next_tick_ == 0 ? 0 : next_tick_ - 1};
+    }
+    joints_ = gate_.step({.run = sensors_.head.run,
+                          .cycle = next_tick_,
+                          .permit_found = Lookup::kFrame,
+                          .permit = &permit,
+                          .command_found = Lookup::kFrame,
+                          .command = &heard_,
+                          .sensors = &sensors_});
+    ++next_tick_;
+  }
 
-  /// Tick k−1, reported in the sensors of cycle k.
-  void run_gate(std::uint64_t cycle) {
-    GateReport& report = sensors_.gate;
-    report = {};
-    if (cycle < 2) return;
-    const std::uint64_t tick = cycle - 1;
-    const Given& used = given_[0].cycle < tick ? given_[0] : given_[1];
-    without_command_ = input_.command == nullptr ? without_command_ + 1 : 0;
-    const bool driven =
-        used.action == PermitAction::kDrive || (used.action == PermitAction::kRamp && tick <= used.ramp_until);
-    const bool allowed = used.there && tick - used.cycle <= kPermitLife && driven;
-    report.permit_cycle = used.cycle;
-    report.reasons = 0;
-    if (command_.joints[0].mode == JointMode::kBrake) report.reasons |= kGateControllerBrake;
-    if (without_command_ >= kCommandLife) report.reasons |= kGateNoCommand;
-    if (!allowed && gate_obeys_) report.reasons |= kGatePermitBrake;
-    if (report.reasons == 0 && gate_works_) report.verdict = GateVerdict::kPassed;
+  /// What a gate tells that works and obeys, or does not.
+  GateReport told_of(const GateReport& true_report) const {
+    constexpr std::uint64_t kRefusal = kGateNoPermit | kGatePermitExpired | kGatePermitBrake | kGateRampOver;
+    GateReport report = true_report;
+    report.refused += refused_frames_;
+    if (!gate_works_ && report.verdict != GateVerdict::kBrake) report.verdict = GateVerdict::kBrake;
+    if (!gate_obeys_ && (report.reasons & kRefusal) != 0) report.verdict = GateVerdict::kPassed;
+    return report;
   }
 
   std::uint64_t skip_ = 0;
-  std::uint64_t without_command_ = 0;
   std::array<double, kWheels> angle_{};
-  std::array<Given, 2> given_{};
+  // Of the joints the efforts are known alone: then the gate needs no samples, and is well when sensors are not.
+  Gate gate_{std::vector<JointLimits>(kWheels, {.effort = 3, .wheel = true}), {.longest_ramp = kRamp + kLoss}, kPeriod};
+  std::uint64_t next_tick_ = 0;
+  FrameHead given_head_;  ///< of the last permit
+  CommandFrame heard_;    ///< by the gate
+  std::span<const JointCommand> joints_;
 };
 
 }  // namespace robot_control
