@@ -15,12 +15,15 @@ void MachineFacts::enter_run() noexcept {
   overruns_.reset();
   battery_low_.reset();
   battery_empty_.reset();
-  since_mark_ = 0;
-  oldest_ = 0;
-  marks_.fill(0);
+  marked_ = false;
 }
 
 std::uint64_t MachineFacts::overruns_of_the_last_second(std::uint64_t overruns, std::uint64_t elapsed) noexcept {
+  if (!marked_) {
+    marks_.fill(overruns);
+    since_mark_ = oldest_ = 0;
+    marked_ = true;
+  }
   const std::uint64_t growth = overruns - std::min(overruns, marks_[oldest_]);
   since_mark_ += std::min(elapsed, kMarks * mark_cycles_);
   for (; since_mark_ >= mark_cycles_; since_mark_ -= mark_cycles_) {

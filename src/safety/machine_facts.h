@@ -2,7 +2,8 @@
 /// What the machine says of itself.
 ///
 ///   driver fault   driver_state kFault or faults ≠ 0; category 0, waits for a repair
-///   overruns       growth of SensorFrame::overruns over the last second, in tenths of it
+///   overruns       growth of SensorFrame::overruns over the last second, in tenths of it; what the driver counted
+///                  before the first look does not count
 ///   battery        voltage below its limit, where a battery is reported
 
 #include <array>
@@ -31,6 +32,7 @@ class MachineFacts {
   ConditionWatch battery_empty_;
   std::uint64_t mark_cycles_;  ///< between two marks
   std::uint64_t since_mark_ = 0;
+  bool marked_ = false;
   std::size_t oldest_ = 0;
   std::array<std::uint64_t, kMarks> marks_{};  ///< the counter, a tenth of a second apart
 };

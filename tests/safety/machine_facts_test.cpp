@@ -1,0 +1,57 @@
+// What the machine says of itself: overruns of the last second.
+
+#include "safety/machine_facts.h"
+
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+/// 1 kHz; more than 50 overruns within a second, for a tenth of it, are told.
+class MachineFactsTest : public testing::Test {
+ protected:
+  bool overruns(std::uint64_t counted, std::uint64_t cycles = 1) {
+    bool told = false;
+    sensors_.overruns = counted;
+    for (std::uint64_t i = 0; i < cycles; ++i) {
+      active_.clear();
+      facts_.step(sensors_, 1, active_);
+      told = told || (active_.with(Reaction::kWarn) & kCauseOverruns) != 0;
+    }
+    return told;
+  }
+
+  static SafetyParameters parameters() {
+    SafetyParameters parameters;
+    parameters.overruns = {50, 0.1, Reaction::kWarn};
+    return parameters;
+  }
+
+  MachineFacts facts_{parameters(), 1e-3};
+  ActiveCauses active_;
+  SensorFrame sensors_;
+};
+
+TEST_F(MachineFactsTest, OverrunsOfTheLastSecondCount) {
+  EXPECT_FALSE(overruns(0, 2000));
+  EXPECT_FALSE(overruns(50, 2000));
+  EXPECT_TRUE(overruns(101, 200));
+  overruns(101, 1000);
+  EXPECT_FALSE(overruns(101, 1000));
+}
+
+// A monitor that starts, or is started anew, beside a driver that runs for hours.
+TEST_F(MachineFactsTest, OverrunsOfBeforeTheFirstLookDoNotCount) {
+  EXPECT_FALSE(overruns(1000, 2000));
+  EXPECT_TRUE(overruns(1051, 200));
+}
+
+TEST_F(MachineFactsTest, ANewRunCountsAnew) {
+  overruns(1000, 2000);
+  facts_.enter_run();
+  EXPECT_FALSE(overruns(0, 100));
+  EXPECT_TRUE(overruns(51, 200));
+}
+
+}  // namespace
+}  // namespace robot_control
