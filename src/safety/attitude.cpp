@@ -24,12 +24,12 @@ void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, d
 
 void Attitude::carry(const Eigen::Vector3d& rate, double dt) noexcept {
   const double angle = rate.norm() * dt;
-  if (angle > 0) up_ = Eigen::AngleAxisd(-angle, rate.normalized()) * up_;
+  if (angle > 0 && std::isfinite(angle)) up_ = Eigen::AngleAxisd(-angle, rate.normalized()) * up_;
 }
 
 void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {
   const double size = force.norm();
-  if (std::abs(size - kGravity) >= kBand) return;
+  if (!(std::abs(size - kGravity) < kBand)) return;
   const Eigen::Vector3d measured = force / size;
   const double weight = known() ? std::min(1.0, dt / kTimeConstant) : 1;
   const Eigen::Vector3d pulled = up_ + weight * (measured - up_);

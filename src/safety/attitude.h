@@ -6,7 +6,7 @@
 ///   at first                u = â, of the first sample within the band
 ///
 /// a  accelerometer: specific force, +g upwards at rest; c  what the caller knows of it that is not gravity
-/// u  always of unit length; no sample of one of them: the other alone
+/// u  always of unit length; no sample of one of them, or one too large for its square: the other alone
 ///
 /// Errors of u [rad], T = 1.5 s, b a gyro's bias, A an acceleration along the ground that c does not hold:
 ///

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 
 #include "robot/gravity.h"
 
@@ -34,6 +35,20 @@ class AttitudeTest : public testing::Test {
 TEST_F(AttitudeTest, IsUprightAtRest) {
   steps(1000, {0, 0, 0}, rest());
   EXPECT_TRUE(attitude_.known());
+  EXPECT_NEAR(attitude_.tilt(), 0, kSmall);
+}
+
+// Numbers that no device means, but a broken one may send: their squares overflow.
+TEST_F(AttitudeTest, IsANumberWhateverFiniteNumbersCome) {
+  for (const double absurd : {1e160, -1e300}) {
+    step({absurd, absurd, 0}, {absurd, 0, -absurd});
+    EXPECT_TRUE(std::isfinite(attitude_.tilt())) << absurd;
+    EXPECT_TRUE(std::isfinite(attitude_.tilt_rate())) << absurd;
+    EXPECT_NEAR(attitude_.up().norm(), 1, kSmall) << absurd;
+  }
+  // What the caller takes away may be infinite, too, and then nothing is left.
+  const double infinite = std::numeric_limits<double>::infinity();
+  step({0, 0, 0}, {infinite, 0, infinite - infinite});
   EXPECT_NEAR(attitude_.tilt(), 0, kSmall);
 }
 
