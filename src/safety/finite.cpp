@@ -28,7 +28,14 @@ bool finite(const SensorFrame& sensors) noexcept {
     }
   }
   if ((sensors.valid & kValidGyro) != 0 && !finite(sensors.imu.angular_velocity)) return false;
-  return (sensors.valid & kValidAccelerometer) == 0 || finite(sensors.imu.linear_acceleration);
+  if ((sensors.valid & kValidAccelerometer) != 0 && !finite(sensors.imu.linear_acceleration)) return false;
+  if ((sensors.valid & kValidContacts) != 0) {
+    for (const Vector3& force : sensors.contact_forces) {
+      if (!finite(force)) return false;
+    }
+  }
+  return (sensors.valid & kValidBattery) == 0 ||
+         (std::isfinite(sensors.battery_voltage) && std::isfinite(sensors.battery_current));
 }
 
 bool finite(const CommandFrame& command) noexcept {

@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-/// Joints and IMU, as far as `valid` says they were measured.
+/// Joints, gyro, accelerometer, contact forces and battery, as far as `valid` says they were measured.
 bool finite(const SensorFrame& sensors) noexcept;
 
 /// Used joints and both twists.

@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "safety/finite.h"
 #include "safety/monitor_fixture.h"
 #include "support/allocation_guard.h"
 
@@ -123,10 +124,28 @@ TEST_F(CausesTest, SensorsThatAreNotFiniteStopInTheThirdCycleInARow) {
   expect_stop(SupervisorState::kStopped, kCauseNotFinite);
 }
 
+TEST_F(CausesTest, WhateverIsSaidToBeValidMustBeFinite) {
+  sensors_.valid |= kValidContacts | kValidBattery;
+  sensors_.battery_voltage = 24;
+  sensors_.contact_forces[0][2] = sensors_.contact_forces[1][2] = 6 * 9.81;
+  const SensorFrame healthy = sensors_;
+  double* const numbers[] = {&sensors_.joints[1].position,   &sensors_.joints[1].velocity,
+                             &sensors_.joints[1].effort,     &sensors_.imu.angular_velocity[2],
+                             &sensors_.contact_forces[1][0], &sensors_.battery_voltage,
+                             &sensors_.battery_current,      &sensors_.imu.linear_acceleration[0]};
+  EXPECT_TRUE(finite(sensors_));
+  for (double* const number : numbers) {
+    *number = kNaN;
+    EXPECT_FALSE(finite(sensors_));
+    sensors_ = healthy;
+  }
+}
+
 TEST_F(CausesTest, ASensorThatIsNotValidMayHoldAnything) {
   sensors_.valid = kValidJoints;
   sensors_.imu.angular_velocity[1] = sensors_.imu.linear_acceleration[2] = kNaN;
   sensors_.joints[2].position = kNaN;  // the robot has two
+  sensors_.contact_forces[0][1] = sensors_.battery_voltage = sensors_.battery_current = kNaN;
   steps(10);
   expect_driving();
 }
