@@ -13,13 +13,11 @@
 ///                       wheel at once (a wall, a kerb, a landing): Ω within one window
 ///   power               Σ τ Ω: every motor at both its limits
 ///   stall               kStall; with several wheels a side kScrubbingStall: in a turn that begins, those of one side
-///   are
-///                       dragged along by the others until their torque has grown, for up to 1 rad of way. Below 1 kHz
-///                       in proportion to the period: the loops' gains shrink so, and by as much more angle grows the
-///                       torque that takes a wheel over a bump (seen at 100 Hz: 2.3 rad)
+///                       are dragged along by the others until their torque has grown, for up to 1 rad of way. Below 1
+///                       kHz in proportion to the period: the loops' gains shrink so, and by as much more angle grows
+///                       the torque that takes a wheel over a bump (seen at 100 Hz: 2.3 rad)
 ///   not_stopping        kNotStopping; with a period above kSlowLoop in proportion: at 100 Hz a wheel loop that was
-///   pushed
-///                       swings back for 3.5 s, at 2 cm/s
+///                       pushed swings back for 3.5 s, at 2 cm/s
 ///   runaway             max(0.2 Ω, kLeastRunaway)
 ///                       kLeastRunaway: a wheel loop that is being pushed, and 20 quanta of a wheel speed measured with
 ///                       4096 counts over T (0.077 rad/s)

@@ -3,10 +3,9 @@
 ///
 ///   due         the newest permit given of cycles ≤ k−2, which is what it should have used, if alive in tick k−1
 ///   refuses     due allowed motion (drive, or ramp while k−1 ≤ ramp_until), the tick braked or refused a frame, and
-///   the
-///               command did not ask for the brake itself: loss_cycles ticks in a row, or in more than half of the
-///               ticks of the last second. A controller that is slow or comes and goes, or a monitor whose permits do
-///               not arrive: a robot that stops and drives on by itself is none that anybody can foresee.
+///               it was not the command that asked for the brake: loss_cycles ticks in a row, or in more than half of
+///               the ticks of the last second. A controller that is slow or comes and goes, or a monitor whose permits
+///               do not arrive: a robot that stops and drives on by itself is none that anybody can foresee.
 ///   disobeys    a command passed under a permit that ordered the brake, whose ramp was over, that had expired, or that
 ///               was never given: no software stops this machine any more, it waits for a repair
 ///

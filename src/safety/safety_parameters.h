@@ -2,7 +2,8 @@
 /// What a user sets of the safety monitor.
 ///
 /// A condition: a fact, measured from raw sensors and the command, beyond `limit` without a break for `persistence`
-/// → a reaction. What each limit means stands with its fact: wheel_facts.h, body_facts.h, conditions.h.
+/// → a reaction. What each limit means stands with its fact: wheel_limits.h, wheel_following.h,
+/// yaw_agreement.h, body_facts.h, sensor_presence.h, machine_facts.h.
 
 #include <cstdint>
 #include <optional>

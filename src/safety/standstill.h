@@ -2,8 +2,8 @@
 /// Does the robot stand, by its wheels' angles alone (the monitor trusts no estimate)? A caster may still turn.
 ///
 ///   inside    every wheel within ±w of where it was when the window began;  w = max(v·T, 1.5 quanta), T =
-///   kStandingTime,
-///             v standstill_speed; a wheel that stands already may use twice that, so that nothing flickers
+///             kStandingTime, v standstill_speed; a wheel that stands already may use twice that, so that nothing
+///             flickers
 ///   standing  inside for T; then the window begins anew, so that a creep slower than v never ends it
 ///   moving    a wheel left its window, or its angle is not known; until the robot stands again
 ///

@@ -4,12 +4,11 @@
 /// With s the sign of the target q̇*, ω the measured speed (wheel_motion.h), δ its tolerance, both in the joint's sign;
 /// only where a target reaches the wheel (wheel_targets.h):
 ///
-///   stall            the angle ∫max(|q̇*|, w)dt that the wheel should have turned since it was last seen to turn, that
-///   is, with
-///                    |ω| ≥ kTurns·|q̇*|, or to gain kProgress + δ towards its target; limit rad + 1 quantum: a wheel
-///                    that follows slowly shows a count each quantum. w = kPushed where the motor gives more than
-///                    kPushedPart of its effort limit, else 0: a loop whose encoder is stuck pushes harder and harder,
-///                    however slow its target
+///   stall            the angle ∫max(|q̇*|, w)dt that the wheel should have turned since it was last seen to turn,
+///                    that is, with |ω| ≥ kTurns·|q̇*|, or to gain kProgress + δ towards its target; limit rad + 1
+///                    quantum: a wheel that follows slowly shows a count each quantum. w = kPushed where the motor
+///                    gives more than kPushedPart of its effort limit, else 0: a loop whose encoder is stuck pushes
+///                    harder and harder, however slow its target
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| where the target is 0
 ///   wrong_direction  −s·ω > limit + δ
 ///
@@ -17,9 +16,8 @@
 /// persistence began begins it anew. A drive at the limit of its torque, or a skid steer that scrubs, lags behind a
 /// target that turns round; a wheel that runs away gets faster, or stays.
 ///
-///   not_stopping     s of motion (standstill.h) since the robot was told to stand, until it stood for kRest: who rolls
-///   on,
-///                    who is pushed, and who swings about his rest, standing at the turning points
+///   not_stopping     s of motion (standstill.h) since the robot was told to stand, until it stood for kRest: who
+///                    rolls on, who is pushed, and who swings about his rest, standing at the turning points
 
 #include <array>
 #include <cstddef>

@@ -9,9 +9,8 @@
 /// 1.5 rad/s for 4096 counts at 1 kHz. Over the window T it is quantum/T = 0.08 rad/s; the price is a lag of T/2.
 ///
 ///   quantum       the smallest step, or change of step, that an angle made in this run. A robot starts from rest, so
-///   it
-///                 is a single count; at speed, steps of 65 and 66 counts give it, too. Steps below kLeastQuantum are
-///                 none: an encoder of 2²² counts needs no tolerance.
+///                 it is a single count; at speed, steps of 65 and 66 counts give it, too. Steps below kLeastQuantum
+///                 are none: an encoder of 2²² counts needs no tolerance.
 ///   tolerances    quantum/T for a speed, 2 quanta/T² for an acceleration: by so much may quantisation alone lift them.
 ///
 /// Cycles that were skipped, or whose samples are missing, not valid or not finite, make a window longer, to at most
