@@ -32,7 +32,7 @@ LIMIT = 30.0
 """s; what takes longer has not happened. On an idle machine nothing here takes longer than 3 s."""
 SEND_PERIOD = 0.1
 """s; a twelfth of cmd_vel_timeout."""
-STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost"}
+STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost", "monitor_late", "command_stale", "gate_refuses"}
 """What a machine that stood still for 20 ms may latch by itself."""
 
 
