@@ -63,7 +63,7 @@ inline constexpr auto kStopCauseNames = std::to_array<BitName>({
     {kCauseNotStopping, "not_stopping", "the robot still moves though it was told to stand",
      "look who pushes it, at slope, motors and encoders, then call e_stop_reset", "technician", "s"},
     {kCauseYawRate, "yaw_rate", "gyro and wheels disagree on how fast the robot turns",
-     "look at gyro, encoders and grip of the wheels, then call e_stop_reset", "technician", "rad/s"},
+     "look at gyro, encoders and grip of the wheels", "technician", "rad/s"},
     {kCauseTilt, "tilt", "the robot is tilted too far",
      "set it upright on level ground, then call e_stop_reset", "operator", "rad"},
     {kCauseTipOver, "tip_over", "the robot was tipping over",

@@ -197,6 +197,16 @@ INSTANTIATE_TEST_SUITE_P(Every, Conditions,
                                                           Reaction::kRamp, Reaction::kBrake)),
                          name_of_row);
 
+// Who only drives slower has nothing to reset.
+TEST(ConditionTable, RemediesSpeakOfAResetWhereTheDefaultReactionLatches) {
+  const SafetyParameters defaults;
+  for (const Row& row : rows()) {
+    const BitName& name = *row_of(kStopCauseNames, row.cause);
+    const bool latches = (defaults.*row.condition).reaction >= Reaction::kRamp;
+    EXPECT_EQ(name.remedy.ends_with("then call e_stop_reset"), latches) << name.name;
+  }
+}
+
 // The rows are all that can be set: whatever is not fixed is in the table.
 TEST(ConditionTable, HasEveryCauseThatIsNotFixed) {
   std::uint64_t all = kAllCauses;
