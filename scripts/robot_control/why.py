@@ -68,6 +68,7 @@ class Facts:
     registered: frozenset[str] = frozenset()  # nodes that the master knows, below the namespace
     elsewhere: tuple[str, ...] = ()  # namespaces of other robots
     senders: tuple[str, ...] = ()  # on cmd_vel and cmd_vel_stamped
+    seers: tuple[str, ...] = ()  # on clearance
     limited: tuple[float, float] | None = None  # m/s, rad/s: the command after limits
     measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
 
@@ -114,7 +115,7 @@ class Answer:
 
 def judge(facts: Facts) -> Answer:
     """The answer: of all that stands against motion, what has to be mended first."""
-    for look in (_nobody, _paused, _stopped, _gate, _controller):
+    for look in (_nobody, _paused, _stopped, _gate, _no_way, _controller):
         answer = look(facts)
         if answer is not None:
             return answer
@@ -219,7 +220,7 @@ def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iter
         if remedy and remedy != "call e_stop_reset" and remedy not in told:
             told.add(remedy)
             yield cause.actor, remedy
-    asked = any(facts.value(CONTROLLER, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
+    asked = _asked(facts)
     if asked and facts.senders:
         yield "operator", f"stop {', '.join(facts.senders)}: while a motion is asked for, a reset is refused"
     yield "operator", "then call e_stop_reset" if told or absent or asked else "call e_stop_reset"
@@ -243,6 +244,21 @@ def _gate(facts: Facts) -> Answer | None:
         Verdict.STOPPED,
         f"The gate brakes: {bare(next(iter(reasons.values())))}.",
         tuple(("integrator", remedy_of(text)) for text in reasons.values() if remedy_of(text)),
+    )
+
+
+def _no_way(facts: Facts) -> Answer | None:
+    safety = facts.heard()
+    if safety is None or safety.speed_limit >= MOVING or not _asked(facts):
+        return None
+    remedy = "make the way free, and publish it on clearance in metres"
+    if facts.seers:
+        remedy += f": {', '.join(facts.seers)} {'does' if len(facts.seers) == 1 else 'do'}"
+    return Answer(
+        Verdict.STOPPED,
+        "No way is free: clearance leaves it no speed.",
+        (("operator", remedy),),
+        () if facts.seers else (f"rostopic pub -1 {facts.path('clearance')} std_msgs/Float64 inf",),
     )
 
 
@@ -287,6 +303,10 @@ def _controller(facts: Facts) -> Answer | None:
 
 def _namespace(facts: Facts) -> str:
     return "" if facts.namespace == "/" else f" __ns:={facts.namespace}"
+
+
+def _asked(facts: Facts) -> bool:
+    return any(facts.value(CONTROLLER, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
 
 
 def _told(facts: Facts) -> bool:

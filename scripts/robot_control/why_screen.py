@@ -103,7 +103,8 @@ def _safety(safety: Safety, look: Look) -> Rows:
     for number, warning in enumerate(safety.warnings):
         yield "warnings" if number == 0 else "", warning, "33"
     if safety.speed_limit < float("inf"):
-        yield "limit", f"no rim faster than {safety.speed_limit:.3g} m/s", ""
+        whose = "a warning or clearance" if safety.warnings else "clearance"
+        yield "limit", f"no rim faster than {safety.speed_limit:.3g} m/s, by {whose}", ""
     for number, refusal in enumerate(safety.refusal):
         yield "last reset" if number == 0 else "", f"refused: {refusal}", ""
 

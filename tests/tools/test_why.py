@@ -238,6 +238,20 @@ def test_warnings_and_the_speed_limit_they_bring_are_shown(driving):
     assert "no rim faster than 0.3 m/s" in text(facts)
 
 
+def test_where_no_way_is_free_clearance_is_told_and_not_a_zero_on_cmd_vel(driving):
+    facts = saying(driving, CONTROLLER, command__holding="standing with zero command")
+    facts = replace(facts, safety=replace(facts.safety, speed_limit=0.0), limited=(0.0, 0.0), measured=(0.0, 0.0))
+    assert judge(facts).verdict is Verdict.STOPPED
+    assert judge(facts).headline == "No way is free: clearance leaves it no speed."
+    assert judge(facts).commands == ("rostopic pub -1 /clearance std_msgs/Float64 inf",)
+    assert "/lidar does" in text(replace(facts, seers=("/lidar",)))
+
+
+def test_without_a_warning_a_limit_is_that_of_clearance(driving):
+    facts = replace(driving, safety=replace(driving.safety, speed_limit=0.288))
+    assert "no rim faster than 0.288 m/s, by clearance" in text(facts)
+
+
 def test_a_refused_reset_says_why(driving):
     facts = stopped(driving, E_STOP)
     facts = replace(
