@@ -10,6 +10,7 @@ namespace robot_control {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -101,6 +102,18 @@ TEST_F(SafetyStatusTest, TellsWarningsBesideTheCauses) {
   EXPECT_THAT(status.warnings, ElementsAre("battery_low"));
   EXPECT_THAT(status.warning_sentences, ElementsAre("the battery is low: 20.9 V, limit 21 V (charge it soon)"));
   EXPECT_THAT(status.causes, IsEmpty());
+}
+
+// Every reaction can be set: by default imu_lost slows down and tilt brakes.
+TEST_F(SafetyStatusTest, AsksForAResetOfWhatLatchedAlone) {
+  permit_.causes = kCauseImuLost | kCauseEmergencyStopService;
+  permit_.warnings = kCauseTilt;
+  const msg::SafetyStatus status = message();
+  ASSERT_THAT(status.causes, ElementsAre("e_stop_service", "imu_lost"));
+  EXPECT_EQ(status.remedies[0], "call e_stop_reset");
+  EXPECT_THAT(status.remedies[1], EndsWith(", then call e_stop_reset"));
+  ASSERT_EQ(status.warning_sentences.size(), 1u);
+  EXPECT_THAT(status.warning_sentences[0], Not(HasSubstr("e_stop_reset")));
 }
 
 TEST_F(SafetyStatusTest, TellsTheSpeedLimitWhereThereIsOne) {
