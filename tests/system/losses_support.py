@@ -1,5 +1,6 @@
 """What the loss tests take away: a master of their own, the clock of the nodes, a link between two networks."""
 
+import atexit
 import contextlib
 import ctypes
 import os
@@ -42,8 +43,10 @@ class Master:
             stderr=subprocess.DEVNULL,
         )
 
+        atexit.register(self.kill)
+
     def kill(self) -> None:
-        """kill -9, and gone on return."""
+        """kill -9, and gone on return; twice is once."""
         self._process.kill()
         self._process.wait()
 
