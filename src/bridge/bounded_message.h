@@ -16,8 +16,8 @@
 
 namespace robot_control {
 
-/// `kLeast`, `kMost`: bytes on the wire.
-template <class Message, std::uint32_t kLeast, std::uint32_t kMost = kLeast>
+/// `Least`, `Most`: bytes on the wire.
+template <class Message, std::uint32_t Least, std::uint32_t Most = Least>
 struct Bounded {
   using ConstPtr = boost::shared_ptr<const Bounded>;
 
@@ -40,20 +40,20 @@ namespace ros {
 
 namespace message_traits {
 // To its publisher it is the message itself.
-template <class Message, std::uint32_t kLeast, std::uint32_t kMost>
-struct MD5Sum<robot_control::Bounded<Message, kLeast, kMost>> : MD5Sum<Message> {};
-template <class Message, std::uint32_t kLeast, std::uint32_t kMost>
-struct DataType<robot_control::Bounded<Message, kLeast, kMost>> : DataType<Message> {};
-template <class Message, std::uint32_t kLeast, std::uint32_t kMost>
-struct Definition<robot_control::Bounded<Message, kLeast, kMost>> : Definition<Message> {};
+template <class Message, std::uint32_t Least, std::uint32_t Most>
+struct MD5Sum<robot_control::Bounded<Message, Least, Most>> : MD5Sum<Message> {};
+template <class Message, std::uint32_t Least, std::uint32_t Most>
+struct DataType<robot_control::Bounded<Message, Least, Most>> : DataType<Message> {};
+template <class Message, std::uint32_t Least, std::uint32_t Most>
+struct Definition<robot_control::Bounded<Message, Least, Most>> : Definition<Message> {};
 }  // namespace message_traits
 
 namespace serialization {
-template <class Message, std::uint32_t kLeast, std::uint32_t kMost>
-struct Serializer<robot_control::Bounded<Message, kLeast, kMost>> {
+template <class Message, std::uint32_t Least, std::uint32_t Most>
+struct Serializer<robot_control::Bounded<Message, Least, Most>> {
   template <class Stream>
-  static void read(Stream& stream, robot_control::Bounded<Message, kLeast, kMost>& to) {
-    if (stream.getLength() < kLeast || stream.getLength() > kMost) return;
+  static void read(Stream& stream, robot_control::Bounded<Message, Least, Most>& to) {
+    if (stream.getLength() < Least || stream.getLength() > Most) return;
     try {
       stream.next(to.message);
       to.accepted = true;

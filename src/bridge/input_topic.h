@@ -27,7 +27,8 @@ class InputTopic {
 
   /// `malformed`: called instead of `hear` for what cannot be a message of this type. That is told every 10 s at most.
   void connect(
-      ros::NodeHandle& handle, std::function<void(const Message&)> hear, std::function<void()> malformed = [] {}) {
+      ros::NodeHandle& handle, const std::function<void(const Message&)>& hear,
+      const std::function<void()>& malformed = [] {}) {
     subscriber_ = handle.subscribe<BoundedMessage>(
         name_, queue_,
         [this, hear, malformed](const typename BoundedMessage::ConstPtr& heard) {
