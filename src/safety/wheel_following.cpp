@@ -25,7 +25,9 @@ WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const RobotMo
       wrong_direction_(robot.wheels.size(),
                        {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}) {
   for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
-    pushes_[i] = kPushedPart * robot.joints[robot.wheels[i].joint].effort_limit;
+    const JointModel& joint = robot.joints[robot.wheels[i].joint];
+    pushes_[i] = kPushedPart * joint.effort_limit;
+    if (joint.velocity_limit > 0) fastest_[i] = joint.velocity_limit;
   }
 }
 
@@ -97,7 +99,7 @@ Finding WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& 
   Finding finding = kNothingFound;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     Stall& stall = stalls_[i];
-    const double wanted = targets.has(i) ? std::abs(targets[i]) : 0;
+    const double wanted = targets.has(i) ? std::min(std::abs(targets[i]), fastest_[i]) : 0;
     const double speed = along(targets[i], motion.speed(i));
     const bool turns = std::abs(speed) >= kTurns * wanted;
     if (turns || speed > stall.mark + kProgress + motion.speed_tolerance(i)) {

@@ -8,7 +8,8 @@
 ///                    that is, with |ω| ≥ kTurns·|q̇*|, or to gain kProgress + δ towards its target; limit rad + 1
 ///                    quantum: a wheel that follows slowly shows a count each quantum. w = kPushed where the motor
 ///                    gives more than kPushedPart of its effort limit, else 0: a loop whose encoder is stuck pushes
-///                    harder and harder, however slow its target
+///                    harder and harder, however slow its target. A target beyond the wheel's velocity limit
+///                    counts as that limit
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| where the target is 0
 ///   wrong_direction  −s·ω > limit + δ
 ///
@@ -22,6 +23,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "robot/robot_model.h"
@@ -72,6 +74,13 @@ class WheelFollowing {
                   double dt) noexcept;
   Finding not_stopped(const WheelTargets& targets, const JointStandstill& standstill, std::uint64_t elapsed) noexcept;
 
+  /// rad/s, each wheel's velocity limit; ∞: none known.
+  static constexpr std::array<double, kMaxWheels> without_limit() noexcept {
+    std::array<double, kMaxWheels> speeds{};
+    speeds.fill(std::numeric_limits<double>::infinity());
+    return speeds;
+  }
+
   double period_;
   ConditionWatch stall_;
   ConditionWatch not_stopping_;
@@ -79,8 +88,9 @@ class WheelFollowing {
   std::vector<Excess> wrong_direction_;  ///< by wheel
   std::array<Stall, kMaxWheels> stalls_{};
   std::array<double, kMaxWheels> pushes_{};  ///< N·m, from which on a motor does
-  std::uint64_t moved_ = 0;                  ///< cycles of motion since it was told to stand
-  std::uint64_t rested_ = 0;                 ///< cycles in a row
+  std::array<double, kMaxWheels> fastest_ = without_limit();
+  std::uint64_t moved_ = 0;   ///< cycles of motion since it was told to stand
+  std::uint64_t rested_ = 0;  ///< cycles in a row
 };
 
 }  // namespace robot_control

@@ -56,6 +56,19 @@ TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverS
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
+// At 30 rad/s the 0.3 rad of kStall take 10 cycles; corrupt_frame, the true cause, takes 3.
+TEST_F(WheelFollowingTest, AnAbsurdTargetDoesNotMakeAStallOfOneCycle) {
+  RobotModel limited = robot();
+  for (std::size_t i = 0; i < kWheels; ++i) limited.joints[i].velocity_limit = 30;
+  monitor_ = SafetyMonitor(parameters(), limited, kPeriod);
+  new_run();
+  steps(kStart);
+  target(1e6);
+  turn_wheels(0);
+  steps(3);
+  EXPECT_EQ(permit_.causes & kCauseStall, 0u);
+}
+
 TEST_F(WheelFollowingTest, WithoutATargetNothingIsCompared) {
   target(0);
   turn_wheels(0);
