@@ -171,7 +171,7 @@ constexpr auto kSafetyLimits = std::to_array<Key>({
     {"loss_cycles", in<&P::safety, &Safety::loss_cycles>, "cycles", 5, 10000},
     {"heartbeat_timeout", in<&P::safety, &Safety::heartbeat_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
     {"ramp_time", in<&P::safety, &Safety::ramp_time>, "s", 0.01, 60},
-    {"standstill_speed", in<&P::safety, &Safety::standstill_speed>, "rad/s", 1.0e-6, 10},
+    {"standstill_speed", in<&P::safety, &Safety::standstill_speed>, "rad/s", 1.0e-6, 0.5},  // a reset is no start
     {"slow_speed", in<&P::safety, &Safety::slow_speed>, "m/s", 0, 50},
     {"clearance", in<&P::safety, &Safety::clearance>, "m", 0, 10000, kZeroIsOff},
     {"stop_delay", in<&P::safety, &Safety::stop_delay>, "s", 0, 10},

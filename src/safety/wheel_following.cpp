@@ -54,7 +54,7 @@ void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& target
   }
   const double dt = static_cast<double>(elapsed) * period_;
   out.judge(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingFound, elapsed);
-  out.judge(not_stopping_, not_stopped(targets, standstill, elapsed), elapsed);
+  out.judge(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingFound, elapsed);
 }
 
 void WheelFollowing::Excess::reset() noexcept {

@@ -18,7 +18,8 @@
 /// target that turns round; a wheel that runs away gets faster, or stays.
 ///
 ///   not_stopping     s of motion (standstill.h) since the robot was told to stand, until it stood for kRest: who
-///                    rolls on, who is pushed, and who swings about his rest, standing at the turning points
+///                    rolls on, who is pushed, and who swings about his rest, standing at the turning points.
+///                    Where no speed is known, nobody is said to move
 
 #include <array>
 #include <cstddef>

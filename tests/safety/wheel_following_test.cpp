@@ -98,6 +98,14 @@ TEST_F(WheelFollowingTest, ARobotThatSwingsAboutItsRestDoesNotStop) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseNotStopping});
 }
 
+TEST_F(WheelFollowingTest, ARobotWithoutEncodersIsNotSaidToMove) {
+  target(0);
+  turn_wheels(0);
+  sensors_.valid &= ~static_cast<std::uint64_t>(kValidJoints);
+  steps(5000);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEncodersLost});
+}
+
 TEST_F(WheelFollowingTest, ACommandThatDescendsFromAnOldStateIsStaleAfterLossCycles) {
   fresh_state_ = false;
   steps(kLoss - 1);
