@@ -1,10 +1,9 @@
 /// Another program takes the chain's core, in real time. Needs SCHED_FIFO, and a core for the test.
 
 #include <sched.h>
-#include <unistd.h>
+#include <sys/prctl.h>
 
 #include <atomic>
-#include <thread>
 
 #include "losses_fixture.h"
 
@@ -40,6 +39,7 @@ class Hog {
   };
 
   int spin(int priority, std::int64_t core) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     cpu_set_t cores;
     CPU_ZERO(&cores);
     CPU_SET(static_cast<std::size_t>(core), &cores);

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -93,6 +94,7 @@ class NodeProcesses {
 
   int run(LoopNode node) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != test_) return 1;  // it was gone before
     const int log = open(log_of(node).c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
     dup2(log, STDERR_FILENO);
     install_last_words(name_of(node), node == LoopNode::kTelemetry ? "the log with it" : "the motors brake without it");
@@ -164,6 +166,7 @@ class NodeProcesses {
     }
   }
 
+  pid_t test_ = getpid();
   ScopedBus bus_;
   TemporaryFolder folder_;
   AnonymousMemory<ControlDesk> desk_;
