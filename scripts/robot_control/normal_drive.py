@@ -15,7 +15,7 @@ STEP = 0.1  # s, between two commands
 LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default parameters
 ARRIVED = 0.15  # m
 PATIENCE = 15.0  # s, then another waypoint
-COLUMNS = ("permit_causes", "permit_warnings", "gate_verdict", "supervisor_state", "truth_x", "truth_y", "truth_tilt")
+COLUMNS = ("permit_causes", "permit_warnings", "gate_verdict", "supervisor_state", "truth_x", "truth_y", "truth_yaw")
 
 
 @dataclass(frozen=True)

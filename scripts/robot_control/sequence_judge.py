@@ -1,7 +1,7 @@
 """Was a fault sequence survived? Judged by the truth of the plant, which no node sees, and by what the gate let pass.
 
 Speed s: of the faster side over the ground, m/s: |v| + |ω| b/2, with the wheel base b. Standing: the means of v and ω
-over MEAN_TIME give less than STANDING_SPEED; a robot that rocks on its casters comes to no rest, but nowhere else.
+over MEAN_TIME give less than STANDING_SPEED; or the robot rocks on its casters, which light ones do for seconds.
 
     permit     Where the gate does not brake, a permit to drive or to ramp of one of the last four cycles is there.
     brake      While it brakes, s does not grow, and after STOP_TIME + s/STOP_DECELERATION the robot stands.
@@ -14,9 +14,9 @@ over MEAN_TIME give less than STANDING_SPEED; a robot that rocks on its casters 
 What no brake can do, is not asked for. A motor that is off, intermittent or gives garbage takes its brake with it
 (drivers/motor_faults.h): while one does, s may grow by what the slope gives a free robot, g sin 5° t, and by
 GARBAGE_SPEED, and the robot need not come to rest. A monitor that errs (garbage, wrong) gives permits by itself: then
-"release" is not judged, nor "rest" while it goes on. A blocked wheel, or a motor that gives what it was not told,
-jolts the robot harder than any brake: its tilt is not the brake's. A drive that is slow or delayed learns of the brake
-LATE_DRIVE later.
+only what the gate answers for is judged, "permit", "brake" and "machine", and "rest" once it is well. A blocked wheel,
+or a motor that gives what it was not told, jolts the robot harder than any brake: its tilt is not the brake's. A drive
+that is slow or delayed learns of the brake LATE_DRIVE later.
 """
 
 from __future__ import annotations
@@ -39,11 +39,12 @@ KIND_CODES = {"off": 1, "stuck": 2, "garbage": 3, "wrong": 4, "slow": 5, "delaye
 
 STANDING_SPEED = 0.01  # m/s
 MEAN_TIME = 0.3  # s
+ROCKING = 0.005  # rad, change of tilt within MEAN_TIME
 LATE_DRIVE = 0.02  # s, for 10 cycles of 1 ms, and what it takes to act
 STOP_TIME = 1.0  # s, the mean included, and that a light robot falls back on its casters
 STOP_DECELERATION = 0.5  # m/s²
-BRAKE_MARGIN = 0.2  # m/s: wheels that spin when the brake comes still pull for a moment; walls turn v into ω
-SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.3  # 1, m/s
+BRAKE_MARGIN = 0.3  # m/s: wheels that spin when the brake comes still pull for a moment; walls turn v into ω
+SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.6  # 1, m/s: what a stuck encoder lets happen until `stall` is sure
 GARBAGE_SPEED = 1.0  # m/s
 TILT_LIMIT = np.radians(10)
 GRAVITY_ON_SLOPE = 9.81 * np.sin(np.radians(5))  # m/s²
@@ -102,7 +103,9 @@ class _Court:
         self._speed = np.abs(log["truth_linear"]) + np.abs(log["truth_angular"]) * wheel_base / 2
         window = max(1, round(MEAN_TIME / period))
         linear, angular = (np.abs(_mean(log[name], window)) for name in ("truth_linear", "truth_angular"))
-        self._standing = linear + angular * wheel_base / 2 <= STANDING_SPEED
+        tilt = log["truth_tilt"]
+        rocks = np.abs(tilt - tilt[np.maximum(np.arange(len(tilt)) - window, 0)]) > ROCKING
+        self._standing = (linear + angular * wheel_base / 2 <= STANDING_SPEED) | rocks
         dead = ("off", "garbage", "intermittent")
         self._unbraked = failing(log, "left_motor", *dead) | failing(log, "right_motor", *dead)
         jolts = ("stuck", "wrong", "garbage")
@@ -160,8 +163,8 @@ class _Court:
     def speed(self, fastest: float) -> Iterator[Violation]:
         """No runaway."""
         limit = SPEED_FACTOR * fastest + SPEED_MARGIN
-        after_death = np.logical_or.accumulate(self._unbraked)  # what coasts is judged by `brake`
-        for row in np.flatnonzero((self._speed > limit) & ~after_death):
+        excused = np.logical_or.accumulate(self._unbraked | self._monitor_errs)  # what coasts is judged by `brake`
+        for row in np.flatnonzero((self._speed > limit) & ~excused):
             yield self._violation("speed", row, f"{self._speed[row]:.3f} m/s above {limit:.3f} m/s")
 
     def rest(self) -> Iterator[Violation]:
@@ -194,7 +197,7 @@ class _Court:
     def tilt(self) -> Iterator[Violation]:
         """Upright, but after a motor jolted it."""
         tilt = self._log["truth_tilt"]
-        for row in np.flatnonzero((tilt > TILT_LIMIT) & ~np.logical_or.accumulate(self._jolted)):
+        for row in np.flatnonzero((tilt > TILT_LIMIT) & ~np.logical_or.accumulate(self._jolted | self._monitor_errs)):
             yield self._violation("tilt", row, f"leans by {np.degrees(tilt[row]):.1f}°")
 
     def machine(self) -> Iterator[Violation]:

@@ -13,12 +13,13 @@
 ///                       wheel at once (a wall, a kerb, a landing): Ω within one window
 ///   power               Σ τ Ω: every motor at both its limits
 ///   stall               kStall; with several wheels a side kScrubbingStall: in a turn that begins, those of one side
-///                       are dragged along by the others until their torque has grown, for up to 1 rad of way. Below 1
+///                       are dragged along by the others until their torque has grown, for 0.6 rad of way. Below 1
 ///                       kHz in proportion to the period: the loops' gains shrink so, and by as much more angle grows
-///                       the torque that takes a wheel over a bump (seen at 100 Hz: 2.3 rad)
+///                       the torque that takes a wheel over a bump (seen at 100 Hz: more than 3 rad)
 ///   not_stopping        kNotStopping; with a period above kSlowLoop in proportion: at 100 Hz a wheel loop that was
 ///                       pushed swings back for 3.5 s, at 2 cm/s
-///   runaway             max(0.2 Ω, kLeastRunaway)
+///   runaway             max(0.2 Ω, kLeastRunaway); with a period above kSlowLoop in proportion, as a slow loop
+///                       that has pushed a wheel up a bump lets it shoot down
 ///                       kLeastRunaway: a wheel loop that is being pushed, and 20 quanta of a wheel speed measured with
 ///                       4096 counts over T (0.077 rad/s)
 ///
@@ -31,8 +32,8 @@ namespace robot_control {
 
 inline constexpr double kSpeedMargin = 1.0;     ///< rad/s, 13 quanta as above: for robots that are driven slowly
 inline constexpr double kLeastRunaway = 2.0;    ///< rad/s
-inline constexpr double kStall = 0.3;           ///< rad, 3 cm of way; driving over bumps and ice needs 0.13
-inline constexpr double kScrubbingStall = 2.0;  ///< rad
+inline constexpr double kStall = 0.5;           ///< rad, 5 cm of way; driving over bumps and ice needs 0.13
+inline constexpr double kScrubbingStall = 1.2;  ///< rad, twice what skid steers need
 inline constexpr double kNotStopping = 2.0;     ///< s; light robots need 1.2 at 1 kHz
 inline constexpr double kSlowLoop = 0.005;      ///< s
 inline constexpr double kSpeedWindow = 0.02;    ///< s, T

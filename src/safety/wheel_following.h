@@ -40,7 +40,7 @@ class WheelFollowing {
   static constexpr double kTurns = 0.2;
   static constexpr double kProgress = 0.1;    ///< rad/s
   static constexpr double kRest = 0.5;        ///< s
-  static constexpr double kPushed = 1.0;      ///< rad/s
+  static constexpr double kPushed = 2.0;      ///< rad/s
   static constexpr double kPushedPart = 0.5;  ///< driving over bumps takes as much for 0.06 s, skid steers for 0.3 s
 
   /// `period` s.

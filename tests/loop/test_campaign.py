@@ -81,7 +81,7 @@ def test_a_passed_command_under_an_old_permit_is_noticed(sequence, log):
 
 def test_a_robot_that_speeds_up_under_the_brake_is_noticed(sequence, log):
     log["gate_verdict"][rows(0.5, 0.6)] = BRAKE
-    log["truth_linear"][rows(0.55, 0.6)] = 1.21
+    log["truth_linear"][rows(0.55, 0.6)] = 1.31
     assert rules_broken(sequence, log) == {"brake"}
 
 
@@ -92,12 +92,12 @@ def test_a_robot_that_goes_on_under_the_brake_is_noticed(sequence, log):
 
 
 def test_a_runaway_is_noticed(sequence, log):
-    log["truth_linear"][500] = 1.5 * FASTEST + 0.31
+    log["truth_linear"][500] = 1.5 * FASTEST + 0.61
     assert rules_broken(sequence, log) == {"speed"}
 
 
 def test_a_robot_that_turns_too_fast_is_noticed(sequence, log):
-    log["truth_angular"][500] = 10.0  # 2.5 m/s at the wheels, and 1 m/s of the drive
+    log["truth_angular"][500] = 12.0  # 3 m/s at the wheels, and 1 m/s of the drive
     assert rules_broken(sequence, log) == {"speed"}
 
 

@@ -78,7 +78,7 @@ TEST_F(EvidenceTest, StandsInTheOrderInWhichCausesCameWithWarningsLast) {
 
 TEST_F(EvidenceTest, NamesTheJoint) {
   speed_[1] = 12;
-  steps(80);
+  steps(180);
   ASSERT_NE(permit_.causes & kCauseRunaway, 0u);
   EXPECT_EQ(permit_.evidence[0].joint, 1u);
   EXPECT_GT(permit_.evidence[0].value, permit_.evidence[0].limit);

@@ -45,12 +45,12 @@ TEST_F(WheelFollowingTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-// kStall at kPushed: 0.3 s; a quantum and the window of the speed are less than 30 ms. The target alone: 1.5 s.
+// kStall at kPushed: 0.25 s; a quantum and the window of the speed are less than 30 ms. The target alone: 2.5 s.
 TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverSlowItsTarget) {
   target(0.2);
   turn_wheels(0);
   for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = 0.6 * robot().joints[i].effort_limit;
-  steps(290);
+  steps(240);
   EXPECT_EQ(permit_.causes, 0u);
   steps(40);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
@@ -85,7 +85,7 @@ TEST_F(WheelFollowingTest, WhatTheGateDidNotPassIsNotCompared) {
 
 TEST_F(WheelFollowingTest, AWheelThatTurnsUnderATargetOfZeroRunsAway) {
   for (JointCommand& joint : command_.joints) joint.velocity = 0;  // in kEffort
-  steps(60);
+  steps(180);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseRunaway});
 }
 
