@@ -50,7 +50,8 @@ def area_of(scene: str) -> Area:
 class NormalDrive:
     """Drives `loop`, whose robot stands at the start; `seed`: of the waypoints."""
 
-    def __init__(self, loop: ClosedLoop, area: Area, seed: int) -> None:
+    def __init__(self, loop: ClosedLoop, area: Area, seed: int, top_speed: float = LINEAR_LIMIT) -> None:
+        self._top_speed = top_speed  # m/s
         self._loop = loop
         self._area = area
         self._random = np.random.default_rng(seed)
@@ -76,7 +77,7 @@ class NormalDrive:
         return Trip(
             x=random.uniform(area.x_min, area.x_max),
             y=random.uniform(-area.y_max, area.y_max),
-            speed=LINEAR_LIMIT * random.choice([1.0, 1.0, random.uniform(0.1, 1.0)]),
+            speed=self._top_speed * random.choice([1.0, 1.0, random.uniform(0.1, 1.0)]),
             reverse=bool(random.random() < 0.25),
             pause=random.choice([0.0, random.uniform(0.1, 3.0)]),
             quiet=bool(random.random() < 0.3),

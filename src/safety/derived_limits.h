@@ -33,7 +33,7 @@ namespace robot_control {
 inline constexpr double kSpeedMargin = 1.0;     ///< rad/s, 13 quanta as above: for robots that are driven slowly
 inline constexpr double kLeastRunaway = 2.0;    ///< rad/s
 inline constexpr double kStall = 0.5;           ///< rad, 5 cm of way; driving over bumps and ice needs 0.13
-inline constexpr double kScrubbingStall = 1.2;  ///< rad, twice what skid steers need
+inline constexpr double kScrubbingStall = 1.2;  ///< rad
 inline constexpr double kNotStopping = 2.0;     ///< s; light robots need 1.2 at 1 kHz
 inline constexpr double kSlowLoop = 0.005;      ///< s
 inline constexpr double kSpeedWindow = 0.02;    ///< s, T

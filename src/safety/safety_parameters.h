@@ -43,7 +43,7 @@ struct SafetyParameters {
   Condition power{{}, 0.1, Reaction::kBrake};                ///< W, mechanical, all wheels; derived
   Condition stall{{}, 0, Reaction::kBrake};                  ///< rad that a standing wheel should have turned; derived
   Condition runaway{{}, 0.15, Reaction::kBrake};             ///< rad/s beyond the target; derived
-  Condition wrong_direction{3.0, 0.15, Reaction::kBrake};    ///< rad/s against the target
+  Condition wrong_direction{4.5, 0.05, Reaction::kBrake};    ///< rad/s against the target
   Condition not_stopping{{}, 0, Reaction::kBrake};           ///< s of motion after the target became zero; derived
   Condition yaw_rate{1.0, 0.2, Reaction::kSlow};             ///< rad/s between gyro and wheels
   Condition tilt{0.42, 0.05, Reaction::kBrake};              ///< rad from the vertical

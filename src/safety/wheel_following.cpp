@@ -68,7 +68,7 @@ void WheelFollowing::Excess::step(Finding finding, double speed, double progress
     mark = 0;
   } else if (mark == 0) {
     mark = speed;
-  } else if (speed < mark - progress) {
+  } else if (speed < mark - progress && finding.value <= kFarBeyond * finding.limit) {
     mark = speed;
     finding.beyond = false;
   }

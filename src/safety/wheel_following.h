@@ -15,7 +15,8 @@
 ///
 /// The last two only while the wheel does not slow down: one that lost kProgress + δ of that speed since its
 /// persistence began begins it anew. A drive at the limit of its torque, or a skid steer that scrubs, lags behind a
-/// target that turns round; a wheel that runs away gets faster, or stays.
+/// target that turns round; a wheel that runs away gets faster, or stays. Beyond kFarBeyond times the limit this is no
+/// excuse: so far no drive lags, but a command that jumped, or an encoder that counts backwards, is there at once.
 ///
 ///   not_stopping     s of motion (standstill.h) since the robot was told to stand, until it stood for kRest: who
 ///                    rolls on, who is pushed, and who swings about his rest, standing at the turning points.
@@ -38,6 +39,7 @@ namespace robot_control {
 class WheelFollowing {
  public:
   static constexpr double kTurns = 0.2;
+  static constexpr double kFarBeyond = 1.5;
   static constexpr double kProgress = 0.1;    ///< rad/s
   static constexpr double kRest = 0.5;        ///< s
   static constexpr double kPushed = 2.0;      ///< rad/s

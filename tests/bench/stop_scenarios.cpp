@@ -95,7 +95,7 @@ std::vector<StopScenario> stop_scenarios() {
       pushed(kCauseFreeFall, "thrown up", "z", 500, 0.1),
       with(pushed(kCauseLift, "lifted by nine tenths", "z", 106, 1.0), {set("mujoco_plant.contact_sensors", "true")}),
       wall,
-      pushed(kCauseImpact, "a blow from ahead", "x", -1500, 0.005),
+      pushed(kCauseImpact, "a blow from ahead", "x", -3000, 0.005),
       ahead(kCauseGateRefuses, "controller", "garbage"),
       with(ahead(kCauseBatteryEmpty, "battery", "wrong"), battery),
   };

@@ -35,7 +35,20 @@ TEST_F(WheelFollowingTest, AWeakDriveThatTurnsRoundIsNotWrong) {
 
 TEST_F(WheelFollowingTest, AWheelThatKeepsTurningWronglyIs) {
   target(-kSpeed);
-  steps(150 + 1);
+  steps(50 + 1);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
+}
+
+// Slowing down by 6 rad/s² as in the first test, but the target was there at once: 10 rad/s against it.
+TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown) {
+  turn_wheels(2 * kSpeed);
+  target(2 * kSpeed);
+  steps(200);
+  target(-2 * kSpeed);
+  for (int k = 0; k < 50 + 1; ++k) {
+    turn_wheels(2 * kSpeed - 6 * k * kPeriod);
+    step();
+  }
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
 }
 
