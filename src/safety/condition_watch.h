@@ -31,6 +31,17 @@ inline const Finding& worse(const Finding& a, const Finding& b) noexcept {
 /// Nothing found: further from its limit than any.
 inline constexpr Finding kNothingFound{.limit = std::numeric_limits<double>::infinity()};
 
+/// Cycles that a finding counts for, where less of it may last longer: from kFarTimes its limit on, n times the limit
+/// for one cycle is as bad as once the limit for n. A light wheel whose motor pulls the wrong way reaches a thousand
+/// rad/s while others come off a bump.
+inline std::uint64_t weighed(const Finding& finding, std::uint64_t elapsed) noexcept {
+  constexpr double kFarTimes = 3;
+  constexpr double kMostTimes = 50;
+  const double times = finding.value / finding.limit;
+  if (!finding.beyond || !(times >= kFarTimes)) return elapsed;
+  return elapsed * static_cast<std::uint64_t>(std::min(times, kMostTimes));
+}
+
 class ConditionWatch {
  public:
   /// `period`: s.

@@ -81,8 +81,8 @@ void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotio
   const double target = targets[wheel];
   const double speed = target == 0 ? std::abs(motion.speed(wheel)) : along(target, motion.speed(wheel));
   const double tolerance = motion.speed_tolerance(wheel);
-  excess.step(beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance), speed, kProgress + tolerance,
-              elapsed, out);
+  const Finding finding = beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance);
+  excess.step(finding, speed, kProgress + tolerance, weighed(finding, elapsed), out);
 }
 
 void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,

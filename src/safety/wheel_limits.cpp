@@ -55,7 +55,8 @@ void WheelLimits::step(const SensorFrame& sensors, const WheelMotion& motion, bo
                        std::uint64_t elapsed, ActiveCauses& out) noexcept {
   const double in_force = in_force_.step(speed_limit, elapsed);
   const bool known = motion.speed_known();
-  out.judge(speed_, known ? fastest(motion, in_force) : kNothingFound, elapsed);
+  const Finding speed = known ? fastest(motion, in_force) : kNothingFound;
+  out.judge(speed_, speed, weighed(speed, elapsed));
   out.judge(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingFound, elapsed);
   out.judge(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingFound, elapsed);
   out.judge(power_, known ? drawn(sensors, motion) : kNothingFound, elapsed);

@@ -80,8 +80,8 @@ def test_a_passed_command_under_an_old_permit_is_noticed(sequence, log):
 
 
 def test_a_robot_that_speeds_up_under_the_brake_is_noticed(sequence, log):
-    log["gate_verdict"][rows(0.5, 0.6)] = BRAKE
-    log["truth_linear"][rows(0.55, 0.6)] = 1.31
+    log["gate_verdict"][rows(0.5, 0.8)] = BRAKE
+    log["truth_linear"][rows(0.7, 0.8)] = 1.31
     assert rules_broken(sequence, log) == {"brake"}
 
 
@@ -92,7 +92,7 @@ def test_a_robot_that_goes_on_under_the_brake_is_noticed(sequence, log):
 
 
 def test_a_runaway_is_noticed(sequence, log):
-    log["truth_linear"][500] = 1.5 * FASTEST + 0.61
+    log["truth_linear"][500] = 1.5 * FASTEST + 0.71
     assert rules_broken(sequence, log) == {"speed"}
 
 

@@ -52,6 +52,13 @@ TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown)
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
 }
 
+// Runaway has 3.75 rad/s and 0.15 s; 95 rad/s too fast are 25 times as much, and do with a 25th of that and the window.
+TEST_F(WheelFollowingTest, TheFasterAWheelRunsAwayTheSoonerItIsTold) {
+  turn_wheels(100);
+  steps(20 + 150 / 25 + 1);
+  EXPECT_NE(permit_.causes & (kCauseRunaway | kCauseWheelSpeed), 0u);
+}
+
 TEST_F(WheelFollowingTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
   turn_wheels(0.25 * kSpeed);
   steps(5000);
