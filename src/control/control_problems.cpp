@@ -15,17 +15,18 @@ namespace {
 
 struct Load {
   const char* name;
-  double inertia;  ///< kg·m²
+  WheelLoad load;
 
-  bool operator==(const Load& other) const noexcept { return inertia == other.inertia; }
+  bool operator==(const Load& other) const noexcept { return load == other.load; }
 };
 
 std::array<Load, 4> loads(const RobotModel& robot, const WheelModel& wheel) {
+  const double damping = robot.joints[wheel.joint].damping;
   const double straight = straight_inertia(robot, wheel);
-  return {{{"lifted", wheel.inertia},
-           {"turning", turning_inertia(robot, wheel)},
-           {"driving straight", straight},
-           {"driving straight with its mass doubled", 2 * straight - wheel.inertia}}};
+  return {{{"lifted", {wheel.inertia, damping}},
+           {"turning", {turning_inertia(robot, wheel), damping}},
+           {"driving straight", {straight, damping}},
+           {"driving straight with its mass doubled", {2 * straight - wheel.inertia, damping}}}};
 }
 
 /// What decides about stability.
@@ -39,7 +40,7 @@ struct Loop {
     return gains.kp == other.gains.kp && gains.ki == other.gains.ki && loads == other.loads;
   }
 
-  double radius(const Load& load) const { return wheel_loop_spectral_radius(gains, load.inertia, period, bandwidth); }
+  double radius(const Load& of) const { return wheel_loop_spectral_radius(gains, of.load, period, bandwidth); }
 
   /// Null: stable with every load.
   const Load* unstable_load() const {
@@ -70,8 +71,8 @@ std::string unstable_message(const Loop& loop, const std::string& joint, const L
   text.precision(3);
   text << "diff_drive_controller: pid_kp " << gains.kp << ", pid_ki " << gains.ki << ", pid_kd " << gains.kd
        << ", tracking_bandwidth " << loop.bandwidth << " Hz at " << std::lround(1 / loop.period)
-       << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " (" << load.inertia
-       << " kg·m²): spectral radius " << loop.radius(load) << ", must be < 1. ";
+       << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " ("
+       << load.load.inertia << " kg·m²): spectral radius " << loop.radius(load) << ", must be < 1. ";
   // Half of what is just stable: a gain margin of two.
   const double part = 0.5 * stable_part(loop);
   if (part > 0) {

@@ -132,7 +132,9 @@ bool DriveController::slow() const noexcept {
 void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   WheelValues measured{};
   for (std::size_t i = 0; i < loops_.size(); ++i) measured[i] = loops_[i].velocity();
-  limiter_.seed(kinematics_.twist(measured));
+  const PlanarTwist twist = kinematics_.twist(measured);
+  const double scale = kinematics_.wheel_speed_scale(twist);  // no plan beyond the joints' limits
+  limiter_.seed({scale * twist.linear, scale * twist.angular});
   const bool carries = standstill_.standing() || slow();
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     loops_[i].resume();

@@ -1,6 +1,7 @@
 #include "control/wheel_loop_gains.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "control/feed_forward.h"
 
@@ -12,9 +13,12 @@ WheelLoopGains wheel_loop_gains(const DriveControllerParameters& parameters, con
   constexpr double kPace = 31;          // 1/s
   constexpr double kIntegralPace = 10;  // 1/s
   const double straight = straight_inertia(robot, wheel);
+  const double lifted = kModelInertiaFactor * wheel.inertia;
+  const double damped = kModelInertiaFactor * robot.joints[wheel.joint].damping /
+                        (2 * std::numbers::pi * tracking_bandwidth(parameters, period));
   WheelLoopGains gains;
-  gains.model_inertia = kModelInertiaFactor * wheel.inertia;
-  gains.kp = parameters.pid_kp.value_or(std::min(kStabilityNumber * gains.model_inertia / period, kPace * straight));
+  gains.model_inertia = std::max(lifted, damped);
+  gains.kp = parameters.pid_kp.value_or(std::min(kStabilityNumber * lifted / period, kPace * straight));
   gains.ki = parameters.pid_ki.value_or(std::min(kIntegralPace * gains.kp, gains.kp * gains.kp / (3 * straight)));
   gains.kd = parameters.pid_kd;
   return gains;

@@ -17,7 +17,22 @@ Row unit(State state) {
   return Row::Unit(state);
 }
 
-Matrix transition(const WheelLoopGains& gains, double inertia, double dt, double bandwidth) {
+/// What a speed of 1 rad/s, or a torque of 1 N·m, makes of the wheel within `dt`.
+struct FreeWheel {
+  double speed_kept;       ///< of 1
+  double angle_of_speed;   ///< s
+  double speed_of_effort;  ///< rad/s per N·m
+  double angle_of_effort;  ///< rad per N·m
+};
+
+FreeWheel free_wheel(const WheelLoad& load, double dt) {
+  if (load.damping == 0) return {1, dt, dt / load.inertia, 0.5 * dt * dt / load.inertia};
+  const double lost = -std::expm1(-load.damping / load.inertia * dt);
+  const double way = lost * load.inertia / load.damping;
+  return {1 - lost, way, lost / load.damping, (dt - way) / load.damping};
+}
+
+Matrix transition(const WheelLoopGains& gains, const WheelLoad& load, double dt, double bandwidth) {
   const double p = std::exp(-2 * std::numbers::pi * bandwidth * dt);
   const double q = 1 - p;
 
@@ -29,11 +44,12 @@ Matrix transition(const WheelLoopGains& gains, double inertia, double dt, double
   const Row measured = residual + unit(kLastEffort) / gains.model_inertia;
   const Row integral = unit(kIntegral) - gains.ki * dt * velocity;
 
+  const FreeWheel wheel = free_wheel(load, dt);
   Matrix a;
-  a.row(kOffset) = offset - dt * unit(kTrueVelocity) - 0.5 * dt * dt / inertia * unit(kEffort);
+  a.row(kOffset) = offset - wheel.angle_of_speed * unit(kTrueVelocity) - wheel.angle_of_effort * unit(kEffort);
   a.row(kVelocity) = velocity;
   a.row(kResidual) = residual;
-  a.row(kTrueVelocity) = unit(kTrueVelocity) + dt / inertia * unit(kEffort);
+  a.row(kTrueVelocity) = wheel.speed_kept * unit(kTrueVelocity) + wheel.speed_of_effort * unit(kEffort);
   a.row(kEffort) = integral - gains.kp * velocity - gains.kd * measured;
   a.row(kLastEffort) = unit(kEffort);
   a.row(kIntegral) = integral;
@@ -42,8 +58,8 @@ Matrix transition(const WheelLoopGains& gains, double inertia, double dt, double
 
 }  // namespace
 
-double wheel_loop_spectral_radius(const WheelLoopGains& gains, double inertia, double period, double bandwidth) {
-  const Matrix a = transition(gains, inertia, period, bandwidth);
+double wheel_loop_spectral_radius(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth) {
+  const Matrix a = transition(gains, load, period, bandwidth);
   // Without ki the integral is a constant beside the loop, not a mode of it.
   const Eigen::Index states = gains.ki > 0 ? kStates : kStates - 1;
   const Eigen::MatrixXd loop = a.topLeftCorner(states, states);

@@ -1,7 +1,8 @@
 #pragma once
 /// Is the wheel loop stable? The eigenvalues of what really runs: tracking loop, PID and the bus's delay.
 ///
-/// One wheel of inertia J, linear, sampled: the torque of cycle k acts over [t_k+1, t_k+2). State
+/// One wheel of inertia J in a joint of damping d, linear, sampled: the torque τ of cycle k acts over [t_k+1, t_k+2),
+/// in which J·ω̇ = τ − d·ω. State
 ///
 ///   x = (θ̂ − θ, ω̂, residual, ω, τ of [t_k, t_k+1), τ of [t_k-1, t_k), integral)
 ///
@@ -13,8 +14,16 @@
 
 namespace robot_control {
 
-/// `inertia` kg·m² that the wheel really drives, `period` s, `bandwidth` Hz of the tracking loop; all > 0.
-double wheel_loop_spectral_radius(const WheelLoopGains& gains, double inertia, double period, double bandwidth);
+/// What the wheel really drives.
+struct WheelLoad {
+  double inertia = 0;  ///< kg·m², > 0
+  double damping = 0;  ///< N·m·s/rad, ≥ 0
+
+  bool operator==(const WheelLoad&) const noexcept = default;
+};
+
+/// `period` s, `bandwidth` Hz of the tracking loop; both > 0.
+double wheel_loop_spectral_radius(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth);
 
 /// kp·dt/model_inertia: the quick rule. With kd = 0 and a tracking loop that is slow against the period
 /// (2π·bandwidth·dt ≤ 0.25) the loop is unstable above 1 whatever the wheel drives; aim at ≤ 0.5. The spectral radius

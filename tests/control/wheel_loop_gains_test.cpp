@@ -67,11 +67,54 @@ TEST(WheelLoopGains, AreStableWithAMarginOfFourWhateverTheWheelDrives) {
         scaled.kp *= scale;
         scaled.ki *= scale;
         for (double inertia = wheel.inertia; inertia < 0.65; inertia *= 1.3) {
-          EXPECT_LT(wheel_loop_spectral_radius(scaled, inertia, 1 / rate, bandwidth), 1)
+          EXPECT_LT(wheel_loop_spectral_radius(scaled, {inertia}, 1 / rate, bandwidth), 1)
               << rate << " Hz, ratio " << ratio << ", inertia " << inertia << ", gains times " << scale;
         }
       }
     }
+  }
+}
+
+// Damping from what is not noticed to what leaves nothing of the inertia, and with all gains times three.
+TEST(WheelLoopGains, AreStableWithAMarginOfThreeInADampedJoint) {
+  for (const double rate : {100.0, 150.0, 250.0, 500.0, 1000.0, 2000.0}) {
+    for (const double ratio : {0.01, 0.1, 0.5, 0.7, 1.0}) {
+      for (double pace = 1; pace < 1.1e4; pace *= 2.15) {  // d/J, 1/s
+        RobotModel robot = make_test_robot();
+        WheelModel& wheel = robot.wheels[0];
+        wheel.inertia = ratio * 0.065;
+        robot.mass = 2 * (0.065 - wheel.inertia) / (wheel.radius * wheel.radius);
+        const double damping = robot.joints[wheel.joint].damping = pace * wheel.inertia;
+        WheelLoopGains gains = wheel_loop_gains({}, robot, wheel, 1 / rate);
+        gains.kp *= 3;
+        gains.ki *= 3;
+        for (double inertia = wheel.inertia; inertia < 0.65; inertia *= 1.7) {
+          EXPECT_LT(wheel_loop_spectral_radius(gains, {inertia, damping}, 1 / rate, tracking_bandwidth({}, 1 / rate)),
+                    1)
+              << rate << " Hz, ratio " << ratio << ", d/J " << pace << " 1/s, inertia " << inertia;
+        }
+      }
+    }
+  }
+}
+
+// A creeping wheel of next to no inertia, whose damping takes the whole torque: the loop must not see it race.
+TEST(WheelLoopGains, SeeNoSpeedThatADampedWheelDoesNotHave) {
+  constexpr double kPeriod = 1e-3;
+  constexpr double kDamping = 0.2;
+  RobotModel robot = make_test_robot();
+  WheelModel& wheel = robot.wheels[0];
+  wheel.inertia = 3.4e-5;
+  robot.joints[wheel.joint].damping = kDamping;
+  WheelLoop loop(wheel_loop_gains({}, robot, wheel, kPeriod), tracking_bandwidth({}, kPeriod), 0.28, kPeriod);
+  double angle = 0;
+  loop.measure({}, 1, true);
+  for (int k = 1; k <= 400; ++k) {
+    const bool driven = k / 50 % 2 == 0;  // a brake, a drive, …
+    const double effort = driven ? 0.2 : 0;
+    angle += effort / kDamping * kPeriod;
+    loop.measure({.position = angle, .effort = effort}, 1, driven);
+    ASSERT_LT(std::abs(loop.velocity() - 0.5), 2.0) << "turning at 0 or 1 rad/s, cycle " << k;
   }
 }
 
