@@ -14,6 +14,8 @@ from robot_control.share import share_file
 
 DIFFBOT = "diffbot"
 REFUSED = ("my_bot", "p3dx_amr")  # an empty template; wheels on fixed joints
+STOP_DECELERATION = 0.5  # m/s², the parameter's default; on the ice of the scenes robots slide to a stop with 0.77
+WEAK_STOP_DECELERATIONS = {"create_2": 0.12}  # it tips onto its nose, which slides, and its wheels carry little
 SCENES = ("flat", "slope_5deg", "bumps", "low_friction_patch", "walls")
 
 
@@ -50,6 +52,11 @@ def urdf_of(name: str) -> str:
             f"robot {name}: no robot.urdf in {folder}; ROBOT_CORPUS names the folder of real robots"
         )
     return str(folder / name / "robot.urdf")
+
+
+def stop_deceleration_of(name: str) -> float:
+    """m/s², that its brakes reach in every one of `SCENES`."""
+    return WEAK_STOP_DECELERATIONS.get(name, STOP_DECELERATION)
 
 
 def scene_of(name: str) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from robot_control.closed_loop import ClosedLoop, Log
 from robot_control.fault_sequence import BATTERY_VOLTAGE, Event, FaultSequence
 from robot_control.random_drive import leg_at
-from robot_control.robots import scene_of, urdf_of
+from robot_control.robots import scene_of, stop_deceleration_of, urdf_of
 
 COLUMNS = (
     "run",
@@ -33,7 +33,10 @@ COLUMNS = (
 def make_loop(sequence: FaultSequence) -> ClosedLoop:
     """The robot of this sequence in its scene, its sensors err as the seed says."""
     return ClosedLoop(
-        params={"mujoco_plant": {"battery_voltage": BATTERY_VOLTAGE}},
+        params={
+            "mujoco_plant": {"battery_voltage": BATTERY_VOLTAGE},
+            "safety_monitor": {"stop_deceleration": stop_deceleration_of(sequence.robot)},
+        },
         seed=sequence.seed,
         urdf=urdf_of(sequence.robot),
         scene=scene_of(sequence.scene),

@@ -31,6 +31,7 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
       clearance_(parameters),
       motion_(robot.wheels.size(), period),
       standstill_(parameters.standstill_speed, period),
+      slide_(parameters, robot, period),
       targets_(robot.wheels.size()),
       wheel_limits_(parameters, robot, period),
       wheel_following_(parameters, robot, period),
@@ -48,6 +49,7 @@ void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
   operator_facts_.enter_run(operator_input);
   motion_.enter_run();
   standstill_.enter_run();
+  slide_.enter_run();
   targets_.enter_run();
   wheel_limits_.enter_run();
   wheel_following_.enter_run();
@@ -117,6 +119,7 @@ void SafetyMonitor::look_at_motion(const MonitorInput& input, std::uint64_t elap
   const SensorFrame& sensors = *input.sensors;
   motion_.step(sensors);
   standstill_.step(motion_, sensors.head.cycle);
+  slide_.step(motion_, standstill_.standing(), elapsed);
   targets_.step(input);
   wheel_limits_.step(sensors, motion_, targets_.passed(), last_speed_limit_, elapsed, active_);
   wheel_following_.step(sensors, targets_, motion_, standstill_, elapsed, active_);
@@ -149,6 +152,7 @@ void SafetyMonitor::supervise(const MonitorInput& input, bool again) noexcept {
   facts.requested = asks_for_motion(input.command);
   facts.moving = standstill_.moving();
   facts.standing = standstill_.standing();
+  facts.sliding = standstill_.standing() && slide_.possible();
   facts.reset_requested = !again && input.operator_input.resets != resets_handled_;
   supervisor_.step(facts);
   if (facts.reset_requested) {

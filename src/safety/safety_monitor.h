@@ -6,7 +6,8 @@
 ///
 ///   presence.h, sensor_presence.h, frame_facts.h    who is missing, what cannot be believed
 ///   operator_facts.h, clearance.h                   what the operator says
-///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, yaw_agreement.h, standstill.h
+///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, yaw_agreement.h, standstill.h,
+///                      slide.h
 ///   gate_facts.h, machine_facts.h, body_facts.h     does the machine obey, is it well, what happens to its body
 ///
 /// INIT until sensors, state and command of this run were each seen; then READY or DRIVE permit motion until a cause
@@ -32,6 +33,7 @@
 #include "safety/presence.h"
 #include "safety/safety_parameters.h"
 #include "safety/sensor_presence.h"
+#include "safety/slide.h"
 #include "safety/standstill.h"
 #include "safety/supervisor.h"
 #include "safety/warnings.h"
@@ -99,6 +101,7 @@ class SafetyMonitor {
   Clearance clearance_;
   WheelMotion motion_;
   JointStandstill standstill_;
+  Slide slide_;
   WheelTargets targets_;
   WheelLimits wheel_limits_;
   WheelFollowing wheel_following_;

@@ -35,7 +35,7 @@ struct SafetyParameters {
   double slow_speed = 0.3;   ///< m/s, of the rims, under Reaction::kSlow
   double clearance = 0;      ///< m, free way ahead from the start on, until the topic says otherwise; 0: unlimited
   double stop_delay = 0.03;  ///< s, from the fact to the brake torque
-  double stop_deceleration = 1.0;  ///< m/s², that braking or ramping reaches on any ground the robot drives on
+  double stop_deceleration = 0.5;  ///< m/s², that braking or ramping reaches on any ground the robot drives on
 
   Condition wheel_speed{{}, 0.15, Reaction::kBrake};         ///< rad/s; derived
   Condition wheel_acceleration{{}, 0.01, Reaction::kBrake};  ///< rad/s²; derived

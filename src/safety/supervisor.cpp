@@ -63,6 +63,7 @@ std::uint64_t Supervisor::refusal(const SupervisorInput& input) const noexcept {
   if ((input.repair | input.brake | input.ramp) != 0) refusal |= kRefusalCauseActive;
   if (input.requested) refusal |= kRefusalCommand;
   if (!input.standing || state_ == SupervisorState::kStopping) refusal |= kRefusalMoving;
+  if (input.sliding) refusal |= kRefusalSliding;
   return refusal;
 }
 

@@ -2,9 +2,9 @@
 /// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, how each stops, which came first.
 ///
 /// A cause once active stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused
-/// while a cause is active, a motion is asked for, the robot moves or a node is missing in INIT; during
-/// STOPPING it counts as moving. Where nothing is latched (READY, DRIVE) a reset is accepted without effect.
-/// The ramp of STOPPING ends at the cycle fixed when it began, or at standstill.
+/// while a cause is active, a motion is asked for, a wheel turns, the body may still slide or a node is missing in
+/// INIT; during STOPPING it counts as moving. Where nothing is latched (READY, DRIVE) a reset is accepted without
+/// effect. The ramp of STOPPING ends at the cycle fixed when it began, or at standstill.
 
 #include <cstdint>
 
@@ -22,6 +22,7 @@ struct SupervisorInput {
   bool requested = false;     ///< the controller asks for a motion
   bool moving = false;        ///< a joint turns in this very cycle
   bool standing = false;      ///< every joint has been slow for a while
+  bool sliding = false;       ///< … but the body may still slide
   bool reset_requested = false;
 };
 

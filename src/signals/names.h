@@ -33,6 +33,8 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
     {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
     {kRefusalPaused, "paused", "the simulation is paused", "let it run (mujoco_plant/set_pause), then ask again"},
+    {kRefusalSliding, "sliding", "the wheels stand, but the robot may still slide",
+     "ask again: from speed v it is believed to stand after v/stop_deceleration"},
 });
 
 inline constexpr auto kMissingNodeNames = std::to_array<BitName>({

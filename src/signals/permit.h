@@ -89,6 +89,7 @@ enum ResetRefusal : std::uint64_t {
   kRefusalInit = 1u << 3,         ///< Still waiting for a node.
   kRefusalSilent = 1u << 4,       ///< No sensor frame comes: nothing can be judged.
   kRefusalPaused = 1u << 5,       ///< The simulated machine is paused: nothing can be judged.
+  kRefusalSliding = 1u << 6,      ///< The wheels stand, but the body may still slide.
 };
 
 /// Bits of Permit::missing, in state kInit.

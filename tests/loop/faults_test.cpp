@@ -59,6 +59,7 @@ class Faults : public ::testing::Test {
     const std::string path = folder_.write("script.csv", script.str()).string();
     parameters_ = read_parameters(std::string(PROJECT_DIRECTORY) + "/config/robot_params.yaml",
                                   {{"robot.command_script", path, "test"}});
+    parameters_.safety.stop_deceleration = 10;  // an encoder that lied leaves no slide that outlasts the block
     parameters_.loop.clock = ClockMode::kLockstep;
     parameters_.loop.wait_for_nodes = true;
     parameters_.loop.wait_for_telemetry = true;

@@ -59,14 +59,14 @@ TEST(ClearanceTest, NeverOverflows) {
   EXPECT_GE(topic_limit(std::numeric_limits<double>::denorm_min()), 0);
 }
 
-// v²/2 + 0.03 v = 0.5 m
+// v²/4 + 0.03 v = 0.5 m
 TEST_F(MonitorTest, AClearanceLimitsTheSpeedInItsCycleAndLatchesNothing) {
   drive();
   EXPECT_EQ(permit_.speed_limit, kNoSpeedLimit);
   input_.operator_input.clearances = 1;
   input_.operator_input.clearance = 0.5;
   step();
-  EXPECT_NEAR(permit_.speed_limit, 0.9704, 1e-4);
+  EXPECT_NEAR(permit_.speed_limit, 1.3555, 1e-4);
   input_.operator_input.clearance = 0;
   step();
   EXPECT_EQ(permit_.speed_limit, 0);
@@ -86,7 +86,7 @@ TEST_F(MonitorTest, AControllerThatDoesNotSlowDownIsStopped) {
   steps(kStart);
   drive();
   input_.operator_input.clearances = 1;
-  input_.operator_input.clearance = 0.026;  // 0.2 m/s
+  input_.operator_input.clearance = 0.016;  // 0.2 m/s
   step();
   ASSERT_NEAR(permit_.speed_limit, 0.2, 1e-2);
   steps(kRamp - 10);

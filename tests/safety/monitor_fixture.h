@@ -29,7 +29,8 @@ class MonitorTest : public testing::Test {
   static constexpr std::uint64_t kStands = 102;  ///< cycles until it is believed: kStandingTime, the anchor, the count
   static constexpr std::uint64_t kStart = 120;
   static constexpr double kQuantum = 2 * std::numbers::pi / 4096;
-  static constexpr double kSpeed = 5;  ///< rad/s, when it drives
+  static constexpr double kSpeed = 5;             ///< rad/s, when it drives
+  static constexpr double kStopDeceleration = 2;  ///< m/s²: a short drive leaves no slide that outlasts kStands
 
   MonitorTest() {
     sensors_.head.run = 1;
@@ -49,6 +50,7 @@ class MonitorTest : public testing::Test {
     parameters.loss_cycles = kLoss;
     parameters.heartbeat_timeout = static_cast<double>(kHeartbeat) * kPeriod;
     parameters.ramp_time = static_cast<double>(kRamp) * kPeriod;
+    parameters.stop_deceleration = kStopDeceleration;
     return derived_limits(parameters, robot(), 15);
   }
 

@@ -8,7 +8,7 @@ import rostest
 from std_msgs.msg import Float64
 from system_support import RobotTestCase, wait_for
 
-DELAY, DECELERATION = 0.03, 1.0
+DELAY, DECELERATION = 0.03, 0.5
 """s, m/s²: stop_delay and stop_deceleration of robot_params.yaml"""
 
 
