@@ -5,11 +5,11 @@ over MEAN_TIME give less than STANDING_SPEED; or the robot rocks on its casters,
 
     permit     Where the gate does not brake, a permit to drive or to ramp of one of the last four cycles is there.
     brake      While it brakes, s does not grow (but while wheels that spun pull on, SPIN_TIME), and after STOP_TIME +
-               s/STOP_DECELERATION the robot stands.
+               s/a the robot stands, a its stop_deceleration.
     speed      s stays below SPEED_FACTOR times the fastest that the controller may ask for, plus SPEED_MARGIN.
     rest       At the end of the rest the robot stands.
     release    After the release it stands on, and after each reset that was accepted until a command comes.
-    tilt       It never leans by TILT_LIMIT more than it did at the start.
+    tilt       It never leans by TILT_LIMIT, nor among walls and bumps, which lift it, by HIT_TILT_LIMIT.
     machine    The simulation does not diverge.
 
 What no brake can do, is not asked for. A motor that is off, intermittent or gives garbage takes its brake with it
@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 
 from robot_control.closed_loop import Log
 from robot_control.fault_sequence import COMPONENTS, FaultSequence
+from robot_control.robots import stop_deceleration_of
 
 BRAKE, DRIVE, RAMP = 0, 2, 1  # GateVerdict, PermitAction
 PERMIT_LIFE = 4  # cycles
@@ -43,13 +44,12 @@ MEAN_TIME = 0.3  # s
 ROCKING = 0.005  # rad, change of tilt within MEAN_TIME
 LATE_DRIVE = 0.02  # s, for 10 cycles of 1 ms, and what it takes to act
 STOP_TIME = 1.0  # s, the mean included, and that a light robot falls back on its casters
-STOP_DECELERATION = 0.5  # m/s², half of what ice carries
-WEAK_DECELERATIONS = {"create_2": 0.12}  # m/s²; it tips onto its nose, which slides, and its wheels carry little
 SPIN_TIME = 0.15  # s
 BRAKE_MARGIN = 0.3  # m/s; walls turn v into ω
 SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.7  # 1, m/s: 0.1 s of the strongest drives, until a fault is sure
 GARBAGE_SPEED = 1.0  # m/s
 TILT_LIMIT = np.radians(10)
+HIT_TILT_LIMIT = np.radians(30)  # a light robot that runs into a wall at 1 m/s stands up by 20° and falls back
 GRAVITY_ON_SLOPE = 9.81 * np.sin(np.radians(5))  # m/s²
 
 Mask = NDArray[np.bool_]
@@ -150,8 +150,7 @@ class _Court:
         if growing.size and not self._monitor_errs[:start].any():
             row = start + int(growing[0])
             yield self._violation("brake", row, f"{spun:.3f} m/s grew to {self._speed[row]:.3f} m/s")
-        deceleration = WEAK_DECELERATIONS.get(self._sequence.robot, STOP_DECELERATION)
-        deadline = round((STOP_TIME + spun / deceleration) / self._period)
+        deadline = round((STOP_TIME + spun / stop_deceleration_of(self._sequence.robot)) / self._period)
         late = np.flatnonzero(~self._standing[start:stop][deadline:])
         if late.size:
             row = start + deadline + int(late[0])
@@ -202,7 +201,8 @@ class _Court:
     def tilt(self) -> Iterator[Violation]:
         """Upright, but after a motor jolted it."""
         tilt = self._log["truth_tilt"]
-        for row in np.flatnonzero((tilt > TILT_LIMIT) & ~np.logical_or.accumulate(self._jolted | self._monitor_errs)):
+        limit = HIT_TILT_LIMIT if self._sequence.scene in ("walls", "bumps") else TILT_LIMIT
+        for row in np.flatnonzero((tilt > limit) & ~np.logical_or.accumulate(self._jolted | self._monitor_errs)):
             yield self._violation("tilt", row, f"leans by {np.degrees(tilt[row]):.1f}°")
 
     def machine(self) -> Iterator[Violation]:

@@ -1,5 +1,7 @@
 """Random fault sequences end at standstill; and who judges them would notice if they did not."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from robot_control.campaign import campaign, run_seed
@@ -115,8 +117,12 @@ def test_a_start_without_a_command_after_a_reset_is_noticed(sequence, log):
     assert rules_broken(sequence, log) == {"release"}
 
 
-def test_a_lean_is_noticed(sequence, log):
-    log["truth_tilt"][500] = np.radians(10.1)
+@pytest.mark.parametrize(("scene", "limit"), [("flat", 10), ("walls", 30)])
+def test_a_lean_is_noticed(sequence, log, scene, limit):
+    sequence = dataclasses.replace(sequence, scene=scene)
+    log["truth_tilt"][500] = np.radians(limit - 0.1)
+    assert rules_broken(sequence, log) == set()
+    log["truth_tilt"][500] = np.radians(limit + 0.1)
     assert rules_broken(sequence, log) == {"tilt"}
 
 
