@@ -20,13 +20,17 @@ bool finite(const JointSample& joint) noexcept {
 
 }  // namespace
 
-bool finite(const SensorFrame& sensors) noexcept {
-  const std::size_t count = std::min<std::size_t>(sensors.joint_count, kMaxJoints);
-  if ((sensors.valid & kValidJoints) != 0) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!finite(sensors.joints[i])) return false;
-    }
+std::uint64_t not_finite_joint(const SensorFrame& sensors) noexcept {
+  if ((sensors.valid & kValidJoints) == 0) return kMaxJoints;
+  const std::uint64_t count = std::min<std::uint64_t>(sensors.joint_count, kMaxJoints);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (!finite(sensors.joints[i])) return i;
   }
+  return kMaxJoints;
+}
+
+bool finite(const SensorFrame& sensors) noexcept {
+  if (not_finite_joint(sensors) < kMaxJoints) return false;
   if ((sensors.valid & kValidGyro) != 0 && !finite(sensors.imu.angular_velocity)) return false;
   if ((sensors.valid & kValidAccelerometer) != 0 && !finite(sensors.imu.linear_acceleration)) return false;
   if ((sensors.valid & kValidContacts) != 0) {

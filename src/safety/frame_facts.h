@@ -2,7 +2,8 @@
 /// Can what was read be believed? kPersistence cycles in a row are a cause; a single one only costs the gate's brake.
 ///
 ///   corrupt     a checksum of this cycle's inputs was wrong
-///   not finite  a number that sensors or command claim to be valid is NaN or infinite (finite.h)
+///   not finite  a number that sensors or command claim to be valid is NaN or infinite (finite.h); told with the joint
+///               whose sample it is
 
 #include <cstdint>
 

@@ -84,6 +84,20 @@ TEST_F(EvidenceTest, NamesTheJoint) {
   EXPECT_GT(permit_.evidence[0].value, permit_.evidence[0].limit);
 }
 
+TEST_F(EvidenceTest, NamesTheJointWhoseSampleIsNotFinite) {
+  sensors_.joints[1].effort = std::numeric_limits<double>::quiet_NaN();
+  steps(3);
+  ASSERT_EQ(permit_.causes, std::uint64_t{kCauseNotFinite});
+  EXPECT_EQ(permit_.evidence[0].joint, 1u);
+}
+
+TEST_F(EvidenceTest, NamesNoJointWhereTheGyroIsNotFinite) {
+  sensors_.imu.angular_velocity[1] = std::numeric_limits<double>::quiet_NaN();
+  steps(3);
+  ASSERT_EQ(permit_.causes, std::uint64_t{kCauseNotFinite});
+  EXPECT_EQ(permit_.evidence[0].joint, kMaxJoints);
+}
+
 TEST_F(EvidenceTest, IsClearedByAnAcceptedReset) {
   ++input_.operator_input.e_stop_services;
   step();
