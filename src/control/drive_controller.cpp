@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/drive_limits.h"
 #include "control/wheel_loop_gains.h"
 
 namespace robot_control {
@@ -31,6 +32,7 @@ JointCommand effort_command(double velocity, double effort) noexcept {
 }
 
 constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
+constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonPermitRamp;
 constexpr std::uint64_t kBrakeReasons = kReasonNoPermit | kReasonPermitBrake | kReasonBadSensors | kReasonHolding;
 
 }  // namespace
@@ -41,8 +43,7 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
       kinematics_(robot),
       feed_forward_(robot),
       watch_(parameters.cmd_vel_timeout, period),
-      limiter_({parameters.max_linear_speed, parameters.max_angular_speed, parameters.max_linear_acceleration,
-                parameters.max_angular_acceleration}),
+      limiter_(speed_limits(parameters)),
       standstill_(period),
       loops_(make_loops(parameters, robot, period)) {}
 
@@ -154,10 +155,10 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
   if (followed_) {
     const double scale = kinematics_.wheel_speed_scale(wish);
     if (scale < 1) out.reasons |= kReasonSaturated;
-    limiter_.step({scale * wish.linear, scale * wish.angular}, periods_ * period_);
+    limiter_.step({scale * wish.linear, scale * wish.angular}, periods_ * period_, (out.reasons & kEmergencies) != 0);
     out.reasons |= limiter_.reasons();
   }
-  const PlanarTwist& limited = limiter_.value();
+  const PlanarTwist limited = limiter_.value();
   const WheelValues velocity = kinematics_.joint_speeds(limited);
   const WheelValues acceleration = kinematics_.joint_speeds(limiter_.acceleration());
   const WheelValues feed_forward = followed_ ? feed_forward_.efforts(limited, limiter_.acceleration()) : WheelValues{};

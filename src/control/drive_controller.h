@@ -8,7 +8,8 @@
 ///   - the robot holds: zero wish, zero limited twist and all wheels standing (standstill.h); straight after a brake
 ///     all wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
 ///     wish ≠ 0 ends it.
-/// Under a ramp permit the wish is zero and the limits apply; under a permit with a speed limit the wish is scaled
+/// What was not asked for ramps with the emergency deceleration: a command that timed out or was refused, a ramp
+/// permit. Under a ramp permit the wish is zero; under a permit with a speed limit the wish is scaled
 /// until no rim is faster, along the same curve. Joints that are not wheels are always braked.
 ///
 /// While the wheels do not follow this controller (it brakes, or the gate reports that tick k−1 was braked) limiter

@@ -15,46 +15,85 @@ double allowed_part(double wish, double limit) noexcept {
   return size > limit ? limit / size : 1.0;
 }
 
+AxisLimits in_force(const MotionLimits& limits, bool emergency) noexcept {
+  return {limits.acceleration, emergency ? limits.emergency_deceleration : limits.deceleration, limits.jerk};
+}
+
+/// One axis on its way.
+struct Way {
+  AxisLimits own;
+  double distance;  ///< without sign
+  bool slows_down;
+
+  double bound() const noexcept { return slows_down ? own.deceleration : own.acceleration; }
+};
+
+Way way(const AxisState& state, double goal, const AxisLimits& own) noexcept {
+  return {own, std::abs(goal - state.speed), slows_down(state.speed, goal)};
+}
+
+/// The limits with which `axis` arrives together with `other`.
+AxisLimits together(const Way& axis, const Way& other) noexcept {
+  const double ratio = axis.distance / other.distance;
+  const double bound = std::min(axis.bound(), ratio * other.bound());
+  const double beyond_zero = std::min(axis.own.acceleration, ratio * other.own.acceleration);
+  const double jerk = std::min(axis.own.jerk, ratio * other.own.jerk);
+  return {axis.slows_down ? beyond_zero : bound, bound, jerk};
+}
+
+std::uint64_t reasons_of(const AxisStep& step) noexcept {
+  std::uint64_t reasons = 0;
+  if (step.acceleration_limited) reasons |= kReasonAccelerationLimited;
+  if (step.jerk_limited) reasons |= kReasonJerkLimited;
+  if (step.jerk_yielded) reasons |= kReasonJerkYielded;
+  return reasons;
+}
+
+bool scaled(const AxisLimits& planned, const AxisLimits& own) noexcept {
+  return planned.acceleration < own.acceleration || planned.deceleration < own.deceleration || planned.jerk < own.jerk;
+}
+
 }  // namespace
 
 PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) noexcept {
-  const double scale = std::min(allowed_part(target.linear, limits.max_linear_speed),
-                                allowed_part(target.angular, limits.max_angular_speed));
+  const double linear = limits.linear.speed;
+  const double angular = limits.angular.speed;
+  const double scale = std::min(allowed_part(target.linear, linear), allowed_part(target.angular, angular));
   if (scale == 1.0) return target;
   // The clamp takes back what rounding may have added to the limiting axis.
-  return {std::clamp(scale * target.linear, -limits.max_linear_speed, limits.max_linear_speed),
-          std::clamp(scale * target.angular, -limits.max_angular_speed, limits.max_angular_speed)};
+  return {std::clamp(scale * target.linear, -linear, linear), std::clamp(scale * target.angular, -angular, angular)};
 }
 
-SpeedLimiter::SpeedLimiter(const SpeedLimits& limits) : limits_(limits) {}
-
 void SpeedLimiter::seed(const PlanarTwist& twist) noexcept {
-  value_ = twist;
+  linear_ = {.speed = twist.linear};
+  angular_ = {.speed = twist.angular};
   acceleration_ = {};
   reasons_ = 0;
 }
 
-PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt) noexcept {
+PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emergency) noexcept {
   reasons_ = 0;
   const PlanarTwist goal = within_speed(target, limits_);
   if (goal.linear != target.linear || goal.angular != target.angular) {
     reasons_ |= kReasonSpeedLimited;
     if (target.linear != 0 && target.angular != 0) reasons_ |= kReasonCurvatureKept;
   }
-  const PlanarTwist distance{goal.linear - value_.linear, goal.angular - value_.angular};
-  const double linear_part = allowed_part(distance.linear, limits_.max_linear_acceleration * dt);
-  const double angular_part = allowed_part(distance.angular, limits_.max_angular_acceleration * dt);
-  const double part = std::min(linear_part, angular_part);
+  const Way linear_way = way(linear_, goal.linear, in_force(limits_.linear, emergency));
+  const Way angular_way = way(angular_, goal.angular, in_force(limits_.angular, emergency));
+  const bool coupled = limits_.keep_curvature && linear_way.distance > 0 && angular_way.distance > 0;
+  const AxisLimits linear_plan = coupled ? together(linear_way, angular_way) : linear_way.own;
+  const AxisLimits angular_plan = coupled ? together(angular_way, linear_way) : angular_way.own;
 
-  PlanarTwist next = goal;
-  if (part < 1.0) {
-    reasons_ |= kReasonAccelerationLimited;
-    if (distance.linear != 0 && distance.angular != 0 && linear_part != angular_part) reasons_ |= kReasonCurvatureKept;
-    next = {value_.linear + part * distance.linear, value_.angular + part * distance.angular};
-  }
-  acceleration_ = {(next.linear - value_.linear) / dt, (next.angular - value_.angular) / dt};
-  value_ = next;
-  return value_;
+  const AxisStep linear = axis_step(linear_, goal.linear, linear_plan, limits_.linear.jerk, dt);
+  const AxisStep angular = axis_step(angular_, goal.angular, angular_plan, limits_.angular.jerk, dt);
+  const std::uint64_t shaped = reasons_of(linear) | reasons_of(angular);
+  const bool kept = scaled(linear_plan, linear_way.own) || scaled(angular_plan, angular_way.own);
+  if (kept && (shaped & (kReasonAccelerationLimited | kReasonJerkLimited)) != 0) reasons_ |= kReasonCurvatureKept;
+  reasons_ |= shaped;
+  linear_ = linear.state;
+  angular_ = angular.state;
+  acceleration_ = {linear.acceleration, angular.acceleration};
+  return value();
 }
 
 }  // namespace robot_control

@@ -1,31 +1,44 @@
 #pragma once
-/// Speed and acceleration limits of the linear and the angular axis, forwards and backwards alike.
+/// Speed, acceleration, deceleration and jerk limits of the linear and the angular axis, forwards and backwards alike.
 ///
-/// Speed: target* = s·target with the largest s ≤ 1 that meets |v| ≤ max_linear_speed, |ω| ≤ max_angular_speed.
-/// Acceleration: the output moves on the straight line from where it is to target*,
+/// Speed: target* = s·target with the largest s ≤ 1 that meets |v| ≤ linear.speed, |ω| ≤ angular.speed.
+/// On the way there: axis_limiter.h, each axis by itself, or with `keep_curvature` both together: with e = target* − x,
+/// the remaining way of each axis, their limits are scaled down to
 ///
-///   x ← x + λ·(target* − x),   λ = min(1, a·dt/|Δv|, α·dt/|Δω|)
+///   bound_i* = |e_i|·min_k(bound_k/|e_k|),   jerk_i* = |e_i|·min_k(jerk_k/|e_k|)
 ///
-/// so both axes arrive together. What follows from the line:
+/// so that the output moves on the straight line from where it is to target*, and both axes arrive in the same step.
+/// What follows from the line:
 ///   - from standstill and to standstill the commanded curvature ω/v is kept: a ramp stays on the path;
-///   - it never overshoots, and with λ = 1 the target is reached exactly, bit for bit;
-///   - no limit depends on the direction of travel or on which axis brakes: step(−x, −target) = −step(x, target);
 ///   - an output and a target inside a convex set (wheel speed limits) never leave it in between.
-/// Only a seed (a measured speed) can lie outside the speed limits; from there the output returns at the
-/// acceleration limits.
+/// A target that changes during a ramp begins a new line, which the output reaches as soon as what was left of the
+/// acceleration has faded; no limit of an axis is exceeded for it.
+///
+/// In an emergency the stronger deceleration holds. No limit depends on the direction of travel:
+/// step(−x, −target) = −step(x, target). Only a seed (a measured speed) and limits that were lowered leave the output
+/// outside the speed limits; from there it returns at `deceleration`.
 
 #include <cstdint>
+#include <limits>
 
+#include "control/axis_limiter.h"
 #include "control/planar_twist.h"
 
 namespace robot_control {
 
-/// All > 0.
+/// Of one axis; m/s or rad/s and its derivatives, all > 0.
+struct MotionLimits {
+  double speed = 1.0;
+  double acceleration = 1.0;
+  double deceleration = 1.0;
+  double emergency_deceleration = 1.0;                    ///< ≥ deceleration
+  double jerk = std::numeric_limits<double>::infinity();  ///< infinity: none
+};
+
 struct SpeedLimits {
-  double max_linear_speed = 1.0;          ///< m/s
-  double max_angular_speed = 2.0;         ///< rad/s
-  double max_linear_acceleration = 1.0;   ///< m/s²
-  double max_angular_acceleration = 4.0;  ///< rad/s²
+  MotionLimits linear;
+  MotionLimits angular{.speed = 2.0, .acceleration = 4.0, .deceleration = 4.0, .emergency_deceleration = 4.0};
+  bool keep_curvature = true;
 };
 
 /// target*: what is left of `target` within the speed limits.
@@ -33,23 +46,28 @@ PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) n
 
 class SpeedLimiter {
  public:
-  explicit SpeedLimiter(const SpeedLimits& limits);
+  explicit SpeedLimiter(const SpeedLimits& limits) : limits_(limits) {}
+
+  /// Other limits from the next step on.
+  void limit(const SpeedLimits& limits) noexcept { limits_ = limits; }
 
   /// Continue from this motion (the measured one), at zero acceleration.
   void seed(const PlanarTwist& twist) noexcept;
 
-  /// `target` finite; `dt` > 0, s.
-  PlanarTwist step(const PlanarTwist& target, double dt) noexcept;
+  /// `target` finite; `dt` > 0, s. `emergency`: with the emergency deceleration.
+  PlanarTwist step(const PlanarTwist& target, double dt, bool emergency = false) noexcept;
 
-  const PlanarTwist& value() const noexcept { return value_; }
+  PlanarTwist value() const noexcept { return {linear_.speed, angular_.speed}; }
   const PlanarTwist& acceleration() const noexcept { return acceleration_; }  ///< of the last step: m/s², rad/s²
 
-  /// CommandReason bits of the last step: kReasonSpeedLimited, kReasonAccelerationLimited, kReasonCurvatureKept.
+  /// CommandReason bits of the last step: kReasonSpeedLimited, kReasonAccelerationLimited, kReasonJerkLimited,
+  /// kReasonJerkYielded, kReasonCurvatureKept.
   std::uint64_t reasons() const noexcept { return reasons_; }
 
  private:
   SpeedLimits limits_;
-  PlanarTwist value_;
+  AxisState linear_;
+  AxisState angular_;
   PlanarTwist acceleration_;
   std::uint64_t reasons_ = 0;
 };

@@ -117,6 +117,22 @@ class TreeReader {
       const Entry& entry = tree_.entries.at(low);
       refuse(empty, "must be below " + low + " = " + as_written(entry) + " [" + entry.origin + "]");
     }
+    const DriveControllerParameters& drive = parameters_.controller;
+    const auto check_emergency = [&](const std::string& axis, double emergency, std::optional<double> deceleration,
+                                     double acceleration) {
+      const std::string path = "diff_drive_controller.max_" + axis + "_emergency_deceleration";
+      const std::string usual =
+          "diff_drive_controller.max_" + axis + (deceleration ? "_deceleration" : "_acceleration");
+      if (!sound_.contains(path) || !sound_.contains(usual) || emergency >= deceleration.value_or(acceleration)) {
+        return;
+      }
+      const Entry& entry = tree_.entries.at(usual);
+      refuse(path, "must not be below " + usual + " = " + as_written(entry) + " [" + entry.origin + "]");
+    };
+    check_emergency("linear", drive.max_linear_emergency_deceleration, drive.max_linear_deceleration,
+                    drive.max_linear_acceleration);
+    check_emergency("angular", drive.max_angular_emergency_deceleration, drive.max_angular_deceleration,
+                    drive.max_angular_acceleration);
     // The sensors of one cycle, the permit of the next, the torque of the one after.
     constexpr double kCyclesToStop = 3;
     const std::string delay = "safety_monitor.stop_delay";

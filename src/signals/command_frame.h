@@ -27,6 +27,7 @@ enum CommandReason : std::uint64_t {
   kReasonBadSensors = 1u << 12,    ///< Joint samples missing or not finite: brake.
   kReasonHolding = 1u << 13,       ///< Standing with zero command: brake law holds the position.
   kReasonPermitSlow = 1u << 14,    ///< The permit's speed limit.
+  kReasonJerkYielded = 1u << 15,   ///< Stopped at zero with more than the jerk limit, rather than beyond it.
 };
 
 /// The gate executes a command in at most this many ticks: at tick k those of cycles k-kCommandLife … k-1.

@@ -88,6 +88,7 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonBadSensors, "bad_sensors", "joint samples are missing or not finite", "look at the driver's faults"},
     {kReasonHolding, "holding", "standing with zero command: the brake holds the position", ""},
     {kReasonPermitSlow, "permit_slow", "the safety monitor limits the speed", "read the warning in safety_status"},
+    {kReasonJerkYielded, "jerk_yielded", "it stopped at zero with more jerk than the limit, rather than beyond", ""},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({

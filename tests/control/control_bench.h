@@ -13,6 +13,16 @@
 
 namespace robot_control {
 
+/// Without a jerk limit, and with no stronger deceleration in an emergency: ramps are straight lines of 1 m/s², 4
+/// rad/s².
+inline DriveControllerParameters straight_ramps() {
+  DriveControllerParameters parameters;
+  parameters.max_linear_jerk = parameters.max_angular_jerk = 0;
+  parameters.max_linear_emergency_deceleration = parameters.max_linear_acceleration;
+  parameters.max_angular_emergency_deceleration = parameters.max_angular_acceleration;
+  return parameters;
+}
+
 class ControlBench {
  public:
   explicit ControlBench(const RobotModel& model = make_test_robot(), const DriveControllerParameters& parameters = {},

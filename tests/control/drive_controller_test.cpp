@@ -31,7 +31,7 @@ class DriveControllerTest : public testing::Test {
 
   double limited() const { return bench.command.twist_limited.linear[0]; }
 
-  ControlBench bench;
+  ControlBench bench{make_test_robot(), straight_ramps()};
 };
 
 TEST_F(DriveControllerTest, DrivesTheArticlesExample) {
@@ -255,7 +255,7 @@ TEST_F(DriveControllerTest, SaysThatATorqueIsAtItsLimitAndDoesNotOvershootForIt)
 }
 
 TEST_F(DriveControllerTest, DrivesBackwardsAsItDrivesForwards) {
-  ControlBench back;
+  ControlBench back(make_test_robot(), straight_ramps());
   back.run(0.3);
   back.send(-0.5, -0.2);
   back.run(1.0);
@@ -340,7 +340,7 @@ TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFault
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> wish(-3, 3);
     std::uniform_int_distribution<int> event(0, 400);
-    bench = ControlBench();
+    bench = ControlBench(make_test_robot(), straight_ramps());
     bench.plant.counts = 4096;
     int brake = 0;
     for (int k = 0; k < 8000; ++k) {
@@ -365,6 +365,52 @@ TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFault
       }
     }
   }
+}
+
+/// With the default limits: 1 m/s² usually, 2 m/s² in an emergency, 10 m/s³.
+class Emergency : public DriveControllerTest {
+ protected:
+  Emergency() { bench = ControlBench(); }
+
+  /// m/s², of the limited speed, over the next 0.6 s, and the way in m until it stands.
+  void expect_a_ramp_of(double deceleration, std::uint64_t reason) {
+    const double start = bench.plant.distance;
+    double strongest = 0;
+    std::uint64_t reasons = 0;
+    for (int k = 0; k < 700; ++k) {
+      const double before = limited();
+      bench.step();
+      reasons |= bench.command.reasons;
+      strongest = std::fmax(strongest, (before - limited()) / bench.period);
+    }
+    EXPECT_NEAR(strongest, deceleration, 1e-9);
+    EXPECT_EQ(reasons & reason, reason);
+    EXPECT_EQ(limited(), 0);
+    const double speed = std::hypot(0.5, 0);
+    const double way = speed * speed / (2 * deceleration) + speed * deceleration / (2 * 10);
+    EXPECT_NEAR(bench.plant.distance - start, way, 2e-3 + 2e-3 * speed) << "two cycles of delay, and what a curve adds";
+  }
+};
+
+TEST_F(Emergency, AZeroCommandIsNone) {
+  bench.send(0, 0);
+  expect_a_ramp_of(1, 0);
+}
+
+TEST_F(Emergency, ATimeoutIsOne) {
+  while (bench.cycle <= bench.command.request_cycle + 1250) bench.step();
+  expect_a_ramp_of(2, kReasonTimedOut);
+}
+
+TEST_F(Emergency, ARefusedCommandIsOne) {
+  bench.send(std::nan(""), 0);
+  expect_a_ramp_of(2, kReasonRefused);
+}
+
+TEST_F(Emergency, ARampPermitIsOne) {
+  bench.permit.action = PermitAction::kRamp;
+  bench.permit.ramp_until = bench.cycle + 1000;
+  expect_a_ramp_of(2, kReasonPermitRamp);
 }
 
 TEST_F(DriveControllerTest, DoesNotAllocate) {

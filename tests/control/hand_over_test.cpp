@@ -28,7 +28,7 @@ class HandOver : public testing::Test {
     return lowest;
   }
 
-  ControlBench bench;
+  ControlBench bench{make_test_robot(), straight_ramps()};
 };
 
 TEST_F(HandOver, BeginsWithTheTorqueThatTheBrakeWasHolding) {

@@ -72,7 +72,7 @@ class PermitSpeed : public testing::Test {
     bench.run(1.2);
   }
   static DriveControllerParameters patient() {
-    DriveControllerParameters parameters;
+    DriveControllerParameters parameters = straight_ramps();
     parameters.cmd_vel_timeout = 0;
     return parameters;
   }

@@ -5,13 +5,20 @@
 #include <cmath>
 #include <random>
 
+#include "control/limiter_properties.h"
 #include "signals/command_frame.h"
 
 namespace robot_control {
 namespace {
 
 constexpr SpeedLimits kLimits{
-    .max_linear_speed = 1, .max_angular_speed = 2, .max_linear_acceleration = 1, .max_angular_acceleration = 4};
+    .linear = {.speed = 1, .acceleration = 1, .deceleration = 1, .emergency_deceleration = 2},
+    .angular = {.speed = 2, .acceleration = 4, .deceleration = 4, .emergency_deceleration = 8},
+};
+constexpr SpeedLimits kSmooth{
+    .linear = {.speed = 1, .acceleration = 1, .deceleration = 1.5, .emergency_deceleration = 3, .jerk = 10},
+    .angular = {.speed = 2, .acceleration = 4, .deceleration = 6, .emergency_deceleration = 12, .jerk = 40},
+};
 constexpr double kDt = 1e-3;
 // A speed below 2 rounds to 2·10⁻¹⁶; a difference of two of them over 1 ms shows 10³ times that.
 constexpr double kRoundedAcceleration = 1e-12;
@@ -106,6 +113,122 @@ TEST(SpeedLimiter, TakesALongerStepForASkippedCycle) {
   SpeedLimiter limiter(kLimits);
   EXPECT_NEAR(limiter.step({1, 0}, 3 * kDt).linear, 0.003, 1e-17);
   EXPECT_NEAR(limiter.acceleration().linear, 1, 1e-12);
+}
+
+TEST(SpeedLimiter, ViolatesNoPropertyInTenThousandRandomSequences) {
+  for (std::uint64_t seed = 0; seed < 10'000; ++seed) {
+    const auto violated = limiter_violation(seed);
+    ASSERT_FALSE(violated) << "seed " << seed << ": " << *violated;
+  }
+}
+
+/// Cycles until `limiter` is at `target`.
+int cycles_to(SpeedLimiter& limiter, const PlanarTwist& target, bool emergency = false) {
+  for (int k = 1; k < 100'000; ++k) {
+    const PlanarTwist now = limiter.step(target, kDt, emergency);
+    if (now.linear == target.linear && now.angular == target.angular) return k;
+  }
+  return -1;
+}
+
+// A ramp of v takes v/a + a/j; a sampled one acts from its first step on, and saves one.
+TEST(SpeedLimiter, TakesTheTimeOfTheIdealSCurve) {
+  SpeedLimiter limiter(kSmooth);
+  EXPECT_NEAR(cycles_to(limiter, {1, 0}), 1000 * (1 / 1.0 + 1.0 / 10), 1);
+  EXPECT_NEAR(cycles_to(limiter, {0, 0}), 1000 * (1 / 1.5 + 1.5 / 10), 1);
+  EXPECT_NEAR(cycles_to(limiter, {0.02, 0}), 1000 * 2 * std::sqrt(0.02 / 10), 1) << "too short for full acceleration";
+  EXPECT_NEAR(cycles_to(limiter, {1, 0}), 1000 * (0.98 / 1.0 + 1.0 / 10), 1);
+  EXPECT_NEAR(cycles_to(limiter, {0, 0}, true), 1000 * (1 / 3.0 + 3.0 / 10), 1);
+}
+
+// v/1.5 until zero, beyond it v/1; from 1.5 down to 1 m/s² within 0.05 s before zero, in which 0.0625 m/s pass.
+TEST(SpeedLimiter, ReversesWithoutStoppingAndWithEachLimitOnItsSideOfZero) {
+  SpeedLimiter limiter(kSmooth);
+  cycles_to(limiter, {1, 0});
+  const double before_zero = 1.5 / 10 / 2 + (1 - 0.0625) / 1.5 + 0.05;
+  const double beyond_zero = 1 / 1.0 + 1.0 / 10 / 2;
+  EXPECT_NEAR(cycles_to(limiter, {-1, 0}), 1000 * (before_zero + beyond_zero), 3);
+}
+
+TEST(SpeedLimiter, OvershootsATargetThatComesNearerByWhatIsUnavoidable) {
+  SpeedLimiter limiter(kSmooth);
+  for (int k = 0; k < 500; ++k) limiter.step({1, 0}, kDt);
+  const double speed = limiter.value().linear;
+  double highest = 0;
+  for (int k = 0; k < 2000; ++k) highest = std::fmax(highest, limiter.step({speed, 0}, kDt).linear);
+  const double unavoidable = 1.0 * 1.0 / (2 * 10);
+  EXPECT_LE(highest - speed, unavoidable);
+  EXPECT_GT(highest - speed, unavoidable - 1.0 * kDt) << "the acceleration of one cycle";
+  EXPECT_EQ(limiter.value().linear, speed);
+}
+
+TEST(SpeedLimiter, StopsAtZeroRatherThanBeyondItAndSaysSo) {
+  SpeedLimiter limiter(kSmooth);
+  for (int k = 0; k < 300; ++k) limiter.step({1, 0}, kDt);
+  while (limiter.value().linear > 0.02) limiter.step({-1, 0}, kDt);
+  std::uint64_t reasons = 0;
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_GE(limiter.step({0, 0}, kDt).linear, 0) << k;
+    reasons |= limiter.reasons();
+  }
+  EXPECT_EQ(limiter.value().linear, 0);
+  EXPECT_EQ(limiter.acceleration().linear, 0);
+  EXPECT_TRUE(reasons & kReasonJerkYielded);
+}
+
+TEST(SpeedLimiter, SaysWhichLimitShapesTheMotion) {
+  SpeedLimiter limiter(kSmooth);
+  limiter.step({1, 0}, kDt);
+  EXPECT_EQ(limiter.reasons(), kReasonJerkLimited);
+  for (int k = 0; k < 200; ++k) limiter.step({1, 0}, kDt);
+  EXPECT_EQ(limiter.reasons(), kReasonAccelerationLimited);
+  while (limiter.value().linear < 0.99) limiter.step({1, 0}, kDt);
+  EXPECT_EQ(limiter.reasons(), kReasonJerkLimited);
+  cycles_to(limiter, {1, 0});
+  limiter.step({1, 0}, kDt);
+  EXPECT_EQ(limiter.reasons(), 0u);
+}
+
+// Both axes in the shape of the slower one: 1 m/s needs 1.1 s, 1 rad/s would need 0.35 s.
+TEST(SpeedLimiter, KeepsTheCurvatureUnderAJerkLimit) {
+  SpeedLimiter limiter(kSmooth);
+  for (const double target : {1.0, 0.0}) {
+    int k = 0;
+    for (; limiter.value().linear != target && k < 2000; ++k) {
+      const PlanarTwist now = limiter.step({target, target}, kDt);
+      ASSERT_NEAR(now.angular, now.linear, 1e-12) << "cycle " << k;
+    }
+    EXPECT_EQ(limiter.value().angular, target);
+    EXPECT_NEAR(k, target > 0 ? 1100 : 817, 1);
+  }
+}
+
+TEST(SpeedLimiter, LetsEachAxisHurryWhereCurvatureNeedNotBeKept) {
+  SpeedLimits limits = kSmooth;
+  limits.keep_curvature = false;
+  SpeedLimiter limiter(limits);
+  int turned = 0;
+  for (int k = 1; limiter.value().linear != 1; ++k) {
+    limiter.step({1, 1}, kDt);
+    if (turned == 0 && limiter.value().angular == 1) turned = k;
+    ASSERT_FALSE(limiter.reasons() & kReasonCurvatureKept);
+  }
+  EXPECT_NEAR(turned, 1000 * (1 / 4.0 + 4.0 / 40), 1);
+}
+
+TEST(SpeedLimiter, ReturnsFromLimitsThatWereLowered) {
+  SpeedLimiter limiter(kSmooth);
+  cycles_to(limiter, {1, 0});
+  SpeedLimits lower = kSmooth;
+  lower.linear.speed = 0.4;
+  limiter.limit(lower);
+  double before = 1;
+  for (int k = 0; k < 2000; ++k) {
+    const double now = limiter.step({1, 0}, kDt).linear;
+    ASSERT_LE(before - now, 1.5 * kDt + 1e-12);
+    before = now;
+  }
+  EXPECT_EQ(before, 0.4);
 }
 
 }  // namespace

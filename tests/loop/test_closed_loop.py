@@ -57,7 +57,8 @@ def test_estimates_the_pose_within_one_percent_of_the_distance(loop, command):
 
 def test_the_estimate_is_signed_in_reverse(loop):
     log = drive(loop, 3.0, (-0.3, 0.0))
-    assert log["estimate_linear"][-1] == pytest.approx(-0.3, rel=0.01)
+    settled = log["time"] >= 2.0  # one sample holds the encoder's counts: up to 6 mm/s
+    assert log["estimate_linear"][settled].mean() == pytest.approx(-0.3, rel=0.001)
     assert log["estimate_x"][-1] < -0.5
 
 
@@ -68,7 +69,7 @@ def test_a_silent_sender_ramps_the_robot_down_after_the_timeout(loop):
     timeout_row = int(np.argmax(limited < 0.5))
     assert timeout_row * loop.period == pytest.approx(1.25, abs=2 * loop.period)
     deceleration = -np.diff(limited[timeout_row - 1 :]) / loop.period
-    assert deceleration.max() <= 1.0 + 1e-9  # max_linear_acceleration
+    assert deceleration.max() == pytest.approx(2.0, abs=1e-9)  # max_linear_emergency_deceleration
     assert abs(log["truth_linear"][-1]) < 1e-3
     assert np.all(log["supervisor_state"] != STOPPED), "a timeout is no emergency"
 
@@ -129,7 +130,7 @@ def test_a_command_that_is_not_a_number_is_refused_and_ramps_down(loop):
     log = drive(loop, 3.0, (math.nan, 0.2))
     assert int(log["command_reasons"][1]) & REFUSED
     assert abs(log["truth_linear"][-1]) < 1e-3
-    assert np.max(-np.diff(log["limited_linear"])) <= 1.0 * loop.period + 1e-12
+    assert np.max(-np.diff(log["limited_linear"])) <= 2.0 * loop.period + 1e-12
 
 
 def test_a_lost_heartbeat_ramps_then_brakes():

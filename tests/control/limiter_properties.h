@@ -1,0 +1,23 @@
+#pragma once
+/// What must hold of the limiter whatever is asked of it, put to the test by one random sequence of commands per seed.
+///
+///   speed         no axis above its speed limit
+///   acceleration  none above the limit of its phase; what an emergency left fades at the jerk limit
+///   jerk          none above the limit, but where an axis stops at zero, and then it is said
+///   zero          no axis is beyond zero unless its target is, or was when it went there
+///   overshoot     a target is passed by no more than a²/(2·jerk) of the acceleration at the time it was given
+///   arrival       a target that stays is reached exactly, within the time of its S-curve, and kept
+///   reverse       the mirrored commands give the mirrored motion, bit for bit
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace robot_control {
+
+inline constexpr int kLimiterCycles = 200;
+
+/// Which property `seed` violates, where and by what; none: nothing.
+std::optional<std::string> limiter_violation(std::uint64_t seed);
+
+}  // namespace robot_control
