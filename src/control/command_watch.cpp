@@ -12,10 +12,13 @@ namespace {
 
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
-/// Whole periods in `timeout`. The margin keeps 1.25 s / 1 ms at 1250 although neither is exact in binary.
-std::uint64_t whole_cycles(double timeout, double period) {
+/// Whole periods in what is left of `timeout`. The margin keeps 1.25 s / 1 ms at 1250 although neither is exact in
+/// binary.
+std::uint64_t cycles_left(double timeout, std::int64_t age_ns, double period) noexcept {
   constexpr double kRounding = 1e-6;
-  return timeout > 0 ? static_cast<std::uint64_t>(std::floor(timeout / period + kRounding)) : kNever;
+  if (timeout <= 0) return kNever;
+  const double left = timeout - 1e-9 * static_cast<double>(age_ns);
+  return static_cast<std::uint64_t>(std::max(0.0, std::floor(left / period + kRounding)));
 }
 
 bool finite(const Twist& twist) noexcept {
@@ -26,30 +29,46 @@ bool finite(const Twist& twist) noexcept {
 
 }  // namespace
 
-CommandWatch::CommandWatch(double timeout, double period) : timeout_cycles_(whole_cycles(timeout, period)) {
-  reset(0);
+CommandWatch::CommandWatch(double timeout, double period) : timeout_(timeout), period_(period) {
+  reset();
 }
 
-void CommandWatch::reset(std::uint64_t request_count) noexcept {
-  first_count_ = last_count_ = request_count;
-  request_cycle_ = refused_ = timeouts_ = 0;
+void CommandWatch::reset(const VelocityCommand& inbox) noexcept {
+  first_ = last_ = inbox;
+  life_ = request_cycle_ = not_finite_ = timeouts_ = stale_ = 0;
   reason_ = kReasonNoCommand;
   wish_ = {};
 }
 
+void CommandWatch::limit(double timeout) noexcept {
+  timeout_ = timeout;
+  life_ = cycles_left(timeout_, last_.age_ns, period_);
+}
+
+void CommandWatch::accept(const VelocityCommand& request, std::uint64_t cycle) noexcept {
+  request_cycle_ = cycle;
+  life_ = cycles_left(timeout_, request.age_ns, period_);
+  const bool good = finite(request.twist);
+  reason_ = good ? 0u : std::uint64_t{kReasonRefused};
+  wish_ = good ? request.twist : Twist{};
+  if (!good) ++not_finite_;
+}
+
 const Twist& CommandWatch::step(const VelocityCommand& request, std::uint64_t cycle) noexcept {
-  if (request.count != last_count_) {
-    last_count_ = request.count;
-    request_cycle_ = cycle;
-    const bool good = finite(request.twist);
-    reason_ = good ? 0u : std::uint64_t{kReasonRefused};
-    wish_ = good ? request.twist : Twist{};
-    if (!good) ++refused_;
-  } else if (reason_ == 0 && cycle - request_cycle_ > timeout_cycles_) {
+  if (request.stale != last_.stale) stale_ = kReasonStale;
+  if (request.count != last_.count) {
+    stale_ = 0;
+    accept(request, cycle);
+  }
+  if (request.many_senders != 0) {
+    reason_ = kReasonManySenders;
+    wish_ = {};
+  } else if (reason_ == 0 && cycle - request_cycle_ > life_) {
     ++timeouts_;
     reason_ = kReasonTimedOut;
     wish_ = {};
   }
+  last_ = request;
   return wish_;
 }
 

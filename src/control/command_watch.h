@@ -1,11 +1,19 @@
 #pragma once
 /// What the operator wants in this cycle: the inbox, judged.
 ///
-/// A message is new when its count differs from the last one seen. It stands for `timeout` from the cycle in which
-/// it was first seen: in cycle k it has timed out when (k − request_cycle)·period > timeout; then the wish is zero
-/// and `timeouts` grows by one, once per message. A message with any component NaN or infinite is refused: the wish
-/// is zero until a good one arrives (what was commanded before is not resumed), and it does not time out. Messages
-/// overwritten in the inbox between two cycles count as received; only the last one is judged.
+/// A command is new when its count differs from the last one seen. It lives until `timeout` after its stamp (age_ns is
+/// its age when it arrived), without a stamp after the cycle in which it was first seen. In cycle k it has timed out
+/// when
+///
+///   (k − request_cycle)·period + age > timeout
+///
+/// Then the wish is zero, and `timeouts` grows by one, once per command. A command with any component NaN or infinite
+/// is refused: the wish is zero until a good one arrives (what was commanded before is not resumed), and it does not
+/// time out. The same holds while one sender too many is there (VelocityCommand::many_senders) and until the next
+/// command after that. What was refused for its stamp changes no wish: the command before it stands, as long as it
+/// lives. Commands overwritten in the inbox between two cycles count as received; only the last one is judged.
+///
+/// Only cycles are counted here: no clock that jumps can end a command early, or bring one back.
 
 #include <cstdint>
 
@@ -19,26 +27,37 @@ class CommandWatch {
   CommandWatch(double timeout, double period);
 
   /// A new run: what the inbox holds now, and whatever came before, counts as not received.
-  void reset(std::uint64_t request_count) noexcept;
+  void reset(const VelocityCommand& inbox = {}) noexcept;
+
+  /// Another timeout, s, from the next step on; for the command that stands, too.
+  void limit(double timeout) noexcept;
 
   /// Returns what the robot shall do; linear x and angular z matter to a differential drive.
   const Twist& step(const VelocityCommand& request, std::uint64_t cycle) noexcept;
 
-  /// CommandReason bit of the last step: kReasonNoCommand, kReasonRefused, kReasonTimedOut or 0.
-  std::uint64_t reasons() const noexcept { return reason_; }
+  /// CommandReason bits of the last step: one of kReasonNoCommand, kReasonRefused, kReasonManySenders, kReasonTimedOut
+  /// or none; kReasonStale beside it.
+  std::uint64_t reasons() const noexcept { return reason_ | stale_; }
   std::uint64_t request_cycle() const noexcept { return request_cycle_; }
-  std::uint64_t received() const noexcept { return last_count_ - first_count_; }
-  std::uint64_t refused() const noexcept { return refused_; }
+  std::uint64_t received() const noexcept { return last_.count - first_.count + stale() + crowded(); }
+  std::uint64_t refused() const noexcept { return not_finite_ + stale() + crowded(); }
+  std::uint64_t stale() const noexcept { return last_.stale - first_.stale; }
+  std::uint64_t crowded() const noexcept { return last_.crowded - first_.crowded; }
   std::uint64_t timeouts() const noexcept { return timeouts_; }
 
  private:
-  std::uint64_t timeout_cycles_;
-  std::uint64_t first_count_ = 0;
-  std::uint64_t last_count_ = 0;
+  void accept(const VelocityCommand& request, std::uint64_t cycle) noexcept;
+
+  double timeout_;
+  double period_;
+  VelocityCommand first_;   ///< of the run
+  VelocityCommand last_;    ///< seen
+  std::uint64_t life_ = 0;  ///< cycles, of the last command
   std::uint64_t request_cycle_ = 0;
-  std::uint64_t refused_ = 0;
+  std::uint64_t not_finite_ = 0;
   std::uint64_t timeouts_ = 0;
   std::uint64_t reason_ = 0;
+  std::uint64_t stale_ = 0;  ///< kReasonStale or 0
   Twist wish_;
 };
 

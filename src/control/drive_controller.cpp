@@ -4,13 +4,16 @@
 #include <cmath>
 
 #include "control/drive_limits.h"
+#include "control/measured_robot.h"
 #include "control/wheel_loop_gains.h"
 
 namespace robot_control {
 
 namespace {
 
-std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& robot, double period) {
+std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& believed,
+                                  double period) {
+  const RobotModel robot = measured_robot(believed, parameters.feed_forward);
   std::vector<WheelLoop> loops;
   for (const WheelModel& wheel : robot.wheels) {
     loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),
@@ -32,7 +35,7 @@ JointCommand effort_command(double velocity, double effort) noexcept {
 }
 
 constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
-constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonPermitRamp;
+constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 constexpr std::uint64_t kBrakeReasons = kReasonNoPermit | kReasonPermitBrake | kReasonBadSensors | kReasonHolding;
 
 }  // namespace
@@ -41,14 +44,14 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
     : period_(period),
       joint_count_(robot.joints.size()),
       kinematics_(robot),
-      feed_forward_(robot),
+      feed_forward_(measured_robot(robot, parameters.feed_forward)),
       watch_(parameters.cmd_vel_timeout, period),
       limiter_(speed_limits(parameters)),
       standstill_(period),
       loops_(make_loops(parameters, robot, period)) {}
 
-void DriveController::reset(std::uint64_t request_count) noexcept {
-  watch_.reset(request_count);
+void DriveController::reset(const VelocityCommand& inbox) noexcept {
+  watch_.reset(inbox);
   limiter_.seed({});
   standstill_.reset();
   for (WheelLoop& loop : loops_) loop.reset();
@@ -197,6 +200,8 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   out.request_cycle = watch_.request_cycle();
   out.requests_received = watch_.received();
   out.requests_refused = watch_.refused();
+  out.requests_stale = watch_.stale();
+  out.requests_crowded = watch_.crowded();
   out.timeouts = watch_.timeouts();
 }
 

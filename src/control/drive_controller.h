@@ -8,8 +8,8 @@
 ///   - the robot holds: zero wish, zero limited twist and all wheels standing (standstill.h); straight after a brake
 ///     all wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
 ///     wish ≠ 0 ends it.
-/// What was not asked for ramps with the emergency deceleration: a command that timed out or was refused, a ramp
-/// permit. Under a ramp permit the wish is zero; under a permit with a speed limit the wish is scaled
+/// What was not asked for ramps with the emergency deceleration: a command that timed out or was refused, more than
+/// one sender where that is forbidden, a ramp permit. Under a ramp permit the wish is zero; under a permit with a speed limit the wish is scaled
 /// until no rim is faster, along the same curve. Joints that are not wheels are always braked.
 ///
 /// While the wheels do not follow this controller (it brakes, or the gate reports that tick k−1 was braked) limiter
@@ -57,8 +57,8 @@ class DriveController {
   /// `robot` as read_robot gives it: at least a wheel on either side, wheels[i].joint == i. `period` s.
   DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
 
-  /// A new run: forgets requests (`request_count` is the inbox's count now) and every state.
-  void reset(std::uint64_t request_count) noexcept;
+  /// A new run: forgets requests, those that the inbox holds now among them, and every state.
+  void reset(const VelocityCommand& inbox = {}) noexcept;
 
   /// Fills everything but `out.head`.
   void step(const ControlInput& input, CommandFrame& out) noexcept;

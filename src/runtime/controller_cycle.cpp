@@ -13,11 +13,20 @@ ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, co
       script_(std::move(script)),
       robot_hash_(robot.hash) {}
 
+/// Everything but the command itself, which script and inbox share.
+void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
+  received_ = arrived;
+  request_.stale = arrived.stale;
+  request_.crowded = arrived.crowded;
+  request_.many_senders = arrived.many_senders;
+}
+
 void ControllerCycle::enter_run() noexcept {
   inbox_.load(received_);
+  take_over(received_);
   script_.rewind();
   if (const auto last = published_before(channels_.command, state_.head.run)) script_.advance(*last);
-  controller_.reset(request_.count);
+  controller_.reset(request_);
 }
 
 void ControllerCycle::receive(std::uint64_t cycle) noexcept {
@@ -25,12 +34,14 @@ void ControllerCycle::receive(std::uint64_t cycle) noexcept {
   inbox_.load(arrived);
   if (arrived.count != received_.count) {
     request_.twist = arrived.twist;
+    request_.age_ns = arrived.age_ns;
     request_.count += arrived.count - received_.count;
-    received_ = arrived;
   }
+  take_over(arrived);
   const ScriptEvents events = script_.advance(cycle);
   if (events.has_twist) {
     request_.twist = events.twist;
+    request_.age_ns = 0;
     request_.count += events.twists;
   }
 }

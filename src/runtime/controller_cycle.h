@@ -35,6 +35,7 @@ class ControllerCycle {
   const ControllerTrace& trace() const noexcept { return trace_; }
 
  private:
+  void take_over(const VelocityCommand& arrived) noexcept;
   void enter_run() noexcept;
   void receive(std::uint64_t cycle) noexcept;
 

@@ -28,6 +28,8 @@ enum CommandReason : std::uint64_t {
   kReasonHolding = 1u << 13,       ///< Standing with zero command: brake law holds the position.
   kReasonPermitSlow = 1u << 14,    ///< The permit's speed limit.
   kReasonJerkYielded = 1u << 15,   ///< Stopped at zero with more than the jerk limit, rather than beyond it.
+  kReasonStale = 1u << 16,         ///< The last message was refused for its stamp; the command before it stands.
+  kReasonManySenders = 1u << 17,   ///< More than one node sends, and one_sender forbids it.
 };
 
 /// The gate executes a command in at most this many ticks: at tick k those of cycles k-kCommandLife … k-1.
@@ -45,7 +47,9 @@ struct CommandFrame {
   std::uint64_t permit_cycle = 0;       ///< of the permit used
   std::uint64_t request_cycle = 0;      ///< in which the last command was received
   std::uint64_t requests_received = 0;  ///< in this run
-  std::uint64_t requests_refused = 0;   ///< in this run: NaN or infinite
+  std::uint64_t requests_refused = 0;   ///< in this run: NaN or infinite, stale, or of too many senders
+  std::uint64_t requests_stale = 0;     ///< of these: for their stamp
+  std::uint64_t requests_crowded = 0;   ///< of these: while more than one node sent
   std::uint64_t timeouts = 0;           ///< in this run, one per event
 };
 

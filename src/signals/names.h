@@ -89,6 +89,10 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
     {kReasonHolding, "holding", "standing with zero command: the brake holds the position", ""},
     {kReasonPermitSlow, "permit_slow", "the safety monitor limits the speed", "read the warning in safety_status"},
     {kReasonJerkYielded, "jerk_yielded", "it stopped at zero with more jerk than the limit, rather than beyond", ""},
+    {kReasonStale, "stale", "the last cmd_vel_stamped was older than cmd_vel_timeout, or of the future",
+     "synchronise the sender's clock with the robot's, or publish on cmd_vel, whose age counts from its arrival"},
+    {kReasonManySenders, "many_senders", "more than one node sends commands, which one_sender forbids",
+     "stop all but one"},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({

@@ -7,11 +7,16 @@
 
 namespace robot_control {
 
-/// The last message on `cmd_vel`. `count` grows by one with every message received: that, not a clock,
-/// tells a new message from an old one.
+/// The last command on `cmd_vel` or `cmd_vel_stamped` that may be used, and how many may not. `count` grows by one with
+/// every usable one: that, not a clock, tells a new command from an old one. A stamp becomes an age once, when the
+/// message arrives (bridge/command_input.h); from then on only cycles count, which no clock moves.
 struct VelocityCommand {
   Twist twist;  ///< base axes; NaN and infinity are passed on, the controller refuses them
   std::uint64_t count = 0;
+  std::int64_t age_ns = 0;         ///< ≥ 0, of the command when it arrived, by its stamp; 0 where it has none
+  std::uint64_t stale = 0;         ///< grows with every message refused for its stamp: too old, or of the future
+  std::uint64_t crowded = 0;       ///< grows with every message refused because more than one node sends
+  std::uint64_t many_senders = 0;  ///< 1: more than one node sends now, and one_sender forbids it
 };
 
 /// The operator's inputs to the safety monitor. Each counter grows by one with every event.

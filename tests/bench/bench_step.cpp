@@ -100,7 +100,7 @@ int run(const std::string& path) {
   DriveController controller(parameters.controller, robot, period);
   CommandFrame command;
   add(rows, "controller",
-      measure([&] { controller.reset(0); },
+      measure([&] { controller.reset(); },
               [&](std::size_t k) {
                 const VelocityCommand request{.twist = drive.commands[k].twist_requested, .count = k};
                 controller.step({.sensors = &drive.sensors[k],

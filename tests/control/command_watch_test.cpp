@@ -86,6 +86,86 @@ TEST_F(CommandWatchTest, RefusesEveryComponentThatIsNotFiniteUntilAGoodMessageAr
   EXPECT_EQ(watch.timeouts(), 0u);
 }
 
+TEST_F(CommandWatchTest, TakesAnAgeByStampOffTheTimeout) {
+  request.age_ns = 1'000'000'000;
+  send(0.5);
+  EXPECT_EQ(watch.step(request, 10).linear[0], 0.5);
+  EXPECT_EQ(watch.step(request, 260).linear[0], 0.5) << "1.25 s after the stamp";
+  EXPECT_EQ(watch.step(request, 261).linear[0], 0);
+  EXPECT_EQ(watch.reasons(), kReasonTimedOut);
+  request.age_ns = 0;
+  send(0.5);
+  EXPECT_EQ(watch.step(request, 262).linear[0], 0.5);
+  EXPECT_EQ(watch.step(request, 262 + 1250).linear[0], 0.5) << "without a stamp from the arrival on";
+}
+
+TEST_F(CommandWatchTest, AnAgeMeansNothingWithTimeoutZero) {
+  watch = CommandWatch(0, 1e-3);
+  request.age_ns = 3'600'000'000'000;
+  send(0.5);
+  EXPECT_EQ(watch.step(request, 0).linear[0], 0.5);
+  EXPECT_EQ(watch.step(request, 5000).linear[0], 0.5);
+}
+
+TEST_F(CommandWatchTest, AStaleMessageNeitherEndsNorProlongsTheCommandThatStands) {
+  send(0.5);
+  watch.step(request, 0);
+  for (std::uint64_t k = 1; k <= 1250; ++k) {
+    ++request.stale;
+    ASSERT_EQ(watch.step(request, k).linear[0], 0.5) << "cycle " << k;
+    ASSERT_EQ(watch.reasons(), kReasonStale);
+  }
+  ++request.stale;
+  EXPECT_EQ(watch.step(request, 1251).linear[0], 0);
+  EXPECT_EQ(watch.reasons(), kReasonTimedOut | kReasonStale);
+  EXPECT_EQ(watch.stale(), 1251u);
+  EXPECT_EQ(watch.refused(), 1251u);
+  EXPECT_EQ(watch.received(), 1252u);
+  send(0.3);
+  EXPECT_EQ(watch.step(request, 1252).linear[0], 0.3);
+  EXPECT_EQ(watch.reasons(), 0u) << "a good command ends the reason";
+}
+
+TEST_F(CommandWatchTest, StaleMessagesAloneMoveNothing) {
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    ++request.stale;
+    ASSERT_EQ(watch.step(request, k).linear[0], 0);
+    ASSERT_EQ(watch.reasons(), kReasonNoCommand | kReasonStale);
+  }
+}
+
+TEST_F(CommandWatchTest, ManySendersEndTheCommandUntilANewOneComesFromTheOneThatIsLeft) {
+  send(0.5);
+  watch.step(request, 0);
+  request.many_senders = 1;
+  for (std::uint64_t k = 1; k < 5000; ++k) {
+    ++request.crowded;
+    ASSERT_EQ(watch.step(request, k).linear[0], 0);
+    ASSERT_EQ(watch.reasons(), kReasonManySenders);
+  }
+  request.many_senders = 0;
+  EXPECT_EQ(watch.step(request, 5000).linear[0], 0) << "the command before is not resumed";
+  EXPECT_EQ(watch.reasons(), kReasonManySenders);
+  send(0.3);
+  EXPECT_EQ(watch.step(request, 5001).linear[0], 0.3);
+  EXPECT_EQ(watch.reasons(), 0u);
+  EXPECT_EQ(watch.timeouts(), 0u);
+  EXPECT_EQ(watch.crowded(), 4999u);
+  EXPECT_EQ(watch.refused(), 4999u);
+}
+
+TEST_F(CommandWatchTest, AnotherTimeoutHoldsForTheCommandThatStands) {
+  send(0.5);
+  watch.step(request, 0);
+  watch.limit(0.1);
+  EXPECT_EQ(watch.step(request, 100).linear[0], 0.5);
+  EXPECT_EQ(watch.step(request, 101).linear[0], 0);
+  send(0.5);
+  watch.step(request, 200);
+  watch.limit(0);
+  EXPECT_EQ(watch.step(request, 100'000).linear[0], 0.5);
+}
+
 TEST_F(CommandWatchTest, CountsMessagesThatWereOverwrittenInTheInbox) {
   request.count = 7;
   watch.step(request, 0);
@@ -95,10 +175,12 @@ TEST_F(CommandWatchTest, CountsMessagesThatWereOverwrittenInTheInbox) {
 TEST_F(CommandWatchTest, ForgetsInANewRunWhatTheInboxHolds) {
   send(0.5);
   watch.step(request, 100);
-  watch.reset(request.count);
+  ++request.stale;
+  watch.reset(request);
   EXPECT_EQ(watch.step(request, 0).linear[0], 0);
   EXPECT_EQ(watch.reasons(), kReasonNoCommand);
   EXPECT_EQ(watch.received(), 0u);
+  EXPECT_EQ(watch.refused(), 0u);
 }
 
 }  // namespace

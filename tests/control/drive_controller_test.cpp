@@ -276,7 +276,7 @@ TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
 TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyThatFails) {
   const RobotModel robot = make_skid_steer();
   DriveController controller({}, robot, 1e-3);
-  controller.reset(0);
+  controller.reset();
   SensorFrame sensors;
   sensors.valid = kValidJoints;
   sensors.joint_count = 4;
@@ -322,7 +322,7 @@ TEST_F(DriveControllerTest, BrakesTheJointsThatAreNotWheels) {
 }
 
 TEST_F(DriveControllerTest, StartsANewRunFromNothing) {
-  bench.controller.reset(bench.request.count);
+  bench.controller.reset(bench.request);
   bench.cycle = 0;
   bench.plant = TwoWheelPlant(make_test_robot());
   bench.plant.angle = {123, -456};
@@ -424,7 +424,7 @@ TEST_F(DriveControllerTest, DoesNotAllocate) {
     bench.permit.action = k % 500 < 20 ? PermitAction::kBrake : PermitAction::kDrive;
     bench.controller.step(input, out);
   }
-  bench.controller.reset(0);
+  bench.controller.reset();
   EXPECT_EQ(guard.count(), 0u);
 }
 
