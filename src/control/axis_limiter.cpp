@@ -6,10 +6,13 @@
 namespace robot_control {
 namespace {
 
+constexpr double kRounding = 1e-12;
+
 /// The largest a with F(a) ≤ distance.
 double fading_from(double distance, double step, double dt) noexcept {
   const double needed = distance / dt;
   if (needed <= step) return needed;
+  if (!(step > 0)) return 0;  // of a way so short that its share of the jerk underflows
   const double n = std::floor((std::sqrt(1 + 8 * needed / step) - 1) / 2);
   return (needed + step * n * (n + 1) / 2) / (n + 1);
 }
@@ -17,6 +20,7 @@ double fading_from(double distance, double step, double dt) noexcept {
 /// The largest a with G(a) ≤ distance.
 double fading_to(double least, double distance, double step, double dt) noexcept {
   const double needed = distance / dt;
+  if (needed <= step) return std::max(least, needed);
   const double slope = 2 * least - step;
   const double n = std::floor((std::sqrt(slope * slope + 8 * step * needed) - slope) / (2 * step));
   if (n < 1) return least;
@@ -29,7 +33,7 @@ double wanted(double speed, double distance, const AxisLimits& limits, double dt
   const double reaching = fading_from(distance, step, dt);
   if (speed >= 0) return std::min(reaching, limits.acceleration);
   const double bound = std::min(reaching, limits.deceleration);
-  if (bound <= limits.acceleration || std::isinf(step)) return bound;
+  if (bound <= limits.acceleration) return bound;
   return std::min(bound, fading_to(limits.acceleration, -speed, step, dt));
 }
 
@@ -56,7 +60,9 @@ AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limi
   const double arriving = distance / dt;
   AxisStep step;
   step.state.speed = next == arriving ? target : state.speed + ahead * next * dt;
-  step.state.acceleration = ahead * next;
+  // What rounding lifts above the jerk of one step would push it on beyond its target.
+  const bool faster = next > jerk * dt * (1 + kRounding);
+  step.state.acceleration = ahead * (next == arriving && !faster ? std::min(next, jerk * dt) : next);
   const bool beyond_zero = state.speed == 0 ? step.state.speed != 0 : opposite(state.speed, step.state.speed);
   const bool stops = beyond_zero && (target == 0 || opposite(step.state.speed, target));
   if (stops) step.state.speed = 0;

@@ -37,6 +37,7 @@ MotionLimits draw_limits(Draw& draw) {
 
 double draw_wish(Draw& draw, double limit) {
   if (draw.happens(0.3)) return 0;
+  if (draw.happens(0.02)) return draw.of_scale(1e-323, 1e-300) * (draw.happens(0.5) ? 1 : -1);
   return limit * (draw.happens(0.15) ? draw.between(-0.02, 0.02) : draw.between(-1.3, 1.3));
 }
 
@@ -65,20 +66,21 @@ struct Axis {
     const double grain = 1e-12 * limits.speed / dt;  // of a difference of two speeds
     const double tolerance = kRounding * (1 + std::abs(step)) + grain;
     const double slows = emergency ? limits.emergency_deceleration : limits.deceleration;
-    const bool slower = speed * next >= 0 && std::abs(next) <= std::abs(speed);
+    const auto side = [](double of) { return (of > 0) - (of < 0); };
+    const bool crosses = side(speed) * side(next) < 0 && std::abs(next) > grain * dt;
+    const bool slower = !crosses && std::abs(next) <= std::abs(speed);
     double bound = slower ? slows : limits.acceleration;
-    if (speed * next < 0) bound = std::max(slows, limits.acceleration);  // before zero one, behind it the other
     if (emergency_fades && !std::isinf(limits.jerk)) {
       bound = std::max(bound, std::abs(acceleration) - limits.jerk * dt);
     }
     const double change = std::min(std::abs(step - acceleration), yielded_before ? std::abs(step) : INFINITY) / dt;
     const bool jerks = change > limits.jerk * (1 + kRounding) + 2 * grain / dt;
 
-    const char* violated = nullptr;
+    const char* violated = std::isfinite(next) ? nullptr : "finite";
     if (std::abs(next) > limits.speed * (1 + 1e-12)) violated = "speed";
     if (std::abs(step) > bound + tolerance) violated = "acceleration";
     if (jerks && !(yielded && next == 0)) violated = "jerk";
-    if (next * goal <= 0 && next * speed <= 0 && next != 0) violated = "zero";
+    if (side(next) != 0 && side(next) != side(goal) && side(next) != side(speed)) violated = "zero";
     if (next < low - kRounding - grain * dt || next > high + kRounding + grain * dt) violated = "overshoot";
 
     emergency_fades = emergency || (emergency_fades && std::abs(step) > limits.deceleration * (1 + kRounding));

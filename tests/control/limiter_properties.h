@@ -1,6 +1,7 @@
 #pragma once
 /// What must hold of the limiter whatever is asked of it, put to the test by one random sequence of commands per seed.
 ///
+///   finite        every speed is a number
 ///   speed         no axis above its speed limit
 ///   acceleration  none above the limit of its phase; what an emergency left fades at the jerk limit
 ///   jerk          none above the limit, but where an axis stops at zero, and then it is said
