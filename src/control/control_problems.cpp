@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "control/feed_forward.h"
+#include "control/measured_robot.h"
 #include "control/wheel_loop_gains.h"
 #include "control/wheel_loop_stability.h"
 
@@ -96,8 +97,9 @@ std::string powerless_message(const JointModel& joint, const RobotModel& robot) 
 
 }  // namespace
 
-std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& robot,
+std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& believed,
                                           double period) {
+  const RobotModel robot = measured_robot(believed, parameters.feed_forward);
   std::vector<std::string> problems;
   std::vector<Loop> judged;
   const double bandwidth = tracking_bandwidth(parameters, period);

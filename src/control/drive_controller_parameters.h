@@ -5,6 +5,15 @@
 
 namespace robot_control {
 
+/// What was measured of the robot and goes before its URDF in the controller (measured_robot.h), and nowhere else.
+struct FeedForwardParameters {
+  std::optional<double> mass;            ///< kg
+  std::optional<double> yaw_inertia;     ///< kg·m² about the vertical through the middle of the wheels
+  std::optional<double> wheel_inertia;   ///< kg·m² of every wheel about its axle, its drive included
+  std::optional<double> wheel_damping;   ///< N·m·s/rad, of every wheel's joint
+  std::optional<double> wheel_friction;  ///< N·m, dry
+};
+
 /// Gains that are left out are derived from the robot, wheel by wheel: wheel_loop_gains.h.
 struct DriveControllerParameters {
   double max_linear_speed = 1.0;                    ///< m/s
@@ -23,6 +32,7 @@ struct DriveControllerParameters {
   std::optional<double> pid_ki;                     ///< N·m/rad
   double pid_kd = 0.0;                              ///< N·m·s²/rad
   std::optional<double> tracking_bandwidth;         ///< Hz, of the wheel speeds' tracking loops
+  FeedForwardParameters feed_forward;
 };
 
 }  // namespace robot_control

@@ -86,6 +86,16 @@ class TreeReader {
     }
   }
 
+  // All that stands in it is optional.
+  static bool may_be_absent(const std::string& group) {
+    for (const Block& block : schema()) {
+      for (const Key& key : block.keys) {
+        if (group_path_of(block, key) == group && (key.traits & kOptional) == 0) return false;
+      }
+    }
+    return true;
+  }
+
   // A map that is missing or no map is one problem, not one per key.
   bool group_is_there(const std::string& group) {
     const auto entry = tree_.entries.find(group);
@@ -94,6 +104,7 @@ class TreeReader {
     const bool overlaid_alone = entry == tree_.entries.end() && first_inside != tree_.entries.end() &&
                                 first_inside->first.starts_with(group + ".");
     if (map || overlaid_alone) return true;
+    if (entry == tree_.entries.end() && may_be_absent(group)) return false;
     if (!told_groups_.insert(group).second) return false;
     const std::string rule = rule_of_group(group);
     if (entry == tree_.entries.end()) {

@@ -25,6 +25,11 @@ Field in_condition(Parameters& parameters) {
   return &(parameters.safety.*Condition.*Member);
 }
 
+template <auto Member>
+Field in_feed_forward(Parameters& parameters) {
+  return &(parameters.controller.feed_forward.*Member);
+}
+
 template <std::size_t... Sizes>
 constexpr auto rows(const std::array<Key, Sizes>&... parts) {
   std::array<Key, (Sizes + ...)> all;
@@ -153,6 +158,7 @@ constexpr auto kStateEstimator = std::to_array<Key>({
 });
 
 using Drive = DriveControllerParameters;
+using Forward = FeedForwardParameters;
 constexpr auto kDiffDriveController = std::to_array<Key>({
     {"max_linear_speed", in<&P::controller, &Drive::max_linear_speed>, "m/s", 0.001, 50},
     {"max_angular_speed", in<&P::controller, &Drive::max_angular_speed>, "rad/s", 0.001, 50},
@@ -173,6 +179,11 @@ constexpr auto kDiffDriveController = std::to_array<Key>({
     {"pid_ki", in<&P::controller, &Drive::pid_ki>, "N·m/rad", 0, 1.0e6, kOptional},
     {"pid_kd", in<&P::controller, &Drive::pid_kd>, "N·m·s²/rad", 0, 1000},
     {"tracking_bandwidth", in<&P::controller, &Drive::tracking_bandwidth>, "Hz", 0.1, 500, kOptional},
+    {"mass", in_feed_forward<&Forward::mass>, "kg", 0.01, 100000, kOptional, {}, "feed_forward"},
+    {"yaw_inertia", in_feed_forward<&Forward::yaw_inertia>, "kg·m²", 1.0e-6, 1.0e6, kOptional, {}, "feed_forward"},
+    {"wheel_inertia", in_feed_forward<&Forward::wheel_inertia>, "kg·m²", 1.0e-9, 1000, kOptional, {}, "feed_forward"},
+    {"wheel_damping", in_feed_forward<&Forward::wheel_damping>, "N·m·s/rad", 0, 1000, kOptional, {}, "feed_forward"},
+    {"wheel_friction", in_feed_forward<&Forward::wheel_friction>, "N·m", 0, 10000, kOptional, {}, "feed_forward"},
     {"command_rate", in<&P::report, &ReportParameters::command_rate>, "Hz", 0.1, 2000, kPublishRate},
 });
 

@@ -11,10 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "control/drive_limits.h"
+#include "control/wheel_loop_stability.h"
 #include "drivers/mujoco_model.h"
 #include "drivers/mujoco_plant.h"
 #include "hal/driver.h"
 #include "python/describe.h"
+#include "python/wheel_loops.h"
 #include "simulation/closed_loop.h"
 #include "telemetry/columns.h"
 
@@ -131,6 +134,37 @@ PYBIND11_MODULE(_robot_control, module) {
       "stand",
       [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
         return stand(parameters_from(path, values));
+      },
+      py::arg("path"), py::arg("values"));
+  module.def(
+      "wheel_loops",
+      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+        const Parameters parameters = parameters_from(path, values);
+        return wheel_loops(parameters, robot_of(parameters));
+      },
+      py::arg("path"), py::arg("values"));
+  module.def(
+      "spectral_radius",
+      [](double kp, double ki, double kd, double model_inertia, double inertia, double damping, double period,
+         double bandwidth, unsigned delay) {
+        return wheel_loop_spectral_radius({.kp = kp, .ki = ki, .kd = kd, .model_inertia = model_inertia},
+                                          {.inertia = inertia, .damping = damping}, period, bandwidth, delay);
+      },
+      py::kw_only(), py::arg("kp"), py::arg("ki"), py::arg("kd"), py::arg("model_inertia"), py::arg("inertia"),
+      py::arg("damping"), py::arg("period"), py::arg("bandwidth"), py::arg("delay") = 0);
+  module.def(
+      "controller_parameters",
+      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+        using namespace py::literals;
+        const Parameters parameters = parameters_from(path, values);
+        const SpeedLimits limits = speed_limits(parameters.controller);
+        const auto axis = [](const MotionLimits& of) {
+          return py::dict("speed"_a = of.speed, "acceleration"_a = of.acceleration, "deceleration"_a = of.deceleration,
+                          "jerk"_a = of.jerk);
+        };
+        return py::dict("linear"_a = axis(limits.linear), "angular"_a = axis(limits.angular),
+                        "cmd_vel_timeout"_a = parameters.controller.cmd_vel_timeout, "rate"_a = parameters.loop.rate,
+                        "lockstep"_a = parameters.loop.clock == ClockMode::kLockstep);
       },
       py::arg("path"), py::arg("values"));
   py::class_<ClosedLoop>(module, "ClosedLoop")

@@ -133,6 +133,24 @@ TEST_F(ReadParameters, AnOverlayMayBringWhatTheFileLacks) {
   EXPECT_EQ(read_parameters(file.path(), {{"robot.rate", "500", "/robot/rate"}}).loop.rate, 500);
 }
 
+TEST_F(ReadParameters, AMapOfWhatIsOptionalMayBeAbsentOrHoldAPartOfIt) {
+  EXPECT_FALSE(read_parameters(file.path()).controller.feed_forward.mass);
+  const auto read = [&](const std::string& path, const std::string& text) {
+    return read_parameters(file.path(), {{path, text, "dict"}}).controller.feed_forward;
+  };
+  EXPECT_EQ(read("diff_drive_controller.feed_forward.mass", "13.5").mass, 13.5);
+  const FeedForwardParameters some = read("diff_drive_controller.feed_forward", "{mass: 13.5, wheel_friction: 0.1}");
+  EXPECT_EQ(some.mass, 13.5);
+  EXPECT_EQ(some.wheel_friction, 0.1);
+  EXPECT_FALSE(some.yaw_inertia);
+}
+
+TEST_F(ReadParameters, NamesTheRuleOfAMapThatIsNone) {
+  file.set("command_rate", "  command_rate: 50\n  feed_forward: 12");
+  EXPECT_THAT(file.refusal(), HasSubstr("diff_drive_controller.feed_forward = 12: must be a map of mass, yaw_inertia, "
+                                        "wheel_inertia, wheel_damping, wheel_friction"));
+}
+
 TEST_F(ReadParameters, OverlaysAloneAreEnough) {
   std::set<std::string> optional;
   for (const ParameterDescription& description : describe_parameters()) {

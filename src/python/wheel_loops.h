@@ -1,0 +1,17 @@
+#pragma once
+/// The wheel loops that a set of parameters gives, as plain Python values: what identify.py judges its proposals with.
+
+#include <pybind11/pybind11.h>
+
+#include "parameters/parameters.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+/// One dict per drive wheel, in the order of the robot's wheels:
+///   joint  side "left" | "right"  sign  radius m  wheels_beside (h of feed_forward.h)  effort_limit N·m
+///   damping N·m·s/rad  friction N·m  lifted turning straight kg·m²      as the controller believes them
+///   kp ki kd model_inertia  bandwidth Hz  period s                      of its loop
+pybind11::list wheel_loops(const Parameters& parameters, const RobotModel& robot);
+
+}  // namespace robot_control
