@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/drive_limits.h"
+#include "control/drive_tuning.h"
 #include "control/measured_robot.h"
 #include "control/wheel_loop_gains.h"
 
@@ -60,6 +61,19 @@ void DriveController::reset(const VelocityCommand& inbox) noexcept {
   periods_ = 1;
   driving_ = followed_ = holding_ = false;
   state_cycle_ = permit_cycle_ = 0;
+}
+
+void DriveController::tune(const DriveTuning& tuning) noexcept {
+  watch_.limit(tuning.cmd_vel_timeout);
+  limiter_.limit(speed_limits(tuning));
+  const auto planned = [&] { return feed_forward_.efforts(limiter_.value(), limiter_.acceleration()); };
+  const WheelValues before = planned();
+  feed_forward_.tune(tuning);
+  const WheelValues after = planned();
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    const double less = driving_ && followed_ ? before[i] - after[i] : 0;
+    loops_[i].tune(wheel_loop_gains(tuning.wheels[i]), tuning.tracking_bandwidth, less);
+  }
 }
 
 bool DriveController::usable(const SensorFrame& sensors) const noexcept {

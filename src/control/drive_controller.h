@@ -34,6 +34,7 @@
 #include "control/wheel_loop.h"
 #include "robot/robot_model.h"
 #include "signals/command_frame.h"
+#include "signals/drive_tuning.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -59,6 +60,10 @@ class DriveController {
 
   /// A new run: forgets requests, those that the inbox holds now among them, and every state.
   void reset(const VelocityCommand& inbox = {}) noexcept;
+
+  /// Between two cycles: other limits, timeout and gains, from the next step on. Bumpless (wheel_loop.h); what exceeds
+  /// a lowered limit returns to it as the limiter does. They outlast `reset`.
+  void tune(const DriveTuning& tuning) noexcept;
 
   /// Fills everything but `out.head`.
   void step(const ControlInput& input, CommandFrame& out) noexcept;

@@ -42,10 +42,21 @@ FeedForward::FeedForward(const RobotModel& robot)
     const WheelModel& wheel = robot.wheels[i];
     side_[i] = wheel.side == Side::kLeft ? -1 : 1;
     effort_per_force_[i] = wheel.sign * wheel.radius / wheels_beside(robot, wheel);
-    effort_per_acceleration_[i] = wheel.sign * wheel.inertia / wheel.radius;
     turn_per_rim_[i] = wheel.sign / wheel.radius;
+    effort_per_acceleration_[i] = turn_per_rim_[i] * wheel.inertia;
     damping_[i] = robot.joints[wheel.joint].damping;
     friction_[i] = robot.joints[wheel.joint].friction;
+  }
+}
+
+void FeedForward::tune(const DriveTuning& tuning) noexcept {
+  mass_ = tuning.mass;
+  yaw_inertia_ = tuning.yaw_inertia;
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    const WheelTuning& wheel = tuning.wheels[i];
+    effort_per_acceleration_[i] = turn_per_rim_[i] * wheel.inertia;
+    damping_[i] = wheel.damping;
+    friction_[i] = wheel.friction;
   }
 }
 

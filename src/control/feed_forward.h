@@ -23,6 +23,7 @@
 
 #include "control/planar_twist.h"
 #include "robot/robot_model.h"
+#include "signals/drive_tuning.h"
 
 namespace robot_control {
 
@@ -33,6 +34,9 @@ double turning_inertia(const RobotModel& robot, const WheelModel& wheel) noexcep
 class FeedForward {
  public:
   explicit FeedForward(const RobotModel& robot);
+
+  /// Another mass, yaw inertia, and per wheel inertia, damping and friction, from now on.
+  void tune(const DriveTuning& tuning) noexcept;
 
   /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²), that of the joint included.
   WheelValues efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;

@@ -23,6 +23,12 @@ void TrackingLoop::seed(double position, double velocity) noexcept {
   known_ = 0;
 }
 
+void TrackingLoop::tune(double bandwidth, double known_less) noexcept {
+  bandwidth_ = bandwidth;
+  nominal_pole_ = pole(bandwidth, period_);
+  residual_ += known_less;
+}
+
 void TrackingLoop::step(double position_measured, double known_acceleration, double periods) noexcept {
   const double dt = periods * period_;
   const double p = periods == 1 ? nominal_pole_ : pole(bandwidth_, dt);

@@ -28,6 +28,10 @@ class TrackingLoop {
 
   void seed(double position, double velocity) noexcept;
 
+  /// Another bandwidth, Hz > 0, from the next sample on; what is tracked stays. `known_less`, rad/s²: by so much less
+  /// will the caller account for than before; the residual has it.
+  void tune(double bandwidth, double known_less) noexcept;
+
   /// The sample `periods` ≥ 1 periods after the last one.
   void step(double position_measured, double known_acceleration, double periods) noexcept;
 

@@ -20,6 +20,10 @@
 /// clamped here or by the gate, and |integral| ≤ effort_limit. Bumpless: `carry` gives the integrator the load that the
 /// brake was holding, so the first torque after a brake is the torque before it and a robot on a slope does not sag.
 ///
+/// Bumpless in other gains, too (`tune`): in their first cycle the integrator takes over what proportional and
+/// derivative part give less than the old ones would, and the tracking loop's residual what the torque tells it less;
+/// so the torque goes on from where it was, up to ki·error·dt, and so does the tracked speed.
+///
 /// Gains for 12 kg, 1 kHz, 20 Hz, as wheel_loop_gains.h derives them for that robot (wheel inertia J: lifted 0.005,
 /// turning 0.045, straight 0.065 kg·m²):
 ///   model_inertia = 2·J_lifted = 0.01. Told only the encoder angle (model_inertia = ∞) the lifted wheel is stable up
@@ -38,6 +42,7 @@
 /// 0.02 N·m·s/rad of friction RMS 0.9 mm/s, overshoot 0.05 %; mass doubled RMS 9.5 mm/s, overshoot 2.8 %.
 
 #include <array>
+#include <optional>
 
 #include "control/tracking_loop.h"
 #include "signals/joint.h"
@@ -71,6 +76,10 @@ class WheelLoop {
   /// A new run: the next sample seeds the tracking loop.
   void reset() noexcept;
 
+  /// Between two cycles: other gains and bandwidth, Hz. `feed_forward_less`, N·m: by so much less will the plan's
+  /// feed-forward be than before.
+  void tune(const WheelLoopGains& gains, double bandwidth, double feed_forward_less) noexcept;
+
   /// The next sample seeds the tracking loop; the integrator keeps the load.
   void lose_track() noexcept { tracked_ = false; }
 
@@ -97,7 +106,9 @@ class WheelLoop {
   TrackingLoop tracking_;
   std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
   double integral_ = 0;
-  double load_ = 0;  ///< N·m, integral at the last hand-over
+  double load_ = 0;                           ///< N·m, integral at the last hand-over
+  double surprise_ = 0;                       ///< N·m, what the measured torque told the tracking loop last
+  std::optional<WheelLoopGains> last_gains_;  ///< those of the last step, where others hold since
   bool tracked_ = false;
   bool saturated_ = false;
 };
