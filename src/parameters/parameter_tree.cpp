@@ -160,6 +160,35 @@ void lay_over(const Overlay& overlay, ParameterTree& tree, ProblemList& problems
 
 }  // namespace
 
+void lay_request_over(const std::string& block, const std::string& text, ParameterTree& tree, ProblemList& problems) {
+  const auto refuse = [&](const std::string& rule) {
+    problems.add({"request", printable(text), rule, "", "for example {max_linear_speed: 0.5}"});
+  };
+  const std::string form = "must be a YAML map of keys of " + block;
+  if (text.size() > kLongestRequest) {
+    refuse(form + " in at most " + std::to_string(kLongestRequest) + " bytes, not " + std::to_string(text.size()));
+    return;
+  }
+  try {
+    const bool one = documents_in(text) == 1;
+    const YAML::Node map = one ? YAML::Load(text) : YAML::Node();
+    if (!map.IsMap() || map.size() == 0) {
+      refuse(form + ", at least one");
+      return;
+    }
+    for_each_key(map, block + ".", "request", problems, [&](const auto& name, const auto&, const YAML::Node& value) {
+      put_value(block + "." + name, value, "request", "request", problems,
+                [&](const std::string& path, Entry entry, const std::string&) {
+                  entry.origin = "request";
+                  entry.overlay = true;
+                  tree.entries.insert_or_assign(path, std::move(entry));
+                });
+    });
+  } catch (const YAML::Exception& error) {
+    refuse(form + ", is not YAML: " + printable(error.msg));
+  }
+}
+
 ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems) {
   ParameterTree tree;
   if (!yaml_path.empty()) read_file(yaml_path, tree, problems);

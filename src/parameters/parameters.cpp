@@ -6,6 +6,7 @@
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
 #include "parameters/suggestion.h"
+#include "parameters/tree_reader.h"
 #include "parameters/value_reader.h"
 
 namespace robot_control {
@@ -13,16 +14,17 @@ namespace {
 
 class TreeReader {
  public:
-  TreeReader(ParameterTree tree, std::string source, ProblemList& problems)
-      : tree_(std::move(tree)), source_(std::move(source)), problems_(problems) {}
+  TreeReader(ParameterTree tree, std::span<const Block> blocks, std::string source, const Parameters& base,
+             ProblemList& problems)
+      : tree_(std::move(tree)), blocks_(blocks), source_(std::move(source)), problems_(problems), parameters_(base) {}
 
   Parameters read() {
     overlays_replace_other_names();
     refuse_unknown();
-    for (const Block& block : schema()) {
+    for (const Block& block : blocks_) {
       for (const Key& key : block.keys) read_key(block, key);
     }
-    for (const Block& block : schema()) {
+    for (const Block& block : blocks_) {
       for (const Key& key : block.keys) check_against_others(block, key);
     }
     check_contradictions();
@@ -164,7 +166,7 @@ class TreeReader {
     };
     const LoopParameters& loop = parameters_.loop;
     const Field field = key.field(parameters_);
-    const bool rate_known = sound_.contains("robot.rate");
+    const bool rate_known = sound_.contains("robot.rate") || !tree_.entries.contains("robot.rate");
     if ((key.traits & kTimeout) != 0 && rate_known) {
       const double timeout = *std::get<double*>(field);
       if (timeout != 0 && timeout < 2 * loop.period()) {
@@ -196,6 +198,7 @@ class TreeReader {
   }
 
   ParameterTree tree_;
+  std::span<const Block> blocks_;
   std::string source_;  ///< of what is missing
   ProblemList& problems_;
   Parameters parameters_;
@@ -205,13 +208,18 @@ class TreeReader {
 
 }  // namespace
 
+Parameters read_blocks(ParameterTree tree, std::span<const Block> blocks, const std::string& source,
+                       const Parameters& base, ProblemList& problems) {
+  return TreeReader(std::move(tree), blocks, source, base, problems).read();
+}
+
 Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays) {
   const std::string source = yaml_path.empty() ? "the given values" : yaml_path;
   const std::string subject = "parameters refused (" + source + ")";
   ProblemList problems;
   ParameterTree tree = read_tree(yaml_path, overlays, problems);
   if (tree.blocks.empty() && !yaml_path.empty()) problems.throw_if_any(subject);  // not a file to ask further
-  Parameters parameters = TreeReader(std::move(tree), source, problems).read();
+  Parameters parameters = read_blocks(std::move(tree), schema(), source, {}, problems);
   problems.throw_if_any(subject);
   return parameters;
 }

@@ -9,8 +9,7 @@ namespace robot_control {
 namespace {
 
 std::string line_of(const Problem& problem) {
-  std::string line("  ");
-  line.append(problem.path);
+  std::string line(problem.path);
   if (!problem.value.empty()) line.append(" = ").append(problem.value);
   line.append(": ").append(problem.rule);
   if (!problem.origin.empty()) line.append(" [").append(problem.origin).append("]");
@@ -20,13 +19,21 @@ std::string line_of(const Problem& problem) {
 
 }  // namespace
 
+std::vector<std::string> ProblemList::lines() const {
+  std::vector<std::string> lines;
+  for (const Problem& problem : problems_) lines.push_back(line_of(problem));
+  return lines;
+}
+
 void ProblemList::throw_if_any(std::string_view subject) const {
-  if (problems_.empty()) return;
+  if (!problems_.empty()) throw ParameterError(listing(subject, lines()));
+}
+
+std::string listing(std::string_view subject, const std::vector<std::string>& lines) {
   std::string message(subject);
-  message.append(": ").append(std::to_string(problems_.size()));
-  message.append(problems_.size() == 1 ? " problem" : " problems");
-  for (const Problem& problem : problems_) message.append("\n").append(line_of(problem));
-  throw ParameterError(message);
+  message.append(": ").append(std::to_string(lines.size())).append(lines.size() == 1 ? " problem" : " problems");
+  for (const std::string& line : lines) message.append("\n  ").append(line);
+  return message;
 }
 
 std::string printable(std::string_view text) {

@@ -21,12 +21,18 @@ class ProblemList {
   void add(Problem problem) { problems_.push_back(std::move(problem)); }
   bool empty() const { return problems_.empty(); }
 
+  /// The line of each problem.
+  std::vector<std::string> lines() const;
+
   /// Throws ParameterError with every problem on a line of its own below `subject`; returns if there is none.
   void throw_if_any(std::string_view subject) const;
 
  private:
   std::vector<Problem> problems_;
 };
+
+/// "`subject`: 2 problems", and each of them on a line of its own below.
+std::string listing(std::string_view subject, const std::vector<std::string>& lines);
 
 /// Text from outside made fit for a message: control characters escaped, cut after 60 bytes.
 std::string printable(std::string_view text);

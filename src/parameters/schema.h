@@ -27,6 +27,7 @@ enum KeyTrait : unsigned {
   kPublishRate = 1u << 3,  ///< Hz; at most the rate of the loop
   kPath = 1u << 4,         ///< a file; made absolute
   kMayBeEmpty = 1u << 5,   ///< a text that may be ""
+  kLive = 1u << 6,         ///< may change while its node runs (live_parameters.h); double, optional<double> or bool
 };
 
 struct Key {
