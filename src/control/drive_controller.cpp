@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "control/drive_limits.h"
 #include "control/drive_tuning.h"
@@ -31,9 +32,21 @@ Twist spatial(const PlanarTwist& twist) noexcept {
   return {.linear = {twist.linear, 0, 0}, .angular = {0, 0, twist.angular}};
 }
 
+PlanarTwist scaled(const PlanarTwist& twist, double scale) noexcept {
+  return {scale * twist.linear, scale * twist.angular};
+}
+
+/// The largest multiple ≥ 0 of `inertial` that fits beside `rest` into `limit`; infinite: any. N·m.
+double affordable_multiple(double inertial, double rest, double limit) noexcept {
+  if (inertial == 0) return std::numeric_limits<double>::infinity();
+  return std::max((limit - std::copysign(rest, rest * inertial)) / std::abs(inertial), 0.0);
+}
+
 JointCommand effort_command(double velocity, double effort) noexcept {
   return {.mode = JointMode::kEffort, .velocity = velocity, .effort = effort};
 }
+
+constexpr double kLeastPart = 0.01;  // a ramp never stands still for good
 
 constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
@@ -58,7 +71,7 @@ void DriveController::reset(const VelocityCommand& inbox) noexcept {
   for (WheelLoop& loop : loops_) loop.reset();
   last_cycle_.reset();
   last_angle_.reset();
-  periods_ = 1;
+  periods_ = part_ = 1;
   driving_ = followed_ = holding_ = false;
   state_cycle_ = permit_cycle_ = 0;
 }
@@ -160,6 +173,19 @@ void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   }
 }
 
+double DriveController::affordable_part(const WheelValues& feed_forward) const noexcept {
+  if (part_ == 1 && std::ranges::none_of(loops_, &WheelLoop::saturated)) return 1;
+  const WheelValues unaccelerated = feed_forward_.efforts(limiter_.value(), {});
+  double multiple = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    const double inertial = feed_forward[i] - unaccelerated[i];
+    multiple =
+        std::min(multiple, affordable_multiple(inertial, loops_[i].wanted() - inertial, loops_[i].effort_limit()));
+  }
+  if (std::isinf(multiple)) return 1;
+  return std::clamp(multiple * limiter_.used_part(), kLeastPart, 1.0);
+}
+
 void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept {
   if (!followed_) follow_measured(sensors);
   const bool at_rest =
@@ -170,15 +196,19 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
   if (!driving_) return;
 
   if (followed_) {
-    const double scale = kinematics_.wheel_speed_scale(wish);
-    if (scale < 1) out.reasons |= kReasonSaturated;
-    limiter_.step({scale * wish.linear, scale * wish.angular}, periods_ * period_, (out.reasons & kEmergencies) != 0);
+    const PlanarTwist goal = scaled(wish, kinematics_.wheel_speed_scale(wish));
+    if (goal.linear != wish.linear || goal.angular != wish.angular || part_ < 1) out.reasons |= kReasonSaturated;
+    limiter_.step(goal, periods_ * period_, (out.reasons & kEmergencies) != 0, part_);
     out.reasons |= limiter_.reasons();
   }
-  const PlanarTwist limited = limiter_.value();
+  // A target that changed during a ramp may lead past the wheels' limits.
+  const double scale = kinematics_.wheel_speed_scale(limiter_.value());
+  if (scale < 1) out.reasons |= kReasonSaturated;
+  const PlanarTwist limited = scaled(limiter_.value(), scale);
+  const PlanarTwist rate = scaled(limiter_.acceleration(), scale);
   const WheelValues velocity = kinematics_.joint_speeds(limited);
-  const WheelValues acceleration = kinematics_.joint_speeds(limiter_.acceleration());
-  const WheelValues feed_forward = followed_ ? feed_forward_.efforts(limited, limiter_.acceleration()) : WheelValues{};
+  const WheelValues acceleration = kinematics_.joint_speeds(rate);
+  const WheelValues feed_forward = followed_ ? feed_forward_.efforts(limited, rate) : WheelValues{};
   const bool clamped = followed_ && (sensors.gate.reasons & kGateClamps) != 0;
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
@@ -186,6 +216,7 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
     out.joints[i] = effort_command(velocity[i], effort);
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }
+  part_ = followed_ ? affordable_part(feed_forward) : 1.0;
   out.twist_limited = spatial(limited);
 }
 

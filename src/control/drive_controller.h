@@ -9,14 +9,24 @@
 ///     all wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position; the next
 ///     wish ≠ 0 ends it.
 /// What was not asked for ramps with the emergency deceleration: a command that timed out or was refused, more than
-/// one sender where that is forbidden, a ramp permit. Under a ramp permit the wish is zero; under a permit with a speed limit the wish is scaled
-/// until no rim is faster, along the same curve. Joints that are not wheels are always braked.
+/// one sender where that is forbidden, a ramp permit. Under a ramp permit the wish is zero; under a permit with a speed
+/// limit the wish is scaled until no rim is faster, along the same curve. Joints that are not wheels are always braked.
 ///
 /// While the wheels do not follow this controller (it brakes, or the gate reports that tick k−1 was braked) limiter
 /// and wheel loops are seeded with the measured speed, cycle by cycle, so nothing jumps at release: the first torque
 /// is unaccelerated, and the ramp starts once the gate has passed it. The integrators take over what the brake was
 /// holding (the measured effort) while the wheels stand; while they still turn the brake's effort is no load, and the
 /// integrators keep what they last knew.
+///
+/// Saturation keeps the curvature. Speed: the wish, and what a target that changed during a ramp makes of the way
+/// there, are scaled until no wheel exceeds its joint's limit. Torque: with effort_i = rest_i + inertial_i of the last
+/// cycle, inertial_i what feed-forward gives for its acceleration, the limiter may use
+///
+///   part = used·min_i max(effort_limit_i − sign(inertial_i)·rest_i, 0)/|inertial_i|,   kLeastPart ≤ part ≤ 1
+///
+/// of the acceleration limits, where `used` is what it used in that cycle: every wheel slows down its ramp alike, and
+/// no plan runs away from wheels that cannot follow. `rest` holds what the wheels lag behind, so wrong masses and
+/// slopes count, too.
 ///
 /// A state frame that is missing, held or invalid does not stop the drive: the wheel loops need only the encoders.
 /// Skipped cycles: dt = (k − k_previous)·period. After more than kCommandLife the driver has braked by itself.
@@ -77,6 +87,7 @@ class DriveController {
   PlanarTwist wish(const Permit* permit, CommandFrame& out) const noexcept;
   bool slow() const noexcept;
   void follow_measured(const SensorFrame& sensors) noexcept;
+  double affordable_part(const WheelValues& feed_forward) const noexcept;
   void drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept;
 
   double period_;
@@ -89,6 +100,7 @@ class DriveController {
   std::vector<WheelLoop> loops_;             ///< one per wheel; its index is the joint's
   std::optional<std::uint64_t> last_cycle_;  ///< of the last usable sample
   std::optional<WheelValues> last_angle_;    ///< rad, of the sample before; none: the loops start anew
+  double part_ = 1;                          ///< of the acceleration limits, that the wheels' torque allows
   double periods_ = 1;                       ///< between the last two usable samples
   bool driving_ = false;                     ///< the last command was not the brake
   bool holding_ = false;                     ///< kReasonHolding in the last cycle

@@ -15,8 +15,9 @@ double allowed_part(double wish, double limit) noexcept {
   return size > limit ? limit / size : 1.0;
 }
 
-AxisLimits in_force(const MotionLimits& limits, bool emergency) noexcept {
-  return {limits.acceleration, emergency ? limits.emergency_deceleration : limits.deceleration, limits.jerk};
+AxisLimits in_force(const MotionLimits& limits, bool emergency, double part) noexcept {
+  const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
+  return {part * limits.acceleration, part * deceleration, limits.jerk};
 }
 
 /// One axis on its way.
@@ -71,15 +72,26 @@ void SpeedLimiter::seed(const PlanarTwist& twist) noexcept {
   reasons_ = 0;
 }
 
-PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emergency) noexcept {
+double SpeedLimiter::used_part() const noexcept {
+  return std::max(std::abs(acceleration_.linear) / bound_.linear, std::abs(acceleration_.angular) / bound_.angular);
+}
+
+double SpeedLimiter::allowed_part(double part, double dt) const noexcept {
+  if (part >= 1) return 1;
+  const double fading = std::min(limits_.linear.jerk / bound_.linear, limits_.angular.jerk / bound_.angular);
+  return std::clamp(used_part() - fading * dt, part, 1.0);
+}
+
+PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emergency, double wanted_part) noexcept {
   reasons_ = 0;
+  const double part = allowed_part(wanted_part, dt);
   const PlanarTwist goal = within_speed(target, limits_);
   if (goal.linear != target.linear || goal.angular != target.angular) {
     reasons_ |= kReasonSpeedLimited;
     if (target.linear != 0 && target.angular != 0) reasons_ |= kReasonCurvatureKept;
   }
-  const Way linear_way = way(linear_, goal.linear, in_force(limits_.linear, emergency));
-  const Way angular_way = way(angular_, goal.angular, in_force(limits_.angular, emergency));
+  const Way linear_way = way(linear_, goal.linear, in_force(limits_.linear, emergency, part));
+  const Way angular_way = way(angular_, goal.angular, in_force(limits_.angular, emergency, part));
   const bool coupled = limits_.keep_curvature && linear_way.distance > 0 && angular_way.distance > 0;
   const AxisLimits linear_plan = coupled ? together(linear_way, angular_way) : linear_way.own;
   const AxisLimits angular_plan = coupled ? together(angular_way, linear_way) : angular_way.own;
@@ -93,6 +105,7 @@ PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emerge
   linear_ = linear.state;
   angular_ = angular.state;
   acceleration_ = {linear.acceleration, angular.acceleration};
+  bound_ = {linear_way.bound() / part, angular_way.bound() / part};
   return value();
 }
 

@@ -54,21 +54,29 @@ class SpeedLimiter {
   /// Continue from this motion (the measured one), at zero acceleration.
   void seed(const PlanarTwist& twist) noexcept;
 
-  /// `target` finite; `dt` > 0, s. `emergency`: with the emergency deceleration.
-  PlanarTwist step(const PlanarTwist& target, double dt, bool emergency = false) noexcept;
+  /// `target` finite; `dt` > 0, s. `emergency`: with the emergency deceleration. `part`: of every acceleration and
+  /// deceleration limit, > 0, ≤ 1, for a machine that cannot follow more. Less than used_part() is approached at the
+  /// jerk limit of the axis whose limit is the tighter, so that the output stays on its line.
+  PlanarTwist step(const PlanarTwist& target, double dt, bool emergency = false, double part = 1) noexcept;
 
   PlanarTwist value() const noexcept { return {linear_.speed, angular_.speed}; }
   const PlanarTwist& acceleration() const noexcept { return acceleration_; }  ///< of the last step: m/s², rad/s²
+
+  /// How much of the user's limits the last step took: 1 where an axis was at its acceleration or deceleration limit.
+  double used_part() const noexcept;
 
   /// CommandReason bits of the last step: kReasonSpeedLimited, kReasonAccelerationLimited, kReasonJerkLimited,
   /// kReasonJerkYielded, kReasonCurvatureKept.
   std::uint64_t reasons() const noexcept { return reasons_; }
 
  private:
+  double allowed_part(double part, double dt) const noexcept;
+
   SpeedLimits limits_;
   AxisState linear_;
   AxisState angular_;
   PlanarTwist acceleration_;
+  PlanarTwist bound_{.linear = 1, .angular = 1};  ///< the user's, of the last step's accelerations
   std::uint64_t reasons_ = 0;
 };
 

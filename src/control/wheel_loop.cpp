@@ -70,9 +70,9 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
   const bool winds_up = at_limit && (direct + integral) * error > 0;
   if (!winds_up) integral_ = integral;
 
-  const double wanted = direct + integral_;
-  const double effort = std::clamp(wanted, -effort_limit_, effort_limit_);
-  saturated_ = effort != wanted;
+  wanted_ = direct + integral_;
+  const double effort = std::clamp(wanted_, -effort_limit_, effort_limit_);
+  saturated_ = effort != wanted_;
   plans_[1] = plans_[0];
   plans_[0] = plan;
   return effort;

@@ -98,6 +98,8 @@ class WheelLoop {
   double velocity() const noexcept { return tracking_.velocity(); }  ///< rad/s
   double integral() const noexcept { return integral_; }             ///< N·m
   bool saturated() const noexcept { return saturated_; }             ///< the last step was clamped
+  double wanted() const noexcept { return wanted_; }                 ///< N·m, of the last step, before the clamp
+  double effort_limit() const noexcept { return effort_limit_; }     ///< N·m
 
  private:
   WheelLoopGains gains_;
@@ -106,6 +108,7 @@ class WheelLoop {
   TrackingLoop tracking_;
   std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
   double integral_ = 0;
+  double wanted_ = 0;                         ///< N·m, the last effort before the clamp
   double load_ = 0;                           ///< N·m, integral at the last hand-over
   double surprise_ = 0;                       ///< N·m, what the measured torque told the tracking loop last
   std::optional<WheelLoopGains> last_gains_;  ///< those of the last step, where others hold since

@@ -244,7 +244,7 @@ TEST_F(DriveControllerTest, SaysThatATorqueIsAtItsLimitAndDoesNotOvershootForIt)
   bench.send(0.5, 0);
   bench.run(0.2);
   EXPECT_TRUE(bench.command.reasons & kReasonSaturated);
-  EXPECT_EQ(bench.command.joints[0].effort, 0.4);
+  EXPECT_NEAR(bench.command.joints[0].effort, 0.4, 1e-6);
   double fastest = 0;
   for (int k = 0; k < 1000; ++k) {
     bench.step();

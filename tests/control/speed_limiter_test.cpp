@@ -231,5 +231,32 @@ TEST(SpeedLimiter, ReturnsFromLimitsThatWereLowered) {
   EXPECT_EQ(before, 0.4);
 }
 
+// A machine that follows a part of the acceleration only, another one in every cycle.
+TEST(SpeedLimiter, APartOfTheLimitsKeepsLineAndJerk) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> part(0.01, 1);
+    SpeedLimiter limiter(kSmooth);
+    PlanarTwist last;
+    for (int k = 0; k < 6000; ++k) {
+      const PlanarTwist goal = k < 3000 ? PlanarTwist{0.9, 1.5} : PlanarTwist{};
+      limiter.step(goal, kDt, false, part(random));
+      ASSERT_NEAR(1.5 * limiter.value().linear, 0.9 * limiter.value().angular, 1e-12) << "seed " << seed;
+      const PlanarTwist& a = limiter.acceleration();
+      ASSERT_LE(std::abs(a.linear - last.linear), kSmooth.linear.jerk * kDt * (1 + 1e-9)) << "seed " << seed;
+      ASSERT_LE(std::abs(a.angular - last.angular), kSmooth.angular.jerk * kDt * (1 + 1e-9)) << "seed " << seed;
+      last = a;
+    }
+    ASSERT_EQ(limiter.value().linear, 0.0) << "seed " << seed;
+  }
+}
+
+TEST(SpeedLimiter, HalfOfTheLimitsTakesTwiceAsLong) {
+  SpeedLimiter limiter(kLimits);
+  for (int k = 1; k <= 2000; ++k) limiter.step({1, 0}, kDt, false, 0.5);
+  EXPECT_NEAR(limiter.value().linear, 1, 1e-12);  // 2000 roundings
+  EXPECT_NEAR(limiter.used_part(), 0.5, 1e-9);
+}
+
 }  // namespace
 }  // namespace robot_control
