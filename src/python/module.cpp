@@ -144,6 +144,16 @@ PYBIND11_MODULE(_robot_control, module) {
       },
       py::arg("path"), py::arg("values"));
   module.def(
+      "derived_wheel_loops",
+      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+        Parameters parameters = parameters_from(path, values);
+        parameters.controller.pid_kp.reset();
+        parameters.controller.pid_ki.reset();
+        parameters.controller.pid_kd = 0;
+        return wheel_loops(parameters, robot_of(parameters));
+      },
+      py::arg("path"), py::arg("values"));
+  module.def(
       "spectral_radius",
       [](double kp, double ki, double kd, double model_inertia, double inertia, double damping, double period,
          double bandwidth, unsigned delay) {
@@ -177,6 +187,7 @@ PYBIND11_MODULE(_robot_control, module) {
       .def("e_stop_reset", &ClosedLoop::e_stop_reset)
       .def("heartbeat", &ClosedLoop::heartbeat)
       .def("reset", &ClosedLoop::reset)
+      .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
       .def("run", &run, py::arg("cycles"), py::arg("command"))
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })

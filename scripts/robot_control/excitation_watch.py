@@ -1,0 +1,116 @@
+"""Whether a robot that is being identified may go on: pure, asked before every command."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+SILENCE = 1.0
+"""s without odometry or safety_status (each comes at least once per second); beyond, nobody looks after the robot"""
+MARGIN = 0.1
+"""m around the plan's way: tracking, odometry and a late command"""
+ANSWER = 2.0
+"""s of motion asked for after which a robot that stands has refused"""
+STANDING = 0.01
+"""m/s and rad/s; a fifth of the slowest move"""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """In odom."""
+
+    x: float  # m
+    y: float  # m
+    yaw: float  # rad
+
+    def seen_from(self, start: Pose) -> tuple[float, float]:
+        """m ahead of and to the left of `start`."""
+        dx, dy = self.x - start.x, self.y - start.y
+        cosine, sine = math.cos(start.yaw), math.sin(start.yaw)
+        return cosine * dx + sine * dy, cosine * dy - sine * dx
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is known of the robot now; None: never heard."""
+
+    pose: Pose | None
+    linear: float  # m/s
+    angular: float  # rad/s
+    pose_age: float  # s
+    state: str  # of SafetyStatus; empty: never heard
+    status_age: float  # s
+    sentences: Sequence[str]  # why it is stopped
+    missing: Sequence[str]
+    speed_limit: float  # m/s
+    senders: Sequence[str]  # others on cmd_vel
+
+
+def moves(look: Look) -> bool:
+    """By odometry."""
+    return abs(look.linear) > STANDING or abs(look.angular) > STANDING
+
+
+def hindrance(look: Look) -> str:
+    """Why it cannot be begun; empty: it can."""
+    if not look.state:
+        return "no safety_status: does safety_monitor run? Start the robot (roslaunch robot_control sim.launch) first"
+    if look.pose is None:
+        return "no odometry: does state_estimator run? Start the robot first"
+    if look.senders:
+        return f"{', '.join(look.senders)} may send on cmd_vel, too: two senders would pull at one robot. End it first"
+    if moves(look):
+        return f"the robot moves ({look.linear:.2f} m/s, {look.angular:.2f} rad/s); wait until it stands"
+    if math.isfinite(look.speed_limit):
+        return (
+            f"the speed is limited to {look.speed_limit:.2g} m/s by warnings or `clearance`; rosrun robot_control "
+            "why.py says by which. What is limited is not driven as planned"
+        )
+    return _stopped(look)
+
+
+def interruption(look: Look, start: Pose, reach: float, unanswered: float) -> str:
+    """Why it must end now; empty: go on.
+
+    Args:
+        look: now.
+        start: where it began.
+        reach: m, the plan's.
+        unanswered: s of motion asked for since it moved last.
+    """
+    return _unwatched(look) or _stopped(look) or _astray(look, start, reach, unanswered)
+
+
+def _unwatched(look: Look) -> str:
+    if look.pose is None or look.pose_age > SILENCE:
+        return f"no odometry for {SILENCE:g} s: nobody knows where the robot is"
+    if look.status_age > SILENCE + 1.0:  # published once per second where nothing changes
+        return f"no safety_status for {SILENCE + 1.0:g} s: safety_monitor or its link is gone"
+    return ""
+
+
+def _astray(look: Look, start: Pose, reach: float, unanswered: float) -> str:
+    if look.senders:
+        return f"{', '.join(look.senders)} has begun to send on cmd_vel"
+    if look.pose is None:
+        return ""
+    ahead, left = look.pose.seen_from(start)
+    if not (-MARGIN <= ahead <= reach + MARGIN and abs(left) <= MARGIN):
+        return (
+            f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, beyond the plan's "
+            f"{reach:.2f} m ± {MARGIN:g} m"
+        )
+    if unanswered > ANSWER:
+        return f"the robot was asked to move for {unanswered:.0f} s and stands; rosrun robot_control why.py says why"
+    return ""
+
+
+def _stopped(look: Look) -> str:
+    if look.state in ("READY", "DRIVE"):
+        return ""
+    why = "; ".join(look.sentences) or (
+        f"waiting for {', '.join(look.missing)}" if look.missing else "no cause is told"
+    )
+    remedy = "start what is missing" if look.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
+    return f"the robot is {look.state}: {why}; {remedy}"

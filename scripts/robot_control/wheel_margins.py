@@ -1,0 +1,97 @@
+"""How much a wheel loop bears: more gain, more delay, by the eigenvalues of src/control/wheel_loop_stability.h."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from robot_control._robot_control import spectral_radius
+
+MOST_DELAY = 60
+"""Cycles, looked for"""
+MOST_GAIN = 64.0
+"""Factor, looked for"""
+GAIN_STEPS = 12
+"""Halvings of that in the logarithm: 0.1 %"""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Gains and what they hold: a wheel's loop."""
+
+    kp: float  # N·m·s/rad
+    ki: float  # N·m/rad
+    kd: float  # N·m·s²/rad
+    model_inertia: float  # kg·m²
+    bandwidth: float  # Hz
+    period: float  # s
+    inertias: tuple[float, ...]  # kg·m²: lifted, turning, straight, straight with the mass doubled
+    damping: float  # N·m·s/rad
+
+    def radius(self, delay: int) -> float:
+        """The worst spectral radius of all inertias, `delay` cycles beyond the bus' one."""
+        worst: float = max(
+            spectral_radius(
+                kp=self.kp,
+                ki=self.ki,
+                kd=self.kd,
+                model_inertia=self.model_inertia,
+                inertia=inertia,
+                damping=self.damping,
+                period=self.period,
+                bandwidth=self.bandwidth,
+                delay=delay,
+            )
+            for inertia in self.inertias
+        )
+        return worst
+
+    def scaled(self, kp: float, ki: float) -> Loop:
+        """kp and kd times `kp`, ki times `ki`."""
+        return replace(self, kp=kp * self.kp, ki=ki * self.ki, kd=kp * self.kd)
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Of a loop behind a delay."""
+
+    radius: float
+    """Spectral radius; below 1: stable"""
+    gain: float
+    """All gains together may be multiplied by it; at most MOST_GAIN, 0 where the loop is unstable already"""
+    delay: int
+    """Cycles beyond the bus' one that it bears; −1: not even that"""
+
+
+def margins(loop: Loop, delay: int) -> Margins:
+    """Of `loop` behind `delay` cycles beyond the bus' one."""
+    return Margins(loop.radius(delay), gain_margin(loop, delay), delay_margin(loop))
+
+
+def gain_margin(loop: Loop, delay: int) -> float:
+    """The factor on all gains at which the loop becomes unstable."""
+
+    def stable(factor: float) -> bool:
+        return loop.scaled(factor, factor).radius(delay) < 1
+
+    if not stable(1.0):
+        return 0.0
+    return _last(stable, 1.0, MOST_GAIN)
+
+
+def delay_margin(loop: Loop) -> int:
+    """The most cycles n for which the loop is stable behind 0 … n."""
+    for delay in range(MOST_DELAY + 1):
+        if not loop.radius(delay) < 1:
+            return delay - 1
+    return MOST_DELAY
+
+
+def _last(holds: Callable[[float], bool], low: float, high: float) -> float:
+    """Where `holds`, true at `low`, ends; `high` where it does not."""
+    if holds(high):
+        return high
+    for _ in range(GAIN_STEPS):
+        middle = (low * high) ** 0.5
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low
