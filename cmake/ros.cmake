@@ -8,7 +8,7 @@ find_package(catkin REQUIRED COMPONENTS
   tf2_msgs)
 
 catkin_python_setup()
-add_message_files(FILES SafetyStatus.msg)
+add_message_files(FILES DriveState.msg SafetyStatus.msg)
 add_service_files(FILES InjectFault.srv Step.srv)
 generate_messages(DEPENDENCIES std_msgs)
 catkin_package(CATKIN_DEPENDS message_runtime std_msgs)

@@ -90,6 +90,11 @@ class Facts:
         """Likewise."""
         return self.reports[node].reasons(whose) if self.there(node) else {}
 
+    def commanders(self) -> tuple[str, ...]:
+        """Who sends commands: by what the controller hears, where it speaks; else by registrations."""
+        heard = self.value(CONTROLLER, "senders")
+        return tuple(heard.split(", ")) if heard else self.senders
+
     def path(self, name: str) -> str:
         """The absolute name of a topic or service."""
         return f"{self.namespace.rstrip('/')}/{name}"
@@ -130,13 +135,16 @@ def missing_nodes(facts: Facts) -> tuple[str, ...]:
     return tuple(node for node in LOOP if node in safety.missing)
 
 
-def senders_in_words(senders: tuple[str, ...]) -> str:
+def senders_in_words(facts: Facts) -> str:
     """Who publishes on cmd_vel."""
+    senders = facts.commanders()
     if not senders:
         return "nobody"
     if len(senders) == 1:
         return senders[0]
-    return f"{', '.join(senders)} ({len(senders)} senders: each message overrides the one before)"
+    refused = "many_senders" in facts.reasons(CONTROLLER, "command")
+    consequence = "all are refused" if refused else "each message overrides the one before"
+    return f"{', '.join(senders)} ({len(senders)} senders: {consequence})"
 
 
 def _launch(facts: Facts) -> str:
@@ -277,7 +285,14 @@ def _controller(facts: Facts) -> Answer | None:
             return Answer(
                 Verdict.STOPPED, f"The controller brakes: {bare(reasons[name])}.", (("", remedy_of(reasons[name])),)
             )
-    for name in ("refused", "timed_out", "no_command"):
+    if "many_senders" in reasons:
+        return Answer(
+            Verdict.STOPPED,
+            f"Commands are refused: {bare(reasons['many_senders'])}.",
+            (("operator", f"{remedy_of(reasons['many_senders'])} of {', '.join(facts.commanders())}"),),
+        )
+    silent = "timed_out" in reasons or "no_command" in reasons
+    for name in ("refused", *(["stale"] if silent else []), "timed_out", "no_command"):
         if name not in reasons:
             continue
         text = bare(reasons[name])
@@ -296,7 +311,7 @@ def _controller(facts: Facts) -> Answer | None:
         return Answer(
             Verdict.IDLE,
             "It may move, but is told to stand: cmd_vel is zero.",
-            (("operator", f"publishing on cmd_vel: {senders_in_words(facts.senders)}"),),
+            (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),),
         )
     return None
 

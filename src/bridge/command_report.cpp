@@ -6,6 +6,8 @@
 namespace robot_control {
 namespace {
 
+constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
+
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
   std::array<char, 200> text{};
@@ -41,9 +43,10 @@ std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
     told_ = refusing_ = false;
   }
   const bool timed_out = command.timeouts > timeouts_;
-  const bool refused = command.requests_refused > refused_;
+  const std::uint64_t not_finite = command.requests_refused - command.requests_stale - command.requests_crowded;
+  const bool refused = not_finite > refused_;
   const bool received = command.requests_received > received_;
-  const bool valid = (command.reasons & (kReasonNoCommand | kReasonTimedOut | kReasonRefused)) == 0;
+  const bool valid = (command.reasons & kNoWish) == 0;
   if (timed_out && told_ && (linear_ != 0 || angular_ != 0)) {
     lines.push_back({true, format("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
     told_ = false;
@@ -65,7 +68,7 @@ std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
     angular_ = angular;
   }
   received_ = command.requests_received;
-  refused_ = command.requests_refused;
+  refused_ = not_finite;
   timeouts_ = command.timeouts;
   return lines;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// What the controller tells about the commands it received: every changed value with the wheel speeds it leads to,
 /// those after the speed limits where it lies above them; one warning per timeout that stopped a motion, one per series
-/// of refused (NaN, infinite) messages. Pure.
+/// of refused (NaN, infinite) messages. What is refused for its stamp or its sender is told by command_input.h. Pure.
 
 #include <cstdint>
 #include <string>
@@ -35,7 +35,7 @@ class CommandReport {
   double timeout_;  ///< s
   std::uint64_t run_ = 0;
   std::uint64_t received_ = 0;
-  std::uint64_t refused_ = 0;
+  std::uint64_t refused_ = 0;  ///< NaN, infinite
   std::uint64_t timeouts_ = 0;
   bool told_ = false;  ///< `linear_` and `angular_` were told
   bool refusing_ = false;

@@ -6,6 +6,15 @@
 #include "signals/names.h"
 
 namespace robot_control {
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
 
 DiagnosticReport::DiagnosticReport(const std::string& node, const std::string& hardware) {
   message_.level = msg::DiagnosticStatus::OK;
@@ -41,8 +50,7 @@ void DiagnosticReport::raise(msg::DiagnosticStatus::_level_type level, const std
 }
 
 void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing) {
-  std::string names;
-  for (const std::string& name : missing) names += (names.empty() ? "" : ", ") + name;
+  const std::string names = joined(missing);
   if (!names.empty()) report.warn("waiting for " + names);
   report.value("waiting_for", names);
 }
@@ -77,11 +85,19 @@ void report_state(DiagnosticReport& report, const StateFrame& state) {
   report.value("skipped", state.skipped);
 }
 
-void report_command(DiagnosticReport& report, const CommandFrame& command) {
+void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
+                    const std::vector<std::string>& senders) {
+  constexpr std::uint64_t kRefusals = kReasonRefused | kReasonStale | kReasonManySenders;
+  if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals));
+  if (senders.size() > 1) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
   report.value("reasons", names_of(kCommandReasonNames, command.reasons));
+  report.value("reasons_lately", names_of(kCommandReasonNames, lately));
+  report.value("senders", joined(senders));
   report.value("commands_received", command.requests_received);
   report.value("commands_refused", command.requests_refused);
+  report.value("commands_stale", command.requests_stale);
+  report.value("commands_of_too_many_senders", command.requests_crowded);
   report.value("timeouts", command.timeouts);
   report.value("requested_m_s", command.twist_requested.linear[0]);
   report.value("requested_rad_s", command.twist_requested.angular[2]);

@@ -42,7 +42,9 @@ void report_missing(DiagnosticReport& report, const std::vector<std::string>& mi
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor);
 void report_state(DiagnosticReport& report, const StateFrame& state);
-void report_command(DiagnosticReport& report, const CommandFrame& command);
+/// `lately`: CommandReason bits of any cycle since the last report; `senders` of commands, by name.
+void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
+                    const std::vector<std::string>& senders);
 void report_permit(DiagnosticReport& report, const Permit& permit);
 
 }  // namespace robot_control

@@ -2,14 +2,18 @@
 
 #include <ros/ros.h>
 
+#include <atomic>
 #include <mutex>
+#include <utility>
 
+#include "bridge/command_input.h"
 #include "bridge/command_report.h"
 #include "bridge/diagnostics.h"
 #include "bridge/input_topic.h"
 #include "bridge/motion_messages.h"
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
+#include "bridge/reason_history.h"
 #include "runtime/controller_process.h"
 
 namespace robot_control {
@@ -18,14 +22,23 @@ namespace {
 class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
  public:
   explicit DiffDriveControllerNode(const Setup& setup)
-      : ProcessNode(setup), pace_(report().command_rate), command_report_(robot(), parameters().controller) {}
+      : ProcessNode(setup),
+        input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
+        pace_(report().command_rate),
+        command_report_(robot(), parameters().controller) {}
 
   void connect(ros::NodeHandle& handle) override {
     joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
-    cmd_vel_.connect(handle, [this](const msg::Twist& message) { receive(message); });
-    cmd_vel_stamped_.connect(handle, [this](const msg::TwistStamped& message) { receive(message.twist); });
+    drive_state_ = handle.advertise<msg::DriveState>("drive_state", 10);
+    cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const std::string& sender) {
+      receive({.sender = sender, .twist = twist_of(message)});
+    });
+    cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const std::string& sender) {
+      const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
+      receive({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
+    });
   }
 
   std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {report().command_rate}); }
@@ -33,30 +46,59 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   void publish() override {
     SensorFrame sensors;
     if (process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head)) return;
+    loop_ns_.store(sensors.head.stamp_ns);
+    look_at_senders();
     if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
     const FrameHead& head = command_.head;
+    const std::uint64_t reasons = history_.look(process().output(), command_);
+    since_message_ |= reasons;
+    since_report_ |= reasons;
     time().follow(sensors);
     if (!pace_.due(head.run, head.stamp_ns)) return;
     const ros::Time stamp = time().at(head.stamp_ns);
     joint_commands_.publish(joint_commands(command_, robot()));
     joint_targets_.publish(joint_targets(command_, robot(), stamp));
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
-    tell();
+    drive_state_.publish(drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp));
+    tell(command_report_.look(command_));
   }
 
-  void diagnose(DiagnosticReport& report) override { report_command(report, command_); }
+  void diagnose(DiagnosticReport& report) override {
+    const std::lock_guard lock(input_mutex_);
+    report_command(report, command_, std::exchange(since_report_, 0), input_.senders(loop_ns_.load()));
+  }
 
  private:
   /// Two topics, two threads, one inbox.
-  void receive(const msg::Twist& message) {
-    const std::lock_guard lock(received_mutex_);
-    received_.twist = twist_of(message);
-    ++received_.count;
-    process().cycle().inbox().store(received_);
+  void receive(const ArrivedCommand& arrived) {
+    const std::lock_guard lock(input_mutex_);
+    const std::int64_t loop_ns = loop_ns_.load();
+    const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
+    const std::int64_t ros_ns = lockstep ? loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+    input_.hear(arrived, {.ros_ns = ros_ns, .loop_ns = loop_ns});
+    process().cycle().inbox().store(input_.value());
   }
 
-  void tell() {
-    for (const ReportLine& line : command_report_.look(command_)) {
+  void look_at_senders() {
+    std::vector<ReportLine> lines;
+    {
+      const std::lock_guard lock(input_mutex_);
+      if (input_.look(loop_ns_.load())) process().cycle().inbox().store(input_.value());
+      lines = input_.lines();
+    }
+    tell(lines);
+  }
+
+  /// What the wheels do now was planned two cycles ago; while that is not known, nothing was.
+  CommandFrame plan() {
+    CommandFrame plan;
+    const FrameHead& head = command_.head;
+    const bool found = head.cycle >= 2 && process().output().at(head.run, head.cycle - 2, plan) == Lookup::kFrame;
+    return found ? plan : CommandFrame{};
+  }
+
+  static void tell(const std::vector<ReportLine>& lines) {
+    for (const ReportLine& line : lines) {
       if (line.warning) {
         ROS_WARN("%s", line.text.c_str());
       } else {
@@ -70,11 +112,16 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   ros::Publisher velocity_out_;
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
-  std::mutex received_mutex_;
-  VelocityCommand received_;
+  ros::Publisher drive_state_;
+  std::atomic<std::int64_t> loop_ns_{0};  ///< stamp of the newest sensor frame
+  std::mutex input_mutex_;
+  CommandInput input_;
   Pacer pace_;
   CommandReport command_report_;
   CommandFrame command_;
+  ReasonHistory history_;
+  std::uint64_t since_message_ = 0;  ///< CommandReason bits since the last drive_state
+  std::uint64_t since_report_ = 0;   ///< likewise, of /diagnostics
 };
 
 }  // namespace

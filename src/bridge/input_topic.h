@@ -29,14 +29,23 @@ class InputTopic {
   void connect(
       ros::NodeHandle& handle, const std::function<void(const Message&)>& hear,
       const std::function<void()>& malformed = [] {}) {
-    subscriber_ = handle.subscribe<BoundedMessage>(
-        name_, queue_,
-        [this, hear, malformed](const typename BoundedMessage::ConstPtr& heard) {
-          if (heard->accepted) return hear(heard->message);
-          malformed();
-          tell();
-        },
-        nullptr, ros::TransportHints().tcpNoDelay());
+    connect_with_sender(
+        handle, [hear](const Message& message, const std::string&) { hear(message); }, malformed);
+  }
+
+  /// The same with the name of the node that published it.
+  void connect_with_sender(
+      ros::NodeHandle& handle, const std::function<void(const Message&, const std::string&)>& hear,
+      const std::function<void()>& malformed = [] {}) {
+    using Event = ros::MessageEvent<const BoundedMessage>;
+    const boost::function<void(const Event&)> callback = [this, hear, malformed](const Event& event) {
+      const BoundedMessage& heard = *event.getConstMessage();
+      if (heard.accepted) return hear(heard.message, event.getPublisherName());
+      malformed();
+      tell();
+    };
+    subscriber_ = handle.subscribe<BoundedMessage, const Event&>(name_, queue_, callback, nullptr,
+                                                                 ros::TransportHints().tcpNoDelay());
   }
 
  private:

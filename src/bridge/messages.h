@@ -8,6 +8,7 @@
 #include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <nav_msgs/Odometry.h>
+#include <robot_control/DriveState.h>
 #include <robot_control/SafetyStatus.h>
 #include <ros/service_traits.h>
 #include <rosgraph_msgs/Clock.h>
@@ -47,6 +48,7 @@ using Allocator = MessageAllocator<void>;
 using Bool = std_msgs::Bool_<Allocator>;
 using Clock = rosgraph_msgs::Clock_<Allocator>;
 using DiagnosticArray = diagnostic_msgs::DiagnosticArray_<Allocator>;
+using DriveState = robot_control::DriveState_<Allocator>;
 using DiagnosticStatus = diagnostic_msgs::DiagnosticStatus_<Allocator>;
 using Empty = std_msgs::Empty_<Allocator>;
 using Float64 = std_msgs::Float64_<Allocator>;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "signals/names.h"
+
 namespace robot_control {
 namespace {
 
@@ -116,6 +118,27 @@ msg::JointState joint_targets(const CommandFrame& command, const RobotModel& rob
   for (const WheelModel& wheel : robot.wheels) {
     message.name.push_back(robot.joints[wheel.joint].name);
     message.velocity.push_back(command.joints[wheel.joint].velocity);
+  }
+  return message;
+}
+
+msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
+                            const RobotModel& robot, ros::Time stamp) {
+  msg::DriveState message;
+  message.header.stamp = stamp;
+  for (const BitName& row : kCommandReasonNames) {
+    if ((reasons & row.bit) == 0) continue;
+    message.reasons.emplace_back(row.name);
+    message.sentences.push_back(sentences_of({&row, 1}, row.bit));
+  }
+  for (const WheelModel& wheel : robot.wheels) {
+    const double wanted = plan.joints[wheel.joint].velocity;
+    const double actual = command.velocity_measured[wheel.joint];
+    message.name.push_back(robot.joints[wheel.joint].name);
+    message.wanted.push_back(wanted);
+    message.actual.push_back(actual);
+    message.error.push_back(wanted - actual);
+    message.effort.push_back(command.joints[wheel.joint].effort);
   }
   return message;
 }

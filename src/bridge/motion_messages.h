@@ -43,4 +43,9 @@ msg::JointState joint_targets(const CommandFrame& command, const RobotModel& rob
 /// After limits.
 msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp);
 
+/// `plan`: the command two cycles before `command`, whose targets are what an ideal wheel does now (wheel_loop.h).
+/// `reasons`: CommandReason bits. The brake wants standstill.
+msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
+                            const RobotModel& robot, ros::Time stamp);
+
 }  // namespace robot_control

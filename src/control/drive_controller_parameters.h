@@ -28,6 +28,7 @@ struct DriveControllerParameters {
   double max_angular_jerk = 40.0;                   ///< rad/s³; 0: no limit
   bool keep_curvature = true;                       ///< on the way to a new command both axes arrive together
   double cmd_vel_timeout = 1.25;                    ///< s; 0 = never
+  bool one_sender = false;                          ///< true: no command counts while more than one node sends
   std::optional<double> pid_kp;                     ///< N·m·s/rad
   std::optional<double> pid_ki;                     ///< N·m/rad
   double pid_kd = 0.0;                              ///< N·m·s²/rad

@@ -114,6 +114,21 @@ TEST_F(CommandReportTest, WarnsOncePerSeriesOfRefusals) {
   EXPECT_EQ(refuse().size(), 1u);
 }
 
+TEST_F(CommandReportTest, LeavesStampsAndSendersToTheirOwnWarnings) {
+  receive(0.5, 0.2);
+  ++frame_.requests_received;
+  ++frame_.requests_refused;
+  ++frame_.requests_stale;
+  frame_.reasons = kReasonStale;
+  EXPECT_THAT(report().look(frame_), IsEmpty()) << "the command before it stands";
+  ++frame_.requests_received;
+  ++frame_.requests_refused;
+  ++frame_.requests_crowded;
+  frame_.reasons = kReasonManySenders;
+  frame_.twist_requested = {};
+  EXPECT_THAT(report().look(frame_), IsEmpty()) << "no zero was commanded";
+}
+
 TEST_F(CommandReportTest, BeginsAnewWithARun) {
   receive(0.5, 0.2);
   frame_ = {};

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "signals/names.h"
+
 namespace robot_control {
 namespace {
 
@@ -59,12 +61,41 @@ TEST(CommandReasons, AreEachAValueInWords) {
   command.reasons = kReasonTimedOut | kReasonHolding;
   command.twist_requested.linear[0] = 0.5;
   DiagnosticReport report("diff_drive_controller", "diffbot");
-  report_command(report, command);
+  report_command(report, command, command.reasons, {});
   EXPECT_EQ(value_of(report, "reasons"), "timed_out holding");
   EXPECT_THAT(value_of(report, "command: timed_out"), HasSubstr("older than cmd_vel_timeout (publish on cmd_vel"));
   EXPECT_EQ(value_of(report, "command: holding"), "standing with zero command: the brake holds the position");
   EXPECT_EQ(value_of(report, "command: no_command"), "(none)");
   EXPECT_EQ(value_of(report, "requested_m_s"), "0.5");
+}
+
+TEST(CommandReasons, OfAMomentAreTold) {
+  DiagnosticReport report("diff_drive_controller", "diffbot");
+  report_command(report, {}, kReasonJerkYielded | kReasonSaturated, {});
+  EXPECT_EQ(value_of(report, "reasons"), "");
+  EXPECT_EQ(value_of(report, "reasons_lately"), "saturated jerk_yielded");
+  EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+}
+
+TEST(CommandReasons, ThatRefuseCommandsWarn) {
+  for (const std::uint64_t bit : {kReasonRefused, kReasonStale, kReasonManySenders}) {
+    DiagnosticReport report("diff_drive_controller", "diffbot");
+    report_command(report, {}, bit, {});
+    EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+    EXPECT_THAT(report.message().message, HasSubstr(sentences_of(kCommandReasonNames, bit)));
+  }
+}
+
+TEST(CommandSenders, AreAValueAndWarnWhereThereIsMoreThanOne) {
+  DiagnosticReport one("diff_drive_controller", "diffbot");
+  report_command(one, {}, 0, {"/teleop"});
+  EXPECT_EQ(value_of(one, "senders"), "/teleop");
+  EXPECT_EQ(one.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+  DiagnosticReport two("diff_drive_controller", "diffbot");
+  report_command(two, {}, 0, {"/navigation", "/teleop"});
+  EXPECT_EQ(value_of(two, "senders"), "/navigation, /teleop");
+  EXPECT_EQ(two.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_THAT(two.message().message, HasSubstr("/navigation, /teleop"));
 }
 
 TEST(GateReasons, AreEachAValueInWords) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "signals/names.h"
+
 namespace robot_control {
 namespace {
 
@@ -115,6 +117,34 @@ TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {
   EXPECT_EQ(message.header.frame_id, "base_link");
   EXPECT_EQ(message.twist.linear.x, 0.5);
   EXPECT_EQ(message.twist.angular.z, 0.2);
+}
+
+TEST_F(MotionMessagesTest, DriveStateComparesTheWheelsWithThePlanOfTwoCyclesBefore) {
+  CommandFrame plan;
+  plan.joints[0] = {.mode = JointMode::kEffort, .velocity = 4.5};
+  plan.joints[1] = {.mode = JointMode::kEffort, .velocity = 5.5};
+  command_.joints[0] = {.mode = JointMode::kEffort, .velocity = 9, .effort = 0.25};
+  command_.joints[1] = {.mode = JointMode::kEffort, .velocity = 9, .effort = -0.5};
+  command_.velocity_measured = {4.25, 5.75, 99};
+  const msg::DriveState message = drive_state(command_, plan, 0, robot_, stamp_);
+  EXPECT_EQ(message.header.stamp, stamp_);
+  EXPECT_THAT(message.name, ElementsAre("left", "right"));
+  EXPECT_THAT(message.wanted, ElementsAre(4.5, 5.5));
+  EXPECT_THAT(message.actual, ElementsAre(4.25, 5.75));
+  EXPECT_THAT(message.error, ElementsAre(0.25, -0.25));
+  EXPECT_THAT(message.effort, ElementsAre(0.25, -0.5));
+  EXPECT_THAT(message.reasons, testing::IsEmpty());
+  EXPECT_THAT(message.sentences, testing::IsEmpty());
+}
+
+TEST_F(MotionMessagesTest, DriveStateTellsEveryReasonWithSentenceAndRemedy) {
+  for (const BitName& row : kCommandReasonNames) {
+    const msg::DriveState message = drive_state(command_, command_, row.bit, robot_, stamp_);
+    EXPECT_THAT(message.reasons, ElementsAre(std::string(row.name)));
+    ASSERT_EQ(message.sentences.size(), 1u);
+    EXPECT_THAT(message.sentences[0], testing::StartsWith(std::string(row.sentence)));
+    EXPECT_THAT(message.sentences[0], testing::HasSubstr(std::string(row.remedy)));
+  }
 }
 
 TEST_F(MotionMessagesTest, TwistKeepsAllSixAxes) {

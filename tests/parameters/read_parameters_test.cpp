@@ -175,6 +175,7 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
                                                   {"mujoco_plant.contact_sensors", "true"},
                                                   {"robot.fail_action", "coast"},
                                                   {"diff_drive_controller.keep_curvature", "yes"},
+                                                  {"diff_drive_controller.one_sender", "yes"},
                                                   {"safety_monitor.standstill_speed", "0.5"},
                                                   {"state_estimator.publish_tf", "no"},
                                                   {"state_estimator.odom_frame", "odom"},

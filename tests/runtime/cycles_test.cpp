@@ -102,6 +102,27 @@ TEST_F(RunningLoop, ForgetsTheCommandInANewRun) {
   EXPECT_EQ(loop.newest_command().requests_received, 0u);
 }
 
+TEST_F(RunningLoop, TakesAgeAndRefusalsFromTheInbox) {
+  VelocityCommand command{.twist = kForward, .count = 2};
+  command.age_ns = 1'249 * kPeriodNs;  // of the default timeout's 1250
+  loop.controller->inbox().store(command);
+  loop.steps(2);
+  EXPECT_EQ(loop.newest_command().reasons & kReasonTimedOut, 0u);
+  loop.step();
+  EXPECT_NE(loop.newest_command().reasons & kReasonTimedOut, 0u);
+  command.stale = 3;
+  command.crowded = 4;
+  command.many_senders = 1;
+  loop.controller->inbox().store(command);
+  loop.step();
+  EXPECT_NE(loop.newest_command().reasons & kReasonStale, 0u);
+  EXPECT_NE(loop.newest_command().reasons & kReasonManySenders, 0u);
+  EXPECT_EQ(loop.newest_command().requests_refused, 7u);
+  loop.driver.begin_run(2);
+  loop.steps(3);
+  EXPECT_EQ(loop.newest_command().requests_refused, 0u);
+}
+
 TEST_F(RunningLoop, KeepsALatchInANewRun) {
   loop.monitor->inbox().store({.e_stop_services = 1});
   loop.steps(2);

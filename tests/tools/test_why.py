@@ -193,6 +193,46 @@ def test_a_silent_sender_is_named(driving):
     assert answer.actions == (("operator", "look at /send_cmd: publish more often"),)
 
 
+def test_many_senders_are_named_where_one_sender_forbids_them(driving):
+    facts = saying(
+        driving,
+        CONTROLLER,
+        senders="/teleop, /navigation",
+        requested_m_s="0",
+        requested_rad_s="0",
+        command__many_senders="more than one node sends commands, which one_sender forbids (stop all but one)",
+    )
+    answer = judge(replace(facts, measured=(0.0, 0.0)))
+    assert answer.verdict is Verdict.STOPPED
+    assert answer.headline == "Commands are refused: more than one node sends commands, which one_sender forbids."
+    assert answer.actions == (("operator", "stop all but one of /teleop, /navigation"),)
+    assert "(2 senders: all are refused)" in text(facts)
+
+
+def test_who_is_heard_counts_and_not_who_merely_registered(driving):
+    facts = saying(replace(driving, senders=("/idle", "/send_cmd")), CONTROLLER, senders="/send_cmd")
+    assert "published by /send_cmd\n" in text(facts)
+
+
+def test_a_sender_with_a_wrong_clock_is_told_as_such(driving):
+    facts = saying(
+        driving,
+        CONTROLLER,
+        command__no_command="nothing was received on cmd_vel in this run (publish on cmd_vel)",
+        command__stale="the last cmd_vel_stamped was older than cmd_vel_timeout (synchronise the sender's clock)",
+    )
+    answer = judge(replace(facts, measured=(0.0, 0.0)))
+    assert answer.verdict is Verdict.IDLE
+    assert "the last cmd_vel_stamped was older" in answer.headline
+    assert answer.actions == (("operator", "look at /send_cmd: synchronise the sender's clock"),)
+
+
+def test_one_stale_message_does_not_hide_that_it_moves(driving):
+    facts = saying(driving, CONTROLLER, command__stale="the last cmd_vel_stamped was older than cmd_vel_timeout")
+    assert judge(facts).verdict is Verdict.MOVING
+    assert "the last cmd_vel_stamped was older" in text(facts)
+
+
 def test_zero_on_cmd_vel_is_told_as_such(driving):
     facts = saying(driving, CONTROLLER, command__holding="standing with zero command: the brake holds the position")
     answer = judge(replace(facts, limited=(0.0, 0.0), measured=(0.0, 0.0)))

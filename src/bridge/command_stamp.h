@@ -1,0 +1,34 @@
+#pragma once
+/// The stamp of a command, judged once, when it arrives.
+///
+///   age = arrival − stamp   both on the sender's clock, the time of day or /clock; a stamp of 0 is none: age 0
+///
+/// Usable: −kClockSkew ≤ age ≤ timeout; an age below zero counts as zero, so that no command outlives the timeout.
+/// Older: it has timed out on its way. Of the future: the two clocks differ, and nobody knows how old it is.
+/// With timeout 0 no command is ever too old: no stamp is looked at.
+
+#include <algorithm>
+#include <cstdint>
+
+namespace robot_control {
+
+/// ns. Machines that NTP keeps over a wireless link differ by some ms, at worst some tens of ms (RFC 5905, section 1:
+/// "tens of milliseconds over wide-area networks").
+inline constexpr std::int64_t kClockSkew = 100'000'000;
+
+enum class StampVerdict { kUsable, kTooOld, kFuture };
+
+struct JudgedStamp {
+  StampVerdict verdict = StampVerdict::kUsable;
+  std::int64_t age_ns = 0;  ///< usable: ≥ 0; else as found
+};
+
+constexpr JudgedStamp judge_stamp(std::int64_t stamp_ns, std::int64_t arrival_ns, std::int64_t timeout_ns) noexcept {
+  if (stamp_ns == 0 || timeout_ns <= 0) return {};
+  const std::int64_t age_ns = arrival_ns - stamp_ns;
+  if (age_ns > timeout_ns) return {StampVerdict::kTooOld, age_ns};
+  if (age_ns < -kClockSkew) return {StampVerdict::kFuture, age_ns};
+  return {StampVerdict::kUsable, std::max<std::int64_t>(0, age_ns)};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,46 @@
+#include "bridge/command_senders.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class CommandSendersTest : public testing::Test {
+ protected:
+  CommandSendersTest() { senders_.limit(100); }
+
+  CommandSenders senders_;
+};
+
+TEST_F(CommandSendersTest, AreThoseHeardWithinTheWindow) {
+  EXPECT_THAT(senders_.at(0), IsEmpty());
+  senders_.hear("/b", 10);
+  senders_.hear("/a", 50);
+  EXPECT_THAT(senders_.at(110), ElementsAre("/a", "/b"));
+  EXPECT_THAT(senders_.at(111), ElementsAre("/a"));
+  EXPECT_THAT(senders_.at(151), IsEmpty());
+}
+
+TEST_F(CommandSendersTest, OfOneNameAreOne) {
+  for (std::int64_t now = 0; now < 50; ++now) senders_.hear("/a", now);
+  EXPECT_EQ(senders_.count(50), 1u);
+}
+
+TEST_F(CommandSendersTest, AreForgottenWhenTimeTurnsBack) {
+  senders_.hear("/a", 1000);
+  EXPECT_THAT(senders_.at(999), IsEmpty());
+}
+
+TEST_F(CommandSendersTest, UnderEverNewNamesTakeBoundedMemoryAndTheNewestStays) {
+  for (int i = 0; i < 1000; ++i) senders_.hear("/sender_" + std::to_string(i), i / 100);
+  EXPECT_EQ(senders_.count(10), 16u);
+  senders_.hear("/last", 11);
+  EXPECT_THAT(senders_.at(11), testing::Contains("/last"));
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,55 @@
+"""What the tests of commands send and hear beside system_support."""
+
+import time
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import TwistStamped
+from robot_control.msg import DriveState
+from system_support import CONTROLLER, SEND_PERIOD, Robot
+
+
+class CommandDesk:
+    """A sender on cmd_vel_stamped, and what the controller says of commands."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.drive: DriveState | None = None
+        self.values: dict[str, str] = {}
+        self.message = ""
+        self._stamped = rospy.Publisher(robot.name("cmd_vel_stamped"), TwistStamped, queue_size=1, tcp_nodelay=True)
+        self._last_send = 0.0
+        self._subscribers = [
+            rospy.Subscriber(robot.name("drive_state"), DriveState, self._hear_drive),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._hear_diagnostics),
+        ]
+
+    def send(self, linear: float, angular: float, stamp: rospy.Time) -> None:
+        """cmd_vel_stamped, at most every SEND_PERIOD."""
+        if time.monotonic() - self._last_send < SEND_PERIOD:
+            return
+        self._last_send = time.monotonic()
+        message = TwistStamped()
+        message.header.stamp = stamp
+        message.twist.linear.x, message.twist.angular.z = linear, angular
+        self._stamped.publish(message)
+
+    def send_aged(self, linear: float, age: float) -> None:
+        """Stamped `age` s ago on this process' clock."""
+        self.send(linear, 0.0, rospy.Time.from_sec(rospy.get_time() - age))
+
+    def connected(self) -> bool:
+        return bool(self._stamped.get_num_connections() > 0)
+
+    @property
+    def reasons(self) -> set[str]:
+        """Of drive_state."""
+        return set() if self.drive is None else set(self.drive.reasons)
+
+    def _hear_drive(self, message: DriveState) -> None:
+        self.drive = message
+
+    def _hear_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.name == CONTROLLER:
+                self.message = status.message
+                self.values = {pair.key: pair.value for pair in status.values}
