@@ -33,12 +33,19 @@ def _yaml(value: object) -> str:
     return str(value)
 
 
-def _leaves(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+def _flow(value: object) -> str:
+    """YAML text of a nested dict in braces; texts quoted, so that none can be taken for anything else."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{json.dumps(str(key))}: {_flow(item)}" for key, item in value.items()) + "}"
+    return json.dumps(value) if isinstance(value, str) else _yaml(value)
+
+
+def leaves(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
     """Dotted path and YAML text of every value of a nested dict."""
     for key, value in tree.items():
         path = f"{prefix}{key}"
         if isinstance(value, Mapping):
-            yield from _leaves(value, path + ".")
+            yield from leaves(value, path + ".")
         else:
             yield path, _yaml(value)
 
@@ -71,7 +78,7 @@ class ClosedLoop:
         values: list[tuple[str, str]] = []
         path = share_file("config/robot_params.yaml")
         if isinstance(params, Mapping):
-            values += _leaves(params)
+            values += leaves(params)
         elif params is not None:
             path = fspath(params)
         if urdf is not None:
@@ -118,6 +125,18 @@ class ClosedLoop:
             ValueError: an unknown word, with the list of those there are.
         """
         self._loop.inject_fault(component, kind)
+
+    def set_parameters(self, values: Mapping[str, Any]) -> None:
+        """As `diff_drive_controller/set_parameters`: limits and gains from the next cycle on, kept over `reset()`.
+
+        Args:
+            values: keys of the block `diff_drive_controller` in SI units, such as
+                `{"max_linear_speed": 0.5, "pid_kp": 1.5, "feed_forward": {"mass": 13}}`.
+
+        Raises:
+            ParameterError: with every reason; then nothing has changed.
+        """
+        self._loop.set_parameters(_flow(values))
 
     def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
         """As if just received on cmd_vel: linear [m/s], angular [rad/s]. Times out like cmd_vel."""

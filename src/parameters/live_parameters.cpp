@@ -91,6 +91,9 @@ LiveChange read_live(const Parameters& base, const std::string& block_name, cons
                              .before = text_of(value_of(key.field(before))),
                              .after = text_of(value)});
   }
+  if (problems.empty() && change.values.empty()) {
+    problems.add({"request", printable(text), "names no value", "", "for example {max_linear_speed: 0.5}"});
+  }
   change.problems = problems.lines();
   return change;
 }

@@ -32,6 +32,9 @@ class LatestValue {
     version_.store(version + 2, std::memory_order_release);
   }
 
+  /// Another number after every store: who remembers it need not load what has not changed.
+  std::uint64_t version() const noexcept { return version_.load(std::memory_order_relaxed); }
+
   bool load(Value& out) const noexcept {
     for (int tries = 0; tries < kTries; ++tries) {
       const std::uint64_t before = version_.load(std::memory_order_acquire);

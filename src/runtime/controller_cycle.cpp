@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "control/drive_tuning.h"
+
 namespace robot_control {
 
 ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
@@ -11,7 +13,9 @@ ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, co
       clock_(now),
       channels_(channels),
       script_(std::move(script)),
-      robot_hash_(robot.hash) {}
+      robot_hash_(robot.hash) {
+  trace_.tuning = drive_tuning(parameters, robot, period);
+}
 
 /// Everything but the command itself, which script and inbox share.
 void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
@@ -46,6 +50,17 @@ void ControllerCycle::receive(std::uint64_t cycle) noexcept {
   }
 }
 
+void ControllerCycle::tune() noexcept {
+  const std::uint64_t version = tunings_.version();
+  if (version == tunings_seen_) return;
+  DriveTuning tuning;
+  if (!tunings_.load(tuning)) return;
+  tunings_seen_ = version;
+  if (tuning.count == trace_.tuning.count) return;
+  controller_.tune(tuning);
+  trace_.tuning = tuning;
+}
+
 bool ControllerCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
   const Lookup found = channels_.state->newest(state_);
@@ -68,6 +83,7 @@ bool ControllerCycle::step() noexcept {
   if (sensors_found != Lookup::kFrame) return false;
 
   receive(cycle);
+  tune();
   ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};
   if (cycle > 0 &&
       channels_.permit->newest_within(run, cycle - std::min(cycle, kPermitLife), cycle - 1, permit_) ==

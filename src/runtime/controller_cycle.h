@@ -29,6 +29,9 @@ class ControllerCycle {
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
 
+  /// Likewise for other limits and gains: they hold from the next cycle on that computes a command.
+  LatestValue<DriveTuning>& tunings() noexcept { return tunings_; }
+
   /// True when there was a new state of the driver's current run, and a command was published.
   bool step() noexcept;
 
@@ -38,6 +41,7 @@ class ControllerCycle {
   void take_over(const VelocityCommand& arrived) noexcept;
   void enter_run() noexcept;
   void receive(std::uint64_t cycle) noexcept;
+  void tune() noexcept;
 
   DriveController controller_;
   CycleClock clock_;
@@ -46,8 +50,10 @@ class ControllerCycle {
   CommandScript script_;
   std::uint64_t robot_hash_;
   LatestValue<VelocityCommand> inbox_;
-  VelocityCommand received_;  ///< what the inbox held when last looked at
-  VelocityCommand request_;   ///< inbox and script merged in the order of arrival
+  LatestValue<DriveTuning> tunings_;
+  std::uint64_t tunings_seen_ = 0;  ///< version of the one that was looked at
+  VelocityCommand received_;        ///< what the inbox held when last looked at
+  VelocityCommand request_;         ///< inbox and script merged in the order of arrival
   SensorFrame sensors_;
   StateFrame state_;
   Permit permit_;

@@ -9,7 +9,8 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotMo
       permit_(bus, ChannelNames::kPermit),
       cycle_(parameters.controller, robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop)) {
+             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
+      retuning_(parameters, robot_, cycle_.tunings()) {
   require_drivable(parameters, robot);
 }
 

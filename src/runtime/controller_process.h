@@ -6,6 +6,7 @@
 
 #include "runtime/consumer_process.h"
 #include "runtime/controller_cycle.h"
+#include "runtime/retuning.h"
 
 namespace robot_control {
 
@@ -17,6 +18,7 @@ class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerT
 
   std::vector<std::string> missing() const override;
   ControllerCycle& cycle() noexcept { return cycle_; }
+  Retuning& retuning() noexcept { return retuning_; }
 
  private:
   void poll_channels() override;
@@ -26,6 +28,7 @@ class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerT
   Input<StateFrame> state_;
   Input<Permit> permit_;
   ControllerCycle cycle_;
+  Retuning retuning_;
 };
 
 }  // namespace robot_control

@@ -9,6 +9,8 @@ void fill(Condition& condition, double limit) {
   if (!condition.limit) condition.limit = limit;
 }
 
+constexpr double kSpeedFactor = 1.1;
+
 double wheel_speed_limit(const RobotModel& robot, double commanded) {
   double bearable = 1.25 * commanded;
   for (const WheelModel& wheel : robot.wheels) {
@@ -17,10 +19,18 @@ double wheel_speed_limit(const RobotModel& robot, double commanded) {
     commanded = std::min(commanded, limit);
     bearable = std::min(bearable, limit);
   }
-  return std::max({1.1 * commanded, commanded + kSpeedMargin, std::min(1.25 * commanded, bearable)});
+  return std::max(least_wheel_speed_limit(commanded), std::min(1.25 * commanded, bearable));
 }
 
 }  // namespace
+
+double least_wheel_speed_limit(double commanded) noexcept {
+  return std::max(kSpeedFactor * commanded, commanded + kSpeedMargin);
+}
+
+double fastest_within(double wheel_speed_limit) noexcept {
+  return std::min(wheel_speed_limit / kSpeedFactor, wheel_speed_limit - kSpeedMargin);
+}
 
 SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed,
                                 double period) {

@@ -38,6 +38,11 @@ inline constexpr double kNotStopping = 2.0;     ///< s; light robots need 1.2 at
 inline constexpr double kSlowLoop = 0.005;      ///< s
 inline constexpr double kSpeedWindow = 0.02;    ///< s, T
 
+/// rad/s: the least wheel_speed limit that lets wheels run at `commanded`, max(1.1 ω, ω + kSpeedMargin); and its
+/// inverse.
+double least_wheel_speed_limit(double commanded) noexcept;
+double fastest_within(double wheel_speed_limit) noexcept;
+
 /// `commanded_wheel_speed` rad/s, > 0; `period` s.
 SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel& robot, double commanded_wheel_speed,
                                 double period = 0.001);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "signals/command_frame.h"
+#include "signals/drive_tuning.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -36,6 +37,7 @@ struct EstimatorTrace {
 
 struct ControllerTrace {
   CommandFrame command;
+  DriveTuning tuning;  ///< with which it was computed
   CycleTiming timing;
 };
 

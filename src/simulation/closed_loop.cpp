@@ -9,6 +9,7 @@
 #include "runtime/estimator_cycle.h"
 #include "runtime/gate_setup.h"
 #include "runtime/monitor_cycle.h"
+#include "runtime/retuning.h"
 #include "runtime/safety_limits.h"
 #include "runtime/start_check.h"
 #include "signals/names.h"
@@ -47,7 +48,8 @@ struct ClosedLoop::Parts {
                    load_script(given.loop.command_script), nullptr),
         monitor(safety_limits(given, robot), robot, given.loop.period(),
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
-                load_script(given.loop.command_script), nullptr) {
+                load_script(given.loop.command_script), nullptr),
+        retuning(given, robot, controller.tunings()) {
     plant.start();
     driver.set_boot(kBoot);
     driver.begin_run(1);
@@ -70,6 +72,7 @@ struct ClosedLoop::Parts {
   EstimatorCycle estimator;
   ControllerCycle controller;
   MonitorCycle monitor;
+  Retuning retuning;
   VelocityCommand request;
   OperatorInput operator_input;
   InjectedFaults faults{};
@@ -120,6 +123,11 @@ void ClosedLoop::reset() {
   parts.plant.start();
   parts.driver.set_start(parts.driver.next_stamp_ns());
   parts.driver.begin_run(parts.driver.run() + 1);
+}
+
+void ClosedLoop::set_parameters(const std::string& request) {
+  parts_->retuning.set(request);
+  parts_->parameters.controller = parts_->retuning.in_force();
 }
 
 void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {

@@ -43,6 +43,10 @@ class ClosedLoop {
   /// DriverError.
   void reset();
 
+  /// As `~set_parameters` of diff_drive_controller: a YAML map of its limits and gains, from the next step on, and
+  /// beyond `reset`. Throws ParameterError with every reason; then nothing has changed.
+  void set_parameters(const std::string& request);
+
   /// As `~inject_fault`: the machine or a node fails so from the next step on; words of names.h. Throws
   /// std::invalid_argument with the list where it does not know one.
   void inject_fault(const std::string& component, const std::string& kind);

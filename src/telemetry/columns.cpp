@@ -124,6 +124,47 @@ void add_command(Columns& to) {
   to.push_back(column<C>("timeouts", "", [](const C& c, J) { return c.command.timeouts; }));
 }
 
+// Named as the parameters.
+void add_tuning(Columns& to) {
+  to.push_back(column<C>("tuning", "", [](const C& c, J) { return c.tuning.count; }));
+  to.push_back(column<C>("max_linear_speed", "m/s", [](const C& c, J) { return c.tuning.linear.speed; }));
+  to.push_back(column<C>("max_angular_speed", "rad/s", [](const C& c, J) { return c.tuning.angular.speed; }));
+  to.push_back(
+      column<C>("max_linear_acceleration", "m/s²", [](const C& c, J) { return c.tuning.linear.acceleration; }));
+  to.push_back(
+      column<C>("max_angular_acceleration", "rad/s²", [](const C& c, J) { return c.tuning.angular.acceleration; }));
+  to.push_back(
+      column<C>("max_linear_deceleration", "m/s²", [](const C& c, J) { return c.tuning.linear.deceleration; }));
+  to.push_back(
+      column<C>("max_angular_deceleration", "rad/s²", [](const C& c, J) { return c.tuning.angular.deceleration; }));
+  to.push_back(column<C>("max_linear_emergency_deceleration", "m/s²",
+                         [](const C& c, J) { return c.tuning.linear.emergency_deceleration; }));
+  to.push_back(column<C>("max_angular_emergency_deceleration", "rad/s²",
+                         [](const C& c, J) { return c.tuning.angular.emergency_deceleration; }));
+  to.push_back(column<C>("max_linear_jerk", "m/s³", [](const C& c, J) { return c.tuning.linear.jerk; }));
+  to.push_back(column<C>("max_angular_jerk", "rad/s³", [](const C& c, J) { return c.tuning.angular.jerk; }));
+  to.push_back(column<C>("keep_curvature", "", [](const C& c, J) { return c.tuning.keep_curvature; }));
+  to.push_back(column<C>("cmd_vel_timeout", "s", [](const C& c, J) { return c.tuning.cmd_vel_timeout; }));
+  to.push_back(column<C>("tracking_bandwidth", "Hz", [](const C& c, J) { return c.tuning.tracking_bandwidth; }));
+  to.push_back(column<C>("feed_forward_mass", "kg", [](const C& c, J) { return c.tuning.mass; }));
+  to.push_back(column<C>("feed_forward_yaw_inertia", "kg·m²", [](const C& c, J) { return c.tuning.yaw_inertia; }));
+}
+
+void add_wheel_tuning(Columns& to, const std::string& name, std::size_t joint) {
+  to.push_back(column<C>(
+      name + "_pid_kp", "N·m·s/rad", [](const C& c, J j) { return c.tuning.wheels[j].kp; }, joint));
+  to.push_back(column<C>(
+      name + "_pid_ki", "N·m/rad", [](const C& c, J j) { return c.tuning.wheels[j].ki; }, joint));
+  to.push_back(column<C>(
+      name + "_pid_kd", "N·m·s²/rad", [](const C& c, J j) { return c.tuning.wheels[j].kd; }, joint));
+  to.push_back(column<C>(
+      name + "_feed_forward_inertia", "kg·m²", [](const C& c, J j) { return c.tuning.wheels[j].inertia; }, joint));
+  to.push_back(column<C>(
+      name + "_feed_forward_damping", "N·m·s/rad", [](const C& c, J j) { return c.tuning.wheels[j].damping; }, joint));
+  to.push_back(column<C>(
+      name + "_feed_forward_friction", "N·m", [](const C& c, J j) { return c.tuning.wheels[j].friction; }, joint));
+}
+
 void add_joint(Columns& to, const std::string& name, std::size_t joint) {
   to.push_back(column<D>(
       name + "_position", "rad", [](const D& d, J j) { return d.sensors.joints[j].position; }, joint));
@@ -226,6 +267,8 @@ std::vector<Column> log_columns(const std::vector<std::string>& joints, bool tim
   add_estimate(columns);
   add_command(columns);
   for (std::size_t j = 0; j < joints.size(); ++j) add_joint(columns, joints[j], j);
+  add_tuning(columns);
+  for (std::size_t j = 0; j < std::min(joints.size(), kTunedWheels); ++j) add_wheel_tuning(columns, joints[j], j);
   add_imu(columns);
   add_safety(columns);
   if (timing) add_timing(columns);

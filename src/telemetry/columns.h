@@ -4,6 +4,8 @@
 /// Names are those of the frames' members. Bits and enums are integers; their meaning stands where `unit`
 /// points: the enum of that name in signals/. Poses are planar (x, y, yaw): truth in the world minus the pose at
 /// cycle 0, the estimate in odom; twists in base axes; yaw in (−π, π]. NaN: there is none (no speed limit, no battery).
+/// `tuning` counts the sets of live parameters; behind it stands what held in this cycle, derived values among them
+/// (signals/drive_tuning.h): a joint that no loop drives has gains 0.
 /// `evidence_…`: by what the first cause was told, else the first warning; unit by its row in signals/cause_names.h.
 
 #include <cstdint>

@@ -99,6 +99,7 @@ TEST_F(LiveParameters, RefusesWithTheRulesOfTheStart) {
   EXPECT_THAT(problem("{keep_curvature: 2}"), HasSubstr("true or false"));
   EXPECT_THAT(problem("{cmd_vel_timeout: 0.0015}"), HasSubstr("two periods, 0.002 s at 1000 Hz"));
   EXPECT_THAT(problem("{feed_forward: 12}"), HasSubstr("must be a map of mass"));
+  EXPECT_THAT(problem("{feed_forward: {}}"), HasSubstr("names no value"));
 }
 
 TEST_F(LiveParameters, RefusesContradictionsWithWhatHolds) {
@@ -184,7 +185,7 @@ TEST_F(LiveParameters, AreTakenOrRefusedWhateverStandsInTheRequest) {
       FAIL() << "seed " << seed << ": " << error.what();
     }
   }
-  EXPECT_GT(taken, 100) << "else this says nothing about what is taken";
+  EXPECT_GT(taken, 50) << "else this says nothing about what is taken";
   EXPECT_GT(refused, 2000);
 }
 

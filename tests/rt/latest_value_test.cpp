@@ -36,6 +36,17 @@ TEST(LatestValue, HoldsTheValueStoredLast) {
   EXPECT_EQ(value.words, value_of(2).words);
 }
 
+TEST(LatestValue, HasAnotherVersionAfterEveryStoreAndNoOtherTime) {
+  LatestValue<Value> latest;
+  const std::uint64_t before = latest.version();
+  latest.store(value_of(0));
+  const std::uint64_t after = latest.version();
+  EXPECT_NE(after, before);
+  Value value;
+  ASSERT_TRUE(latest.load(value));
+  EXPECT_EQ(latest.version(), after);
+}
+
 TEST(LatestValue, IsNeverTornAndNeverGoesBack) {
   LatestValue<Value> latest;
   std::atomic<bool> stop{false};

@@ -163,6 +163,54 @@ TEST_F(Columns, KeepTheJointsApart) {
   EXPECT_EQ(value("left_wheel_joint_velocity_measured"), 4);
 }
 
+TEST_F(Columns, TellWhatTheControllerWasSetTo) {
+  controller.tuning = {
+      .count = 3,
+      .linear = {.speed = 1, .acceleration = 2, .deceleration = 3, .emergency_deceleration = 4, .jerk = 5},
+      .angular = {.speed = 6, .acceleration = 7, .deceleration = 8, .emergency_deceleration = 9, .jerk = 10},
+      .keep_curvature = 1,
+      .cmd_vel_timeout = 11,
+      .tracking_bandwidth = 12,
+      .mass = 13,
+      .yaw_inertia = 14};
+  controller.tuning.wheels[1] = {
+      .kp = 15, .ki = 16, .kd = 17, .model_inertia = 0, .inertia = 18, .damping = 19, .friction = 20};
+  EXPECT_EQ(value("tuning"), 3);
+  EXPECT_EQ(value("keep_curvature"), 1);
+  const char* const names[] = {"max_linear_speed",
+                               "max_linear_acceleration",
+                               "max_linear_deceleration",
+                               "max_linear_emergency_deceleration",
+                               "max_linear_jerk",
+                               "max_angular_speed",
+                               "max_angular_acceleration",
+                               "max_angular_deceleration",
+                               "max_angular_emergency_deceleration",
+                               "max_angular_jerk",
+                               "cmd_vel_timeout",
+                               "tracking_bandwidth",
+                               "feed_forward_mass",
+                               "feed_forward_yaw_inertia",
+                               "right_wheel_joint_pid_kp",
+                               "right_wheel_joint_pid_ki",
+                               "right_wheel_joint_pid_kd",
+                               "right_wheel_joint_feed_forward_inertia",
+                               "right_wheel_joint_feed_forward_damping",
+                               "right_wheel_joint_feed_forward_friction"};
+  double expected = 0;
+  for (const char* name : names) EXPECT_EQ(value(name), ++expected) << name;
+  EXPECT_EQ(value("left_wheel_joint_pid_kp"), 0);
+}
+
+// More joints than wheels may have loops: an arm's have no such columns.
+TEST_F(Columns, OfGainsAreThoseOfWheels) {
+  std::vector<std::string> many;
+  for (std::size_t i = 0; i < kMaxJoints; ++i) many.push_back("joint_" + std::to_string(i));
+  const std::vector<std::string> names = names_of(log_columns(many, false));
+  EXPECT_EQ(std::ranges::count_if(names, [](const std::string& name) { return name.ends_with("_pid_kp"); }),
+            static_cast<std::ptrdiff_t>(kTunedWheels));
+}
+
 // A turn by −2 rad about z: q = (0, 0, sin(−1), cos(−1)). Tolerance: a few roundings of numbers about 1.
 TEST_F(Columns, TakeYawFromTheQuaternion) {
   estimator.state.pose_odom.orientation = {0, 0, std::sin(-1.0), std::cos(-1.0)};

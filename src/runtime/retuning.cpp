@@ -1,0 +1,86 @@
+#include "runtime/retuning.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "control/control_problems.h"
+#include "control/drive_tuning.h"
+#include "parameters/problem_list.h"
+#include "runtime/safety_limits.h"
+#include "safety/derived_limits.h"
+
+namespace robot_control {
+namespace {
+
+const std::string kBlock = "diff_drive_controller";
+
+bool stops(const Condition& condition) {
+  return condition.limit && (condition.reaction == Reaction::kRamp || condition.reaction == Reaction::kBrake);
+}
+
+double smallest_radius(const RobotModel& robot) {
+  return std::ranges::min_element(robot.wheels, {}, &WheelModel::radius)->radius;
+}
+
+}  // namespace
+
+std::string sentence(const Retuned& retuned) {
+  std::string text = "set " + std::to_string(retuned.count) + ": ";
+  for (const LiveValue& value : retuned.values) {
+    text += (&value == &retuned.values.front() ? "" : ", ") + value.key + " " + value.before + " → " + value.after;
+  }
+  return text;
+}
+
+Retuning::Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox)
+    : parameters_(parameters),
+      robot_(robot),
+      asked_at_start_(commanded_wheel_speed(parameters.controller, robot)),
+      wheel_speed_(safety_limits(parameters, robot).wheel_speed),
+      inbox_(inbox) {}
+
+void Retuning::expect_monitor(const Parameters& monitor) {
+  const std::lock_guard lock(mutex_);
+  wheel_speed_ = safety_limits(monitor, robot_).wheel_speed;
+}
+
+std::string Retuning::monitor_problem(const DriveControllerParameters& wanted) const {
+  const double asked = commanded_wheel_speed(wanted, robot_);
+  const double needed = least_wheel_speed_limit(asked);
+  if (!stops(wheel_speed_) || asked <= asked_at_start_) return "";
+  if (needed <= *wheel_speed_.limit) return "";
+  std::ostringstream text;
+  text.precision(4);
+  text << kBlock << ": max_linear_speed " << wanted.max_linear_speed << " m/s with max_angular_speed "
+       << wanted.max_angular_speed << " rad/s turns a wheel at " << asked
+       << " rad/s; safety_monitor, whose wheel_speed limit was fixed at its start, stops the robot beyond "
+       << *wheel_speed_.limit << " rad/s, and would have to bear " << needed << ". Keep max_linear_speed + "
+       << robot_.effective_wheel_base() / 2 << " m·max_angular_speed at or below "
+       << smallest_radius(robot_) * fastest_within(*wheel_speed_.limit)
+       << " m/s, or set both in the YAML file and start all nodes again.";
+  return text.str();
+}
+
+Retuned Retuning::set(const std::string& request) {
+  const std::lock_guard lock(mutex_);
+  LiveChange change = read_live(parameters_, kBlock, request);
+  const DriveControllerParameters& wanted = change.parameters.controller;
+  std::ranges::move(control_problems(wanted, robot_, parameters_.loop.period()), std::back_inserter(change.problems));
+  if (std::string problem = monitor_problem(wanted); !problem.empty()) change.problems.push_back(std::move(problem));
+  if (!change.problems.empty()) {
+    throw ParameterError(listing("set_parameters refused, nothing is changed", change.problems));
+  }
+  DriveTuning tuning = drive_tuning(wanted, robot_, parameters_.loop.period());
+  tuning.count = ++count_;
+  inbox_.store(tuning);
+  parameters_ = std::move(change.parameters);
+  return {.count = count_, .values = std::move(change.values)};
+}
+
+DriveControllerParameters Retuning::in_force() const {
+  const std::lock_guard lock(mutex_);
+  return parameters_.controller;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,62 @@
+#pragma once
+/// Limits and gains of the controller, changed while it drives: the service ~set_parameters, without ROS.
+///
+/// A request is taken as a whole or not at all. Against it stand all that would refuse a start (the schema's rules and
+/// contradictions, control_problems) and what was derived elsewhere at start and stays: the monitor stops a robot whose
+/// wheels exceed its wheel_speed limit Ω. Speed limits that ask more of a wheel than those of the start must leave it
+/// the least margin that it derives for itself (derived_limits.h),
+///
+///   least_wheel_speed_limit(commanded_wheel_speed) ≤ Ω
+///
+/// What is left out stays derived, from the new values. Accepted values are what the next request is laid over.
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "parameters/live_parameters.h"
+#include "parameters/parameters.h"
+#include "robot/robot_model.h"
+#include "rt/latest_value.h"
+#include "safety/safety_parameters.h"
+#include "signals/drive_tuning.h"
+
+namespace robot_control {
+
+/// What was accepted.
+struct Retuned {
+  std::uint64_t count = 0;  ///< DriveTuning::count, column `tuning` of the log
+  std::vector<LiveValue> values;
+};
+
+/// "set 2: max_linear_speed 1 → 0.5, pid_kp derived → 1.5"
+std::string sentence(const Retuned& retuned);
+
+class Retuning {
+ public:
+  /// `parameters` with which the controller starts; the cycle takes `inbox` over. The monitor is believed to run with
+  /// the same parameters.
+  Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox);
+
+  /// With which the monitor runs where it read others (an override of its own); its limits are derived from them.
+  void expect_monitor(const Parameters& monitor);
+
+  /// Throws ParameterError with every reason; then nothing changes. Any ordinary thread.
+  Retuned set(const std::string& request);
+
+  /// What holds now, as the user would have to set it. Any ordinary thread.
+  DriveControllerParameters in_force() const;
+
+ private:
+  std::string monitor_problem(const DriveControllerParameters& wanted) const;
+
+  mutable std::mutex mutex_;
+  Parameters parameters_;  ///< in force
+  RobotModel robot_;
+  double asked_at_start_;  ///< rad/s of a wheel
+  Condition wheel_speed_;  ///< the monitor's
+  LatestValue<DriveTuning>& inbox_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace robot_control
