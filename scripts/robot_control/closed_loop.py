@@ -190,6 +190,12 @@ class ClosedLoop:
         if self._running:
             raise RuntimeError(f"{what} cannot be called from the command function of a run")
 
+    def stop_distance(self, speed: float, *, emergency: bool = False) -> float:
+        """Way [m] to rest, straight on from a steady `speed` [m/s], that the limits predict (control/stop_distance.h),
+        from the cycle that takes the command, with the period until its torque acts. `emergency`: as after a timeout.
+        """
+        return self._loop.stop_distance(speed, emergency)
+
     @property
     def paused(self) -> bool:
         """What `set_pause` said last."""

@@ -19,8 +19,8 @@
 /// integrators keep what they last knew.
 ///
 /// Saturation keeps the curvature. Speed: the wish, and what a target that changed during a ramp makes of the way
-/// there, are scaled until no wheel exceeds its joint's limit. Torque: with effort_i = rest_i + inertial_i of the last
-/// cycle, inertial_i what feed-forward gives for its acceleration, the limiter may use
+/// there, are scaled until no wheel exceeds what kinematics.h lets it use of its joint's limit. Torque: with effort_i =
+/// rest_i + inertial_i of the last cycle, inertial_i what feed-forward gives for its acceleration, the limiter may use
 ///
 ///   part = used·min_i max(effort_limit_i − sign(inertial_i)·rest_i, 0)/|inertial_i|,   kLeastPart ≤ part ≤ 1
 ///

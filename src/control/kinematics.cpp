@@ -14,7 +14,7 @@ double& of_side(SidePair& pair, Side side) noexcept {
 
 double rim_limit(const RobotModel& robot, const WheelModel& wheel) {
   const double limit = robot.joints[wheel.joint].velocity_limit;
-  return limit > 0 ? limit * wheel.radius : std::numeric_limits<double>::infinity();
+  return limit > 0 ? kUsableWheelSpeed * limit * wheel.radius : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -14,6 +14,10 @@
 
 namespace robot_control {
 
+/// Of a joint's velocity limit, what is planned with: beyond it the gate takes torque away (hal/joint_clamp.h,
+/// kTaperStart), and a loaded wheel that lacks it leaves its curve: a skid steer by 10 %.
+inline constexpr double kUsableWheelSpeed = 0.9;
+
 class DriveKinematics {
  public:
   /// At least one wheel on either side, at most kMaxWheels.
@@ -28,8 +32,8 @@ class DriveKinematics {
   /// The inverse of `joint_speeds`.
   PlanarTwist twist(const WheelValues& joint_speeds) const noexcept;
 
-  /// The largest s ≤ 1 for which no wheel runs faster than its joint's velocity limit at s·twist. Scaling both
-  /// axes by it keeps the curvature ω/v. A velocity limit of 0 means none.
+  /// The largest s ≤ 1 for which no wheel runs faster than kUsableWheelSpeed of its joint's velocity limit at s·twist.
+  /// Scaling both axes by it keeps the curvature ω/v. A velocity limit of 0 means none.
   double wheel_speed_scale(const PlanarTwist& twist) const noexcept;
 
   /// The largest s ≤ 1 for which no rim runs faster over the ground than `limit` [m/s] at s·twist. Keeps the

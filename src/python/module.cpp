@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "control/drive_limits.h"
+#include "control/stop_distance.h"
 #include "control/wheel_loop_stability.h"
 #include "drivers/mujoco_model.h"
 #include "drivers/mujoco_plant.h"
@@ -190,6 +191,15 @@ PYBIND11_MODULE(_robot_control, module) {
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
       .def("run", &run, py::arg("cycles"), py::arg("command"))
+      .def(
+          "stop_distance",
+          [](const ClosedLoop& loop, double speed, bool emergency) {
+            const Parameters& parameters = loop.parameters();
+            const MotionLimits limits = speed_limits(parameters.controller).linear;
+            const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
+            return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();
+          },
+          py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
       .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot()); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)

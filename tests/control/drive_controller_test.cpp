@@ -230,7 +230,7 @@ TEST_F(DriveControllerTest, KeepsTheCurvatureWhenAWheelIsTooFast) {
   for (JointModel& joint : slow.joints) joint.velocity_limit = 4;  // 0.4 m/s
   bench = ControlBench(slow);
   start();
-  const double s = 0.4 / 0.55;
+  const double s = 0.9 * 0.4 / 0.55;
   EXPECT_NEAR(limited(), s * 0.5, 1e-12);
   EXPECT_NEAR(bench.command.twist_limited.angular[2], s * 0.2, 1e-12);
   EXPECT_TRUE(bench.command.reasons & kReasonSaturated);

@@ -117,9 +117,9 @@ TEST(TorqueSaturation, AWallIsToldFromARampByTheWheelsThatDoNotTurn) {
 }
 
 TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
-  constexpr double kLimit = 8;  // rad/s, 0.8 m/s
+  constexpr double kLimit = kUsableWheelSpeed * 8;  // rad/s, 0.72 m/s
   RobotModel robot = make_test_robot();
-  for (JointModel& joint : robot.joints) joint.velocity_limit = kLimit;
+  for (JointModel& joint : robot.joints) joint.velocity_limit = 8;
   DriveControllerParameters parameters = patient();
   parameters.max_linear_jerk = 2;  // slow to turn back: that is what leads past a limit
   parameters.max_angular_jerk = 8;

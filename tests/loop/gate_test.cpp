@@ -5,6 +5,8 @@
 #include <functional>
 #include <iterator>
 
+#include "control/kinematics.h"
+#include "hal/joint_clamp.h"
 #include "simulation/closed_loop.h"
 
 namespace robot_control {
@@ -67,9 +69,9 @@ TEST_F(GateInTheLoop, DoesNotTakeACoarseEncoderForATooFastWheel) {
   expect_no_clamp([](double) { return twist(1, 0); }, 5);
 }
 
-// Uphill at the wheels' speed limit the gate's taper and the load leave a gap that no torque may close. An integrator
-// that wound up on it would hold the speed for another tenth of a second: 5 cm.
-TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerDoesNotWindUp) {
+// Uphill at the wheels' speed limit the gate would take away the torque that the load needs.
+TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerKeepsOutOfTheTaper) {
+  static_assert(kUsableWheelSpeed == kTaperStart);
   parameters_.plant.slope = 0.0873;
   parameters_.robot.wheel_velocity_limit = 8;
   ClosedLoop loop(parameters_);
@@ -80,8 +82,8 @@ TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerDoesNotWindUp) {
     }
     return loop.row().driver->truth.twist_base.linear[0];
   };
-  EXPECT_NEAR(drive(1, 4), 0.8, 0.02);  // within the taper's tenth
-  EXPECT_NE(loop.row().driver->gate.reasons & kGateSpeedClamped, 0u);
+  EXPECT_NEAR(drive(1, 4), 0.9 * 0.8, 0.002);
+  EXPECT_EQ(loop.row().driver->gate.reasons & kGateSpeedClamped, 0u);
   EXPECT_NE(loop.row().controller->command.reasons & kReasonSaturated, 0u);
   const double limited = drive(0, 4.2);
   EXPECT_NEAR(limited, loop.row().controller->command.twist_limited.linear[0], 0.02);
