@@ -25,7 +25,8 @@
 ///   part = used·min_i max(effort_limit_i − sign(inertial_i)·rest_i, 0)/|inertial_i|,   kLeastPart ≤ part ≤ 1
 ///
 /// of the acceleration limits, where `used` is what it used in that cycle: every wheel slows down its ramp alike, and
-/// no plan runs away from wheels that cannot follow. `rest` holds what the wheels lag behind, so wrong masses and
+/// no plan runs away from wheels that cannot follow. A ramp towards zero is never stretched: who cannot stop as planned
+/// is for the safety monitor to see (not_stopping, runaway). `rest` holds what the wheels lag behind, so wrong masses and
 /// slopes count, too.
 ///
 /// A state frame that is missing, held or invalid does not stop the drive: the wheel loops need only the encoders.

@@ -17,7 +17,7 @@ double allowed_part(double wish, double limit) noexcept {
 
 AxisLimits in_force(const MotionLimits& limits, bool emergency, double part) noexcept {
   const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
-  return {part * limits.acceleration, part * deceleration, limits.jerk};
+  return {part * limits.acceleration, deceleration, limits.jerk};
 }
 
 /// One axis on its way.
@@ -105,7 +105,8 @@ PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emerge
   linear_ = linear.state;
   angular_ = angular.state;
   acceleration_ = {linear.acceleration, angular.acceleration};
-  bound_ = {linear_way.bound() / part, angular_way.bound() / part};
+  bound_ = {linear_way.slows_down ? linear_way.bound() : limits_.linear.acceleration,
+            angular_way.slows_down ? angular_way.bound() : limits_.angular.acceleration};
   return value();
 }
 

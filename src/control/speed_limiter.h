@@ -54,9 +54,9 @@ class SpeedLimiter {
   /// Continue from this motion (the measured one), at zero acceleration.
   void seed(const PlanarTwist& twist) noexcept;
 
-  /// `target` finite; `dt` > 0, s. `emergency`: with the emergency deceleration. `part`: of every acceleration and
-  /// deceleration limit, > 0, ≤ 1, for a machine that cannot follow more. Less than used_part() is approached at the
-  /// jerk limit of the axis whose limit is the tighter, so that the output stays on its line.
+  /// `target` finite; `dt` > 0, s. `emergency`: with the emergency deceleration. `part`: of the acceleration limits,
+  /// > 0, ≤ 1, for a machine that cannot follow more; who slows down is never held up. Less than used_part() is
+  /// approached at the jerk limit of the axis whose limit is the tighter, so that the output stays on its line.
   PlanarTwist step(const PlanarTwist& target, double dt, bool emergency = false, double part = 1) noexcept;
 
   PlanarTwist value() const noexcept { return {linear_.speed, angular_.speed}; }

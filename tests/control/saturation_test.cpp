@@ -150,5 +150,19 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
   EXPECT_GT(led_past, 0) << "no sequence led there: the test tests nothing";
 }
 
+// Three times as heavy as it thinks, wheels of 0.4 N·m brake with 0.2 m/s² at most: the plan is at zero in time.
+TEST(TorqueSaturation, NeverStretchesARampTowardsZero) {
+  RobotModel loaded = with_effort_limit(kWeak);
+  loaded.mass *= 3;
+  ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
+  bench.run(0.3);
+  bench.send(0.8, 0);
+  bench.run(10);
+  bench.send(0, 0);
+  bench.run(0.8 / 1.0 + 1.0 / 10 + 0.002);
+  EXPECT_EQ(bench.command.twist_limited.linear[0], 0);
+  EXPECT_GT(bench.plant.twist.linear, 0.3) << "while the robot cannot";
+}
+
 }  // namespace
 }  // namespace robot_control
