@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace robot_control {
@@ -107,8 +108,7 @@ void CommandInput::tell_crowd(std::int64_t loop_ns) {
 }
 
 bool CommandInput::may_tell(const std::string& what, std::int64_t loop_ns) {
-  std::erase_if(told_ns_,
-                [&](const auto& told) { return told.second > loop_ns || loop_ns - told.second >= kToldAgain; });
+  std::erase_if(told_ns_, [&](const auto& told) { return std::abs(loop_ns - told.second) >= kToldAgain; });
   return told_ns_.size() < kMostNames && told_ns_.emplace(what, loop_ns).second;
 }
 

@@ -2,7 +2,8 @@
 /// Who sends commands: every node that was heard within `window`, by its name. Pure.
 ///
 /// Heard, not registered: a node that merely advertises cmd_vel commands nothing. Both topics of one node are one
-/// sender. Time is that of the loop's frames, so that no clock moves it; should it turn back, all are forgotten.
+/// sender. Time is that of the loop's frames, so that no clock moves it; should it turn back by more than the window (a
+/// new simulation), all are forgotten.
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,6 @@
 
 #include <ros/ros.h>
 
-#include <atomic>
 #include <mutex>
 #include <utility>
 
@@ -46,7 +45,6 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   void publish() override {
     SensorFrame sensors;
     if (process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head)) return;
-    loop_ns_.store(sensors.head.stamp_ns);
     look_at_senders();
     if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
     const FrameHead& head = command_.head;
@@ -65,25 +63,33 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
-    report_command(report, command_, std::exchange(since_report_, 0), input_.senders(loop_ns_.load()));
+    report_command(report, command_, std::exchange(since_report_, 0), input_.senders(loop_ns()));
   }
 
  private:
   /// Two topics, two threads, one inbox.
   void receive(const ArrivedCommand& arrived) {
-    const std::lock_guard lock(input_mutex_);
-    const std::int64_t loop_ns = loop_ns_.load();
     const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
-    const std::int64_t ros_ns = lockstep ? loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-    input_.hear(arrived, {.ros_ns = ros_ns, .loop_ns = loop_ns});
+    const std::lock_guard lock(input_mutex_);
+    ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
+    time.ros_ns = lockstep ? time.loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+    input_.hear(arrived, time);
     process().cycle().inbox().store(input_.value());
+  }
+
+  /// Stamp of the newest sensor frame. Any thread that holds the lock.
+  std::int64_t loop_ns() {
+    SensorFrame sensors;
+    const bool found = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
+    if (found) loop_ns_ = sensors.head.stamp_ns;
+    return loop_ns_;
   }
 
   void look_at_senders() {
     std::vector<ReportLine> lines;
     {
       const std::lock_guard lock(input_mutex_);
-      if (input_.look(loop_ns_.load())) process().cycle().inbox().store(input_.value());
+      if (input_.look(loop_ns())) process().cycle().inbox().store(input_.value());
       lines = input_.lines();
     }
     tell(lines);
@@ -113,9 +119,9 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   ros::Publisher drive_state_;
-  std::atomic<std::int64_t> loop_ns_{0};  ///< stamp of the newest sensor frame
   std::mutex input_mutex_;
   CommandInput input_;
+  std::int64_t loop_ns_ = 0;
   Pacer pace_;
   CommandReport command_report_;
   CommandFrame command_;

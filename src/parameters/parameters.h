@@ -51,7 +51,7 @@ struct ReportParameters {
   bool publish_tf = true;
   std::string odom_frame = "odom";
   std::string base_frame;    ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
-  double command_rate = 50;  ///< Hz, joint_commands, joint_targets and cmd_vel_out
+  double command_rate = 50;  ///< Hz, joint_commands, joint_targets, cmd_vel_out and drive_state
   double imu_rate = 100;     ///< Hz
   double truth_rate = 50;    ///< Hz
 };

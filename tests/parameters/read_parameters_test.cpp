@@ -387,6 +387,31 @@ TEST_F(ReadParameters, RefusesATimeoutUnderTwoPeriods) {
   EXPECT_EQ(file.refusal(), "");
 }
 
+TEST_F(ReadParameters, RefusesEveryContradictionOfTheDrivesLimitsInOneMessage) {
+  const std::map<std::string, std::string> broken{{"max_linear_speed", "-1"},
+                                                  {"max_angular_speed", "0"},
+                                                  {"max_linear_acceleration", ".nan"},
+                                                  {"max_angular_acceleration", "0"},
+                                                  {"max_linear_emergency_deceleration", "0"},
+                                                  {"max_angular_emergency_deceleration", ".inf"},
+                                                  {"max_linear_jerk", "-10"},
+                                                  {"max_angular_jerk", "-1e-9"},
+                                                  {"cmd_vel_timeout", "0.0019"},
+                                                  {"one_sender", "2"}};
+  for (const auto& [key, value] : broken) file.set(key, "  " + key + ": " + value);
+  const std::string refusal = file.refusal();
+  EXPECT_THAT(refusal, HasSubstr("10 problems"));
+  for (const auto& [key, value] : broken) {
+    EXPECT_THAT(refusal, HasSubstr("diff_drive_controller." + key + " = " + value)) << refusal;
+  }
+}
+
+TEST_F(ReadParameters, RefusesAnEmergencyThatStopsLaterThanTheUsualRamp) {
+  file.set("max_linear_emergency_deceleration", "  max_linear_emergency_deceleration: 0.9");
+  EXPECT_THAT(file.refusal(), HasSubstr("max_linear_emergency_deceleration = 0.9: must not be below "
+                                        "diff_drive_controller.max_linear_acceleration = 1.0"));
+}
+
 TEST_F(ReadParameters, AsksTwoPeriodsOfTheHeartbeatToo) {
   file.set("heartbeat_timeout", "  heartbeat_timeout: 0.001");
   EXPECT_THAT(file.refusal(), HasSubstr("safety_monitor.heartbeat_timeout = 0.001: must be 0 (off) or at least"));
