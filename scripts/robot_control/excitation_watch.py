@@ -91,8 +91,6 @@ def _unwatched(look: Look) -> str:
 
 
 def _astray(look: Look, start: Pose, reach: float, unanswered: float) -> str:
-    if look.senders:
-        return f"{', '.join(look.senders)} has begun to send on cmd_vel"
     if look.pose is None:
         return ""
     ahead, left = look.pose.seen_from(start)

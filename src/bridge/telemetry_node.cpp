@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <filesystem>
 #include <numeric>
 
 #include "bridge/diagnostics.h"
@@ -45,6 +46,7 @@ class TelemetryNode final : public Node {
     const auto sum = [](const auto& nodes) { return std::accumulate(nodes.begin(), nodes.end(), std::uint64_t{0}); };
     if (counts.dropped + counts.overwritten != 0) report.warn("rows were lost");
     if (!process_.problem().empty()) report.error(process_.problem());
+    report.value("log", std::filesystem::absolute(process_.path()).string());  // identify.py reads it
     report.value("rows", counts.join.emitted);
     report.value("absent", sum(counts.join.absent));
     report.value("late", sum(counts.join.late));
