@@ -35,7 +35,7 @@ class Options:
     mass: float | None  # kg, weighed
     output: Path
     log: Path | None  # fit this one and drive nothing
-    params: Path | None  # parameter file; None: the controller's, else the installed one
+    params: Path | None  # parameter file of the log; None: the installed one
     urdf: Path | None  # robot of the log; None: that of the parameters
 
 
@@ -69,11 +69,12 @@ def parse_options(arguments: list[str]) -> Options:
     parser.add_argument("--mass", type=positive, help="kg of the robot as it drives, if it was weighed")
     parser.add_argument("--output", type=Path, default=Path("identified.yaml"), help="(default %(default)s)")
     parser.add_argument("--log", type=Path, help="run.csv to fit; nothing is driven")
-    parser.add_argument("--params", type=Path, help="parameter file; default: that of the running controller")
+    parser.add_argument("--params", type=Path, help="parameter file of the log; default: the installed one")
     parser.add_argument("--urdf", type=Path, help="robot of the log; default: that of the parameters")
     given = parser.parse_args(arguments)
-    if given.urdf is not None and given.log is None:
-        parser.error("--urdf belongs to --log: a running robot says what it is")
+    for name in ("params", "urdf"):
+        if getattr(given, name) is not None and given.log is None:
+            parser.error(f"--{name} belongs to --log: a running robot says itself what it is")
     return Options(**vars(given))
 
 

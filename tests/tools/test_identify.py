@@ -1,0 +1,105 @@
+"""identify.py as a user meets it, without a robot: logs that are there, command lines, refusals."""
+
+import math
+import sys
+
+import pytest
+import yaml
+from robot_control import ClosedLoop
+from robot_control.identify import Settings, parse_options, plan
+from robot_control.identify_node import main
+from robot_control.share import share_file
+
+PARAMS = share_file("config/robot_params.yaml")
+FRICTION = 0.1  # N·m
+
+
+@pytest.fixture(scope="module")
+def run_csv(tmp_path_factory):
+    """A log of the excitation as telemetry writes it."""
+    options = parse_options(["--repeats=1"])
+    excitation = plan(Settings(PARAMS, ()), options)
+    loop = ClosedLoop({"mujoco_plant": {"motor_friction": FRICTION}})
+    log = loop.run(excitation.seconds + 0.5, excitation.command)
+    file = tmp_path_factory.mktemp("log") / "run.csv"
+    rows = zip(*log.values(), strict=True)
+    lines = [",".join(log), *(",".join("" if math.isnan(cell) else repr(float(cell)) for cell in row) for row in rows)]
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+def identify(monkeypatch, *arguments):
+    monkeypatch.setattr(sys, "argv", ["identify.py", *map(str, arguments)])
+    main()
+
+
+def refusal(monkeypatch, *arguments):
+    with pytest.raises(SystemExit) as ended:
+        identify(monkeypatch, *arguments)
+    assert ended.value.code not in (None, 0)
+    return str(ended.value.code)
+
+
+def test_fits_a_log_and_writes_an_overlay_that_the_loop_takes(run_csv, tmp_path, monkeypatch, capsys):
+    output = tmp_path / "identified.yaml"
+    identify(monkeypatch, f"--log={run_csv}", f"--output={output}", f"--params={PARAMS}")
+    printed = capsys.readouterr().out
+    for word in ("believed", "measured", "proposed", "±", "gain margin", "delay margin", "spectral radius"):
+        assert word in printed
+    overlay = yaml.safe_load(output.read_text())
+    assert list(overlay) == ["diff_drive_controller"]
+    assert overlay["diff_drive_controller"]["feed_forward"]["wheel_friction"] == pytest.approx(FRICTION, rel=0.05)
+    loop = ClosedLoop(overlay)
+    assert loop.run(3.0, (0.5, 0.0))["truth_linear"][-1] == pytest.approx(0.5, rel=0.01)
+
+
+def test_refuses_the_log_of_another_robot(run_csv, tmp_path, monkeypatch):
+    text = run_csv.read_text().replace("left_wheel_joint", "port_wheel", 100)
+    other = tmp_path / "run.csv"
+    other.write_text(text)
+    message = refusal(monkeypatch, f"--log={other}", f"--output={tmp_path}/x.yaml")
+    assert "the log is of another robot: it has no joint left_wheel_joint, but port_wheel" in message
+    assert not (tmp_path / "x.yaml").exists()
+
+
+def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
+    assert "No such file" in refusal(monkeypatch, f"--log={tmp_path}/none.csv")
+
+
+def test_refuses_parameters_that_are_wrong(run_csv, tmp_path, monkeypatch):
+    params = tmp_path / "params.yaml"
+    params.write_text("robot: {rate: fast}\n")
+    assert "robot.rate" in refusal(monkeypatch, f"--log={run_csv}", f"--params={params}")
+
+
+def test_without_a_master_it_names_both_ways_out(monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")  # reserved; nobody listens
+    message = refusal(monkeypatch)
+    assert "no ROS master at http://127.0.0.1:1" in message
+    assert "--log" in message
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--space=0"],
+        ["--space=nan"],
+        ["--max-speed=-1"],
+        ["--repeats=0"],
+        ["--mass=0"],
+        ["--urdf=a.urdf"],
+        ["--params=a.yaml"],
+    ],
+)
+def test_refuses_a_wrong_command_line(arguments, monkeypatch, capsys):
+    with pytest.raises(SystemExit) as ended:
+        identify(monkeypatch, *arguments)
+    assert ended.value.code == 2
+    assert arguments[0].split("=")[0] in capsys.readouterr().err
+
+
+def test_a_joint_that_turns_slowly_slows_the_plan():
+    fast = plan(Settings(PARAMS, ()), parse_options([])).linear
+    slow = plan(Settings(PARAMS, (("robot.wheel_velocity_limit", "3"),)), parse_options([])).linear
+    assert fast == 0.5
+    assert slow == pytest.approx(0.9 * 3 * 0.1)
