@@ -121,6 +121,8 @@ void add_command(Columns& to) {
   to.push_back(column<C>("command_reasons", "CommandReason", [](const C& c, J) { return c.command.reasons; }));
   to.push_back(column<C>("requests_received", "", [](const C& c, J) { return c.command.requests_received; }));
   to.push_back(column<C>("requests_refused", "", [](const C& c, J) { return c.command.requests_refused; }));
+  to.push_back(column<C>("requests_stale", "", [](const C& c, J) { return c.command.requests_stale; }));
+  to.push_back(column<C>("requests_crowded", "", [](const C& c, J) { return c.command.requests_crowded; }));
   to.push_back(column<C>("timeouts", "", [](const C& c, J) { return c.command.timeouts; }));
 }
 
