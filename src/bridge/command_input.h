@@ -24,7 +24,7 @@
 
 namespace robot_control {
 
-/// s; about as long as the slowest of usual senders is silent.
+/// s; the default of cmd_vel_timeout.
 inline constexpr double kSenderWindow = 1.25;
 inline constexpr std::int64_t kToldAgain = 10'000'000'000;  ///< ns
 

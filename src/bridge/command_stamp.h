@@ -12,8 +12,9 @@
 
 namespace robot_control {
 
-/// ns. Machines that NTP keeps over a wireless link differ by some ms, at worst some tens of ms (RFC 5905, section 1:
-/// "tens of milliseconds over wide-area networks").
+/// ns. Far above what NTP leaves between the machines of one network (RFC 5905, abstract: down to tens of
+/// microseconds), far below any usual cmd_vel_timeout: a clock that nobody synchronises is told, one that somebody does
+/// is not.
 inline constexpr std::int64_t kClockSkew = 100'000'000;
 
 enum class StampVerdict { kUsable, kTooOld, kFuture };
