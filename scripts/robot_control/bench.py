@@ -3,7 +3,7 @@
 Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
-Of the same form is what the trials give that judge, too: campaign.py, driving.py.
+Of the same form is what the trials give that judge, too: campaign.py, driving.py, drive_promises.py, bench_limiter.
 """
 
 from __future__ import annotations
@@ -19,13 +19,16 @@ from typing import Any
 from robot_control.fault_sequence import ALL_RUNS
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
-JUDGED = ("campaign", "driving")  # only when they are named
+JUDGED = ("campaign", "driving", "limiter", "drive")  # only when they are named
 NAMES = MEASURED + JUDGED
+LIMITER_RUNS = 1_000_000  # sequences of 200 cycles, a minute on two cores
 
 
-def run_program(program: Path, params: Path) -> dict[str, Any]:
+def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
     """Runs one benchmark and reads its answer; its messages go to this program's stderr."""
-    done = subprocess.run([program, params], stdout=subprocess.PIPE, check=True, text=True, stdin=subprocess.DEVNULL)
+    done = subprocess.run(
+        [program, *map(str, arguments)], stdout=subprocess.PIPE, check=True, text=True, stdin=subprocess.DEVNULL
+    )
     result: dict[str, Any] = json.loads(done.stdout)
     return result
 
@@ -40,21 +43,29 @@ def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     if name == "campaign":
         from robot_control import campaign
 
-        return campaign.bench(given.first, given.runs, tell)
+        return campaign.bench(given.first, given.runs or ALL_RUNS, tell)
     if name == "driving":
         from robot_control import driving
 
         return driving.bench(given.share, tell)
+    if name == "limiter":
+        result = run_program(given.programs / "bench_limiter", str(given.first), str(given.runs or LIMITER_RUNS))
+        return result, all(row["value"] == 0 for row in result["rows"] if row["name"] == "sequences failed")
+    if name == "drive":
+        from robot_control import drive_promises
+
+        return drive_promises.bench(tell)
     return run_program(given.programs / f"bench_{name}", given.params), True
 
 
 def to_table(result: dict[str, Any]) -> str:
     """One line per figure: value, unit, reference of the same run, ratio to it."""
-    lines = [f"{result['bench']:<26}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]
+    wide = max(24, *(len(row["name"]) for row in result["rows"]))
+    lines = [f"{result['bench']:<{wide + 2}}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]
     for row in result["rows"]:
         compared = row["reference"] != 0
         reference = f"{row['reference']:12.4g}{row['ratio']:10.3f}  of {row['reference_name']}" if compared else ""
-        lines.append(f"  {row['name']:<24}{row['value']:12.4g}  {row['unit']:<22}{reference}".rstrip())
+        lines.append(f"  {row['name']:<{wide}}{row['value']:12.4g}  {row['unit']:<22}{reference}".rstrip())
     return "\n".join(lines)
 
 
@@ -91,8 +102,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    parser.add_argument("--first", type=_whole(0), default=0, help="campaign: first seed")
-    parser.add_argument("--runs", type=_whole(1), default=ALL_RUNS, help="campaign: number of seeds")
+    parser.add_argument("--first", type=_whole(0), default=0, help="campaign, limiter: first seed")
+    parser.add_argument("--runs", type=_whole(1), help="campaign, limiter: number of seeds")
     parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/kernel.h"
 #include "bench/rows.h"
 #include "control/drive_controller.h"
 #include "estimation/estimator.h"
@@ -22,7 +23,6 @@ namespace {
 
 constexpr std::size_t kRecorded = 2000;  // cycles replayed in one block
 constexpr int kBlocks = 101;
-constexpr int kKernelChain = 64;  // multiply-adds in one step of the reference
 
 struct Drive {
   std::vector<SensorFrame> sensors;
@@ -51,23 +51,11 @@ struct Timing {
   std::uint64_t allocations = 0;
 };
 
-double kernel_block() {
-  volatile double seed = 1.0000001;
-  double x = seed;
-  const std::int64_t start = monotonic_ns();
-  for (std::size_t k = 0; k < kRecorded; ++k) {
-    for (int i = 0; i < kKernelChain; ++i) x = x * 0.999999 + 1.0e-7;
-  }
-  const std::int64_t end = monotonic_ns();
-  seed = x;
-  return static_cast<double>(end - start) / kRecorded;
-}
-
 template <class Reset, class Step>
 Timing measure(Reset reset, Step step) {
   Timing timing;
   for (int block = 0; block < kBlocks; ++block) {
-    timing.kernel_ns.push_back(kernel_block());
+    timing.kernel_ns.push_back(kernel_block(kRecorded));
     reset();
     const AllocationGuard guard;
     const std::int64_t start = monotonic_ns();

@@ -122,8 +122,21 @@ class Trial {
     target_ = {draw_wish(draw_, limits_.linear.speed), draw_wish(draw_, limits_.angular.speed)};
     if (emergency_) target_ = {};
     const PlanarTwist goal = within_speed(target_, limits_);
+    line_.reset();
+    const bool steady = axes_[0].acceleration == 0 && axes_[1].acceleration == 0;
+    if (limits_.keep_curvature && steady) {
+      if (axes_[0].speed == 0 && axes_[1].speed == 0) line_ = goal;
+      if (goal.linear == 0 && goal.angular == 0) line_ = {axes_[0].speed, axes_[1].speed};
+    }
     axes_[0].aim(goal.linear);
     axes_[1].aim(goal.angular);
+  }
+
+  /// Beside the ray of commanded curvature, in units of its length times rad/s.
+  bool beside_the_line(const PlanarTwist& at) const {
+    if (!line_) return false;
+    const double size = std::hypot(line_->linear, line_->angular);
+    return std::abs(at.linear * line_->angular - at.angular * line_->linear) > kRounding * size * size;
   }
 
   std::optional<std::string> step() {
@@ -135,6 +148,7 @@ class Trial {
       const Axis before = axes_[i];
       if (const char* violated = axes_[i].go(speeds[i], emergency_, yielded)) return told(violated, before, speeds[i]);
     }
+    if (beside_the_line(next)) return told("curvature", axes_[1], next.angular);
     if (next.linear != -mirrored.linear || next.angular != -mirrored.angular) {
       return told("reverse", axes_[0], mirrored.linear);
     }
@@ -173,6 +187,7 @@ class Trial {
   SpeedLimiter limiter_{limits_};
   SpeedLimiter mirror_{limits_};
   PlanarTwist target_;
+  std::optional<PlanarTwist> line_;  ///< the twist that it comes from, or goes to, straight from or to standstill
   bool emergency_ = false;
   int cycle_ = 0;
 };

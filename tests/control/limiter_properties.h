@@ -8,6 +8,7 @@
 ///   zero          no axis is beyond zero unless its target is, or was when it went there
 ///   overshoot     a target is passed by no more than a²/(2·jerk) of the acceleration at the time it was given
 ///   arrival       a target that stays is reached exactly, within the time of its S-curve, and kept
+///   curvature     from standstill, and from a steady motion to it, the commanded one where it is to be kept
 ///   reverse       the mirrored commands give the mirrored motion, bit for bit
 
 #include <cstdint>

@@ -24,8 +24,8 @@ def test_a_count_has_no_reference():
     assert bench.to_table({"bench": "step", "rows": [row]}).splitlines()[1].split() == ["gate", "allocations", "0"]
 
 
-def program(folder, text):
-    path = folder / "bench_step"
+def program(folder, text, name="bench_step"):
+    path = folder / name
     path.write_text(f"#!{sys.executable}\n{text}\n")
     path.chmod(0o755)
 
@@ -56,6 +56,21 @@ def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])
     assert (
-        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving"
+        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving, limiter, drive"
         in capsys.readouterr().err
     )
+
+
+@pytest.mark.parametrize(("failed", "code"), [(0, 0), (1, 1)])
+def test_a_limiter_that_violates_a_property_is_a_failure(tmp_path, monkeypatch, failed, code):
+    program(
+        tmp_path,
+        f"""import json, sys
+row = {{"unit": "", "reference": 0, "reference_name": "none", "ratio": 0}}
+rows = [row | {{"name": "sequences", "value": int(sys.argv[2])}}]
+rows.append(row | {{"name": "sequences failed", "value": {failed}}})
+print(json.dumps({{"bench": "limiter", "rows": rows}}))""",
+        "bench_limiter",
+    )
+    monkeypatch.setattr(sys, "argv", ["bench", "limiter", "--runs", "7", "--programs", str(tmp_path)])
+    assert bench.main() == code

@@ -1,0 +1,55 @@
+"""The drive does what its limits promise, on the simulated machine; `scripts/bench drive` shows the same figures."""
+
+import pytest
+from robot_control import ClosedLoop, drive_figures
+from robot_control.drive_promises import ROBOTS, curves, rest, stops, straight
+from robot_control.robots import DIFFBOT, robot_names
+
+
+@pytest.fixture(params=ROBOTS)
+def robot(request) -> str:
+    if request.param not in robot_names():
+        pytest.skip(f"{request.param}: no description here; ROBOT_CORPUS names the folder of real robots")
+    return request.param
+
+
+def expect(figures):
+    told = [f"{figure.name} {figure.value:.4g} {figure.unit}, allowed {figure.bound:.4g}" for figure in figures]
+    print("\n".join(told))
+    assert figures
+    assert not [line for line, figure in zip(told, figures, strict=True) if not figure.good]
+
+
+def test_follows_its_profile_as_it_is_and_loaded(robot):
+    expect(straight(robot))
+
+
+def test_keeps_a_curve_that_saturates_a_wheel(robot):
+    expect(curves(robot))
+
+
+def test_stops_where_its_limits_predict(robot):
+    expect(stops(robot))
+
+
+def test_is_quiet_at_rest_holds_on_a_slope_and_does_not_jump():
+    expect(rest(DIFFBOT))
+
+
+@pytest.mark.parametrize(("deceleration", "jerk"), [(0.5, 10.0), (2.0, 0.0), (2.0, 3.0)])
+def test_stops_as_predicted_with_other_limits(deceleration, jerk):
+    """Weaker than the acceleration, stronger, without and with little jerk."""
+    limits = {
+        "max_linear_deceleration": deceleration,
+        "max_linear_emergency_deceleration": 2.5,
+        "max_linear_jerk": jerk,
+    }
+    loop = ClosedLoop({"diff_drive_controller": limits})
+    loop.run(3.0, (0.8, 0.0))
+    log = loop.run(4.0, (0.0, 0.0))
+    predicted = loop.stop_distance(0.8)
+    assert log["truth_x"][-1] - log["truth_x"][0] == pytest.approx(predicted, rel=0.03)
+
+
+def test_a_figure_that_is_no_number_is_not_good():
+    assert not drive_figures.Figure("way", float("nan"), 1.0, "m").good
