@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdio>
 
+#include "control/drive_limits.h"
+
 namespace robot_control {
 namespace {
 
@@ -18,10 +20,12 @@ std::string format(const char* pattern, Values... values) {
 }  // namespace
 
 CommandReport::CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters)
-    : kinematics_(robot),
-      limits_{parameters.max_linear_speed, parameters.max_angular_speed, parameters.max_linear_acceleration,
-              parameters.max_angular_acceleration},
-      timeout_(parameters.cmd_vel_timeout) {}
+    : kinematics_(robot), limits_(speed_limits(parameters)), timeout_(parameters.cmd_vel_timeout) {}
+
+void CommandReport::limit(const DriveControllerParameters& parameters) {
+  limits_ = speed_limits(parameters);
+  timeout_ = parameters.cmd_vel_timeout;
+}
 
 std::string CommandReport::speeds(const PlanarTwist& wish) const {
   const double scale = kinematics_.wheel_speed_scale(wish);

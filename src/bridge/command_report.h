@@ -24,6 +24,9 @@ class CommandReport {
  public:
   CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters);
 
+  /// Other limits and another timeout, from now on.
+  void limit(const DriveControllerParameters& parameters);
+
   /// Any number of cycles may lie between two frames.
   std::vector<ReportLine> look(const CommandFrame& command);
 

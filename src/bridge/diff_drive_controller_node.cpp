@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <atomic>
 #include <mutex>
 #include <utility>
 
@@ -9,10 +10,12 @@
 #include "bridge/command_report.h"
 #include "bridge/diagnostics.h"
 #include "bridge/input_topic.h"
+#include "bridge/live_overrides.h"
 #include "bridge/motion_messages.h"
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
 #include "bridge/reason_history.h"
+#include "bridge/tuning_messages.h"
 #include "runtime/controller_process.h"
 
 namespace robot_control {
@@ -27,6 +30,9 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
         command_report_(robot(), parameters().controller) {}
 
   void connect(ros::NodeHandle& handle) override {
+    expect_monitor();
+    ros::NodeHandle own("~");
+    set_parameters_ = own.advertiseService("set_parameters", &DiffDriveControllerNode::set_parameters, this);
     joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
@@ -58,6 +64,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     joint_targets_.publish(joint_targets(command_, robot(), stamp));
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
     drive_state_.publish(drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp));
+    if (report_outdated_.exchange(false)) command_report_.limit(process().retuning().in_force());
     tell(command_report_.look(command_));
   }
 
@@ -83,6 +90,38 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     const bool found = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
     if (found) loop_ns_ = sensors.head.stamp_ns;
     return loop_ns_;
+  }
+
+  /// Whatever it cannot read keeps it from starting, too.
+  void expect_monitor() {
+    try {
+      process().retuning().expect_monitor(parameters_of("safety_monitor"));
+    } catch (const ParameterError&) {
+    }
+  }
+
+  bool set_parameters(msg::SetParametersRequest& request, msg::SetParametersResponse& response) {
+    const std::lock_guard lock(tuning_mutex_);  // what the server is told last is what holds
+    try {
+      const Retuned retuned = process().retuning().set(request.parameters);
+      follow(process().retuning().in_force());
+      const std::string unwritten = write_overrides(retuned.values);
+      response.success = 1;
+      response.message = sentence(retuned) + (unwritten.empty() ? "" : "; " + unwritten);
+      ROS_INFO("set_parameters: %s", response.message.c_str());
+    } catch (const ParameterError& error) {
+      response.success = 0;
+      response.message = error.what();
+      ROS_WARN("%s", response.message.c_str());
+    }
+    return true;
+  }
+
+  /// What beside the controller goes by its limits.
+  void follow(const DriveControllerParameters& parameters) {
+    const std::lock_guard lock(input_mutex_);
+    input_.limit(parameters.cmd_vel_timeout);
+    report_outdated_.store(true);
   }
 
   void look_at_senders() {
@@ -119,6 +158,9 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   ros::Publisher drive_state_;
+  ros::ServiceServer set_parameters_;
+  std::mutex tuning_mutex_;                   ///< one set_parameters at a time
+  std::atomic<bool> report_outdated_{false};  ///< other limits hold than `command_report_` knows
   std::mutex input_mutex_;
   CommandInput input_;
   std::int64_t loop_ns_ = 0;

@@ -109,6 +109,15 @@ void fill_setup(const std::string& node, Setup& setup) {
 
 }  // namespace
 
+Parameters parameters_of(const std::string& node) {
+  std::vector<Overlay> overlays;
+  append(overlays, "robot", "robot");
+  append(overlays, node, node, {"config", "urdf"});
+  std::string path;
+  if (!ros::param::get(ros::names::resolve(node + "/config"), path)) path = config_path();
+  return read_parameters(path, overlays);
+}
+
 Setup read_setup(const std::string& node) {
   Setup setup;
   try {

@@ -31,6 +31,9 @@ struct Setup {
 /// too; empty when they agree.
 std::string clock_problem(ClockMode clock, bool use_sim_time);
 
+/// What the node `node` beside this one reads where it starts now: its file, its overrides. Throws ParameterError.
+Parameters parameters_of(const std::string& node);
+
 /// `node`: program and block of the YAML file ("state_estimator"). The robot is that of description.h. Throws
 /// SetupError with all problems at once.
 Setup read_setup(const std::string& node);

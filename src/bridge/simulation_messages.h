@@ -10,6 +10,7 @@
 #include <std_srvs/SetBoolResponse.h>
 
 #include "bridge/messages.h"
+#include "bridge/service_word.h"
 
 namespace robot_control {
 namespace msg {
@@ -23,17 +24,6 @@ using StepResponse = robot_control::StepResponse_<Allocator>;
 
 }  // namespace msg
 
-/// One word for a request and its response, in the two forms that roscpp asks for.
-template <class Word>
-struct ServiceWord {
-  static const char* value() { return Word::kText; }
-  template <class Message>
-  static const char* value(const Message&) {
-    return Word::kText;
-  }
-};
-
-// `rossrv md5 SERVICE`: hashes of what stands in the .srv files, comments aside.
 struct SetBoolHash {
   static constexpr const char* kText = "09fb03525b03e7ea1fd3992bafd87e16";
 };

@@ -1,5 +1,6 @@
 #include "parameters/problem_list.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -39,8 +40,11 @@ std::string listing(std::string_view subject, const std::vector<std::string>& li
 std::string printable(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   constexpr std::string_view kDigits = "0123456789abcdef";
+  std::size_t end = std::min(text.size(), kLongest);
+  const auto continues = [&](std::size_t at) { return (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80; };
+  while (end > 0 && end < text.size() && continues(end)) --end;  // no half of a UTF-8 character
   std::string result;
-  for (const char character : text.substr(0, kLongest)) {
+  for (const char character : text.substr(0, end)) {
     const auto byte = static_cast<unsigned char>(character);
     if (byte >= 0x20 && byte != 0x7f) {
       result += character;
@@ -48,7 +52,7 @@ std::string printable(std::string_view text) {
       result += {'\\', 'x', kDigits[byte / 16], kDigits[byte % 16]};
     }
   }
-  return text.size() > kLongest ? result + "…" : result;
+  return text.size() > end ? result + "…" : result;
 }
 
 std::string shortest(double value) {

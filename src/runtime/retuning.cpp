@@ -28,7 +28,8 @@ double smallest_radius(const RobotModel& robot) {
 std::string sentence(const Retuned& retuned) {
   std::string text = "set " + std::to_string(retuned.count) + ": ";
   for (const LiveValue& value : retuned.values) {
-    text += (&value == &retuned.values.front() ? "" : ", ") + value.key + " " + value.before + " → " + value.after;
+    text +=
+        (&value == &retuned.values.front() ? "" : ", ") + value.key + " from " + value.before + " to " + value.after;
   }
   return text;
 }

@@ -29,7 +29,7 @@ struct Retuned {
   std::vector<LiveValue> values;
 };
 
-/// "set 2: max_linear_speed 1 → 0.5, pid_kp derived → 1.5"
+/// "set 2: max_linear_speed from 1 to 0.5, pid_kp from derived to 1.5"
 std::string sentence(const Retuned& retuned);
 
 class Retuning {

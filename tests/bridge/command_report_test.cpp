@@ -76,6 +76,15 @@ TEST_F(CommandReportTest, TellsTheSpeedsAfterTheLimits) {
                                                  "limited to 1 m/s, 0.4 rad/s)"));
 }
 
+TEST_F(CommandReportTest, GoesByTheLimitsThatHold) {
+  DriveControllerParameters other;
+  other.max_angular_speed = 0.1;
+  other.cmd_vel_timeout = 0.4;
+  report().limit(other);
+  EXPECT_THAT(receive(0.5, 0.2).at(0).text, HasSubstr("limited to 0.25 m/s, 0.1 rad/s"));
+  EXPECT_THAT(time_out().at(0).text, HasSubstr("silent for 0.4 s"));
+}
+
 TEST_F(CommandReportTest, SpeaksOfNoLimitWhereNoneWasMet) {
   EXPECT_THAT(receive(1, 2)[0].text, Not(HasSubstr("limited")));
 }

@@ -132,6 +132,11 @@ TEST_F(LiveParameters, RefusesWhatIsNoMap) {
   }
 }
 
+TEST_F(LiveParameters, QuotesWhatWasSentUpToAWholeCharacter) {
+  const std::string start(59, 'x');
+  EXPECT_THAT(problem(start + "éx"), HasSubstr("request = " + start + "…: "));
+}
+
 TEST_F(LiveParameters, TellsEveryReasonAtOnce) {
   const LiveChange change =
       read("{max_linear_speed: 0, pid_kp: .nan, command_rate: 1, cmd_vel_timeout: 0.001, typo: 1}");

@@ -44,7 +44,7 @@ class RetuningTest : public ::testing::Test {
 
 TEST_F(RetuningTest, HandsOverTheWholeSet) {
   const Retuned retuned = retuning.set("{max_linear_speed: 0.5, pid_kp: 1.5}");
-  EXPECT_EQ(sentence(retuned), "set 1: max_linear_speed 1 → 0.5, pid_kp derived → 1.5");
+  EXPECT_EQ(sentence(retuned), "set 1: max_linear_speed from 1 to 0.5, pid_kp from derived to 1.5");
   const DriveTuning tuning = handed_over();
   EXPECT_EQ(tuning.count, 1u);
   EXPECT_EQ(tuning.linear.speed, 0.5);
@@ -81,7 +81,7 @@ TEST_F(RetuningTest, RefusesTheWholeSetWithEveryReason) {
     EXPECT_THAT(text, HasSubstr(reason));
   }
   EXPECT_EQ(retuning.in_force().max_linear_speed, 1.0);
-  EXPECT_EQ(sentence(retuning.set("{max_linear_speed: 0.9}")), "set 1: max_linear_speed 1 → 0.9");
+  EXPECT_EQ(sentence(retuning.set("{max_linear_speed: 0.9}")), "set 1: max_linear_speed from 1 to 0.9");
 }
 
 // A speed of the wheels ω needs a limit of max(1.1 ω, ω + 1): 18.75/1.1 = 17.05 rad/s, 1.2 m/s beside 2 rad/s.

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""diff_drive_controller/set_parameters, called as a user of ROS calls it, while the robot drives."""
+
+import csv
+import random
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+import rospy
+import rostest
+from robot_control.msg import SafetyStatus
+from robot_control.srv import SetParameters
+from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
+
+SERVICE = f"/{CONTROLLER}/set_parameters"
+START = "{max_linear_speed: 1.0, cmd_vel_timeout: 1.25}"
+"""What the tests begin with, whatever one before left on the parameter server."""
+
+
+class SetParametersTest(RobotTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        super().setUpClass()
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.telemetry = Program("telemetry", f"_directory:={cls.folder.name}")
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.telemetry.end()
+        super().tearDownClass()
+        cls.folder.cleanup()
+
+    def setUp(self) -> None:
+        rospy.wait_for_service(SERVICE, LIMIT)
+        self.robot.await_ready()
+        self.accept(START)
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+
+    def call(self, parameters: str) -> tuple[bool, str]:
+        answer = rospy.ServiceProxy(SERVICE, SetParameters)(parameters)
+        return answer.success, answer.message
+
+    def accept(self, parameters: str) -> int:
+        """The number of the set."""
+        success, message = self.call(parameters)
+        self.assertTrue(success, message)
+        return int(re.match(r"set (\d+): ", message)[1])
+
+    def refuse(self, parameters: str) -> str:
+        success, message = self.call(parameters)
+        self.assertFalse(success, message)
+        self.assertTrue(message.startswith("set_parameters refused, nothing is changed"), message)
+        return message
+
+    def rows(self, number: int) -> list[dict[str, str]]:
+        """Rows of the log that were computed with this set, as far as they are written."""
+        with Path(self.folder.name, "run.csv").open() as file:
+            rows = (row for row in csv.DictReader(file) if row["tuning"] == str(number))
+            return [row for row in rows if None not in row.values()]
+
+    def test_a_set_is_taken_while_the_robot_drives_on(self) -> None:
+        number = self.accept("{max_linear_speed: 0.3, pid_kp: 1.5, feed_forward: {mass: 12.5}}")
+        self.robot.drive_until("0.3 m/s", lambda: 0.2 < self.robot.speed < 0.32)
+        self.assertEqual(rospy.get_param(f"{CONTROLLER}/max_linear_speed"), 0.3)
+        self.assertEqual(rospy.get_param(f"{CONTROLLER}/feed_forward/mass"), 12.5)
+        told = f"set_parameters: set {number}: max_linear_speed from 1 to 0.3, pid_kp from"
+        wait_for("a line of it", lambda: told in self.robot.nodes[CONTROLLER].output)
+
+    def test_the_log_tells_which_rows_belong_to_which_set(self) -> None:
+        first = self.accept("{max_linear_jerk: 8.5}")
+        wait_for("rows of it", lambda: len(self.rows(first)) > 0)
+        second = self.accept("{max_linear_jerk: 10, pid_kd: 0.0005}")
+        wait_for("rows of the next", lambda: len(self.rows(second)) > 0)
+        for number, jerk in ((first, 8.5), (second, 10)):
+            self.assertEqual({float(row["max_linear_jerk"]) for row in self.rows(number)}, {jerk})
+        self.assertLess(int(self.rows(first)[-1]["cycle"]), int(self.rows(second)[0]["cycle"]))
+        self.accept("{pid_kd: 0.0}")
+
+    def test_a_set_is_refused_whole_with_every_reason(self) -> None:
+        rospy.delete_param(f"{CONTROLLER}/max_linear_speed")
+        bad = "{max_linear_speed: 0.2, max_angular_speed: 9, pid_kp: 200, pid_kd: .nan, command_rate: 5, max_sped: 1}"
+        message = self.refuse(bad)
+        for reason in ("safety_monitor", "unstable", "must be finite", "read at start alone", "unknown key"):
+            self.assertIn(reason, message)
+        self.assertFalse(rospy.has_param(f"{CONTROLLER}/max_linear_speed"))
+        wait_for("a line of it", lambda: "nothing is changed: 5 problems" in self.robot.nodes[CONTROLLER].output)
+        self.robot.drive_until("0.5 m/s, as before", self.robot.driving)
+
+    def test_the_command_line_of_the_manual_works(self) -> None:
+        command = ["rosservice", "call", SERVICE, "parameters: '{max_linear_speed: 0.5}'"]
+        answer = subprocess.run(command, capture_output=True, text=True, timeout=2 * LIMIT, check=False)
+        self.assertIn("success: True", answer.stdout, answer.stderr)
+        self.assertEqual(rospy.get_param(f"{CONTROLLER}/max_linear_speed"), 0.5)
+
+    def test_a_controller_that_is_started_again_keeps_the_set(self) -> None:
+        self.accept("{max_linear_speed: 0.3, keep_curvature: false}")
+        self.robot.nodes[CONTROLLER].kill()
+        wait_for("the stop", lambda: self.robot.state == SafetyStatus.STOPPED)
+        self.robot.start(CONTROLLER)
+        rospy.wait_for_service(SERVICE, LIMIT)
+        self.robot.release()
+        output = self.robot.nodes[CONTROLLER].output
+        self.assertIn(f"/{CONTROLLER}/max_linear_speed = 0.3 overrides {CONTROLLER}.max_linear_speed", output)
+        self.assertIn(f"/{CONTROLLER}/keep_curvature = false overrides", output)
+        self.robot.drive_until("0.3 m/s", lambda: 0.2 < self.robot.speed < 0.32)
+        self.assertEqual(self.accept("{keep_curvature: true}"), 1)
+
+    def test_whatever_is_sent_the_node_lives(self) -> None:
+        good = "{max_linear_speed: 0.5, keep_curvature: true, cmd_vel_timeout: 1.0}"
+        for text in ("", "{}", "[" * 4000, "{a: " * 1000, "&a [*a]", "x" * 10**6, "{pid_kp: " + "9" * 5000 + "}", "\0"):
+            self.refuse(text)
+        for seed in range(200):
+            chance = random.Random(seed)
+            letters = list(good)
+            for _ in range(chance.randint(1, 6)):
+                letters.insert(chance.randint(0, len(letters)), chance.choice(":#-[]{}\"'\n \t,!&*|>%@?.~\0é"))
+            self.call("".join(letters))
+        self.assertTrue(self.robot.nodes[CONTROLLER].running)
+        self.accept(START)
+        self.robot.drive_until("0.5 m/s, as before", self.robot.driving)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "set_parameters", SetParametersTest)
