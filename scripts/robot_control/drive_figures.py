@@ -74,9 +74,11 @@ class Straight:
     late: float  # s until it has settled after its profile has
 
 
-def straight(robot: str, speed: float, payload: float = 0.0) -> Straight:
-    """0 → `speed` [m/s] → 0 with `payload` [kg] unknown to the controller."""
-    loop = make(robot, {"mujoco_plant": {"payload": payload}})
+def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str, Any] | None = None) -> Straight:
+    """0 → `speed` [m/s] → 0 with `payload` [kg] unknown to the controller; `params` over the defaults."""
+    loop = make(
+        robot, {**(params or {}), "mujoco_plant": {"payload": payload, **(params or {}).get("mujoco_plant", {})}}
+    )
     phases = (loop.run(3.0, (speed, 0.0)), loop.run(3.0, (0.0, 0.0)))
     log = {name: np.concatenate([phase[name] for phase in phases]) for name in phases[0]}
     true, wanted = np.sign(speed) * log["truth_linear"], np.sign(speed) * profile(log)

@@ -51,5 +51,32 @@ def test_stops_as_predicted_with_other_limits(deceleration, jerk):
     assert log["truth_x"][-1] - log["truth_x"][0] == pytest.approx(predicted, rel=0.03)
 
 
+def expect_straight(params):
+    figures = drive_figures.straight(DIFFBOT, 1.0, params=params)
+    assert figures.rms < 0.02
+    return figures
+
+
+@pytest.mark.parametrize("rate", [100, 200, 500, 2000])
+def test_follows_its_profile_at_every_rate(rate):
+    figures = expect_straight({"robot": {"rate": rate}})
+    assert figures.overshoot < 0.01
+    assert figures.late < 0.1
+
+
+@pytest.mark.parametrize("counts", [64, 128, 256])
+def test_follows_its_profile_with_a_coarse_encoder_and_a_slower_tracking_loop(counts):
+    """The robot's speed is then known no better than a count per tracking time: settled cannot be told."""
+    plant, controller = {"encoder_resolution": counts}, {"tracking_bandwidth": 8.0}
+    figures = expect_straight({"mujoco_plant": plant, "diff_drive_controller": controller})
+    assert figures.overshoot < 0.04
+
+
+def test_bears_motors_with_friction_and_gears_that_nobody_told_it():
+    motor = {"motor_friction": 0.005, "motor_damping": 5e-5, "gear_ratio": 20, "rotor_inertia": 2e-5}
+    figures = expect_straight({"mujoco_plant": motor})
+    assert figures.overshoot < 0.01
+
+
 def test_a_figure_that_is_no_number_is_not_good():
     assert not drive_figures.Figure("way", float("nan"), 1.0, "m").good
