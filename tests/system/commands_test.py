@@ -22,6 +22,8 @@ SPELL = 0.5
 """s between two jumps."""
 STANDING = 0.01
 """m/s"""
+MOVED = 0.05
+"""m/s: who obeyed an old command of 0.5 m/s is faster after 0.1 s, and what is left of a ramp is slower."""
 
 
 class CommandsTest(RobotTestCase):
@@ -72,7 +74,7 @@ class CommandsTest(RobotTestCase):
         # Of a test before this one it may have been told less than 10 s ago: then it comes when they are over.
         wait_for(words, lambda: self.log.count(words) > before, every=lambda: self.desk.send_aged(0.5, age))
         self.assertEqual(self.log.count(words), before + 1, "one warning for a series")
-        self.assertLess(abs(self.robot.speed), STANDING)
+        self.assertLess(abs(self.robot.speed), MOVED)
 
     def test_a_stamped_command_drives(self) -> None:
         self.drive_stamped()
@@ -126,7 +128,7 @@ class CommandsTest(RobotTestCase):
             self.clock.jump(jump)
             end = time.monotonic() + SPELL
             while time.monotonic() < end:
-                self.assertLess(abs(self.robot.speed), STANDING, f"after a jump of {jump} s")
+                self.assertLess(abs(self.robot.speed), MOVED, f"after a jump of {jump} s")
                 time.sleep(0.01)
 
     def test_a_robot_whose_clock_jumps_alone_comes_to_rest_and_drives_on_when_it_is_right_again(self) -> None:
