@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""identify.py beside a running robot: it measures, writes, and stops when it is told to."""
+
+import contextlib
+import math
+import signal
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import rospy
+import rostest
+import yaml
+from geometry_msgs.msg import Twist
+from robot_control.msg import SafetyStatus
+from system_support import CONTROLLER, PLANT, STALL_CAUSES, Program, RobotTestCase, init_test_node, wait_for
+
+FRICTION = 0.1  # N·m, hidden in the plant
+ATTEMPTS = 3  # a stalling machine may stop the robot in the middle of the half minute that this takes
+
+
+class IdentifyTest(RobotTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node(cls.__name__)
+        rospy.set_param(f"{PLANT}/motor_friction", FRICTION)
+        rospy.set_param(f"{PLANT}/payload", 3.0)
+        super().setUpClass()
+
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.await_rest()
+        folder = tempfile.TemporaryDirectory(prefix="identify-test-")
+        self.addCleanup(folder.cleanup)
+        self.output = Path(folder.name) / "identified.yaml"
+
+    @contextlib.contextmanager
+    def silence(self) -> Iterator[None]:
+        """This test is no sender on cmd_vel meanwhile."""
+        self.robot._cmd_vel.unregister()
+        try:
+            yield
+        finally:
+            self.robot._cmd_vel = rospy.Publisher(self.robot.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
+
+    @contextlib.contextmanager
+    def started(self, *arguments: str) -> Iterator[Program]:
+        program = Program("identify.py", f"--output={self.output}", *arguments)
+        try:
+            with self.silence():
+                yield program
+        finally:
+            program.end()
+
+    def refused(self, *arguments: str) -> str:
+        """What it says when it does not begin."""
+        start = self.robot.distance
+        with self.started(*arguments) as program:
+            self.assertEqual(program.wait(60.0), 1, program.output)
+            self.assertLess(abs(self.robot.distance - start), 0.005, "no motion")
+            self.assertFalse(self.output.exists())
+            return program.output
+
+    def measured(self) -> str:
+        """Runs it to its end; what it printed."""
+        for _ in range(ATTEMPTS):
+            with self.started("--repeats=1") as program:
+                code = program.wait(120.0)
+                if code == 0:
+                    return program.output
+            stalled = self.robot.state == SafetyStatus.STOPPED and self.robot.causes <= STALL_CAUSES
+            self.assertTrue(stalled, program.output)
+            self.robot.release()
+        raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times: {program.output}")
+
+    def test_measures_the_robot_and_writes_what_its_controller_takes(self) -> None:
+        start = self.robot.distance
+        words = self.measured()
+        self.assertIn("inertia straight", words)
+        forward = yaml.safe_load(self.output.read_text())["diff_drive_controller"]["feed_forward"]
+        # The fit itself is judged in virtual time; here a wrong column, sign or unit would show.
+        self.assertAlmostEqual(forward["wheel_friction"], FRICTION, delta=0.2 * FRICTION)
+        self.assertAlmostEqual(forward["mass"], 15.0, delta=0.2 * 15.0)
+        self.assertLess(abs(self.robot.distance - start), 0.2, "it ends where it began")
+        self.assertFalse(rospy.has_param("identify_telemetry"), "nothing of its own is left on the server")
+
+        subprocess.run(["rosparam", "load", str(self.output)], check=True)
+        self.addCleanup(rospy.delete_param, CONTROLLER)
+        self.robot.restart(CONTROLLER)
+        self.robot.release()
+        line = "feed_forward/mass"
+        wait_for("the override in its log", lambda: line in self.robot.nodes[CONTROLLER].output)
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+
+    def test_reads_the_log_of_a_telemetry_that_runs_already(self) -> None:
+        telemetry = Program("telemetry", f"_directory:={self.output.parent}")
+        self.addCleanup(rospy.delete_param, "telemetry")
+        self.addCleanup(telemetry.end)
+        run = self.output.with_name("run.csv")
+        wait_for("rows", lambda: run.exists() and run.stat().st_size > 10_000)
+        self.measured()
+        self.assertTrue(telemetry.running)
+        self.assertEqual(list(self.output.parent.glob("run*.csv")), [run], "no second log")
+        forward = yaml.safe_load(self.output.read_text())["diff_drive_controller"]["feed_forward"]
+        self.assertAlmostEqual(forward["wheel_friction"], FRICTION, delta=0.2 * FRICTION)
+
+    def test_an_e_stop_ends_it_with_its_cause(self) -> None:
+        with self.started() as program:
+            wait_for("motion", lambda: abs(self.robot.speed) > 0.1)
+            self.robot.send_e_stop(True)
+            self.assertEqual(program.wait(), 1, program.output)
+            self.assertIn("the robot is STOP", program.output)
+            self.assertIn("e_stop_reset", program.output)
+        self.assertFalse(self.output.exists())
+        self.robot.send_e_stop(False)
+        wait_for("the release of the topic", lambda: not self.robot.status.active)
+        self.robot.release()
+
+    def test_ctrl_c_stops_the_robot(self) -> None:
+        with self.started() as program:
+            wait_for("motion", lambda: abs(self.robot.speed) > 0.1)
+            program.send_signal(signal.SIGINT)
+            self.assertEqual(program.wait(), 1, program.output)
+            self.assertIn("interrupted", program.output)
+            # Well before cmd_vel_timeout ends, which would stop it, too: the zero has arrived.
+            wait_for("rest", lambda: abs(self.robot.speed) < 0.01)
+        self.assertFalse(self.output.exists())
+
+    def test_refuses_too_small_a_space(self) -> None:
+        self.assertIn("--space 0.01 m", self.refused("--space=0.01"))
+
+    def test_refuses_beside_another_sender(self) -> None:
+        sender = Program("send_cmd.py", "--linear=0", "--angular=0")
+        self.addCleanup(sender.end)
+        wait_for("the sender", lambda: "cmd_vel 1" in sender.output)
+        self.assertIn("/send_cmd may send on cmd_vel", self.refused())
+
+    def test_refuses_a_stopped_robot_and_says_why(self) -> None:
+        self.assertTrue(self.robot.call("e_stop_trigger").success)
+        wait_for("the stop", lambda: self.robot.state == SafetyStatus.STOPPED)
+        self.assertIn("the robot is STOPPED", self.refused())
+        self.robot.release()
+
+    def test_refuses_a_log_that_is_none(self) -> None:
+        file = self.output.with_name("empty.csv")
+        file.write_text("")
+        self.assertIn("no columns", self.refused(f"--log={file}"))
+        self.assertTrue(math.isfinite(self.robot.speed))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "identify", IdentifyTest)
