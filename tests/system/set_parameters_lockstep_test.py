@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""set_parameters between the same two cycles: four nodes and the closed loop in one process give the same numbers."""
+
+import csv
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from robot_control import ClosedLoop
+from robot_control.srv import SetParameters, Step
+from std_srvs.srv import SetBool
+from system_support import CONTROLLER, ESTIMATOR, LIMIT, MONITOR, PLANT, Program, Robot, init_test_node, wait_for
+
+CYCLES = 600
+"""Between two sets: at 0.5 m/s after the first."""
+SETS = (
+    {"pid_kp": 1.5, "pid_kd": 0.001, "max_linear_speed": 0.4},
+    {"feed_forward": {"mass": 13.0}, "max_linear_jerk": 4.0, "keep_curvature": False},
+)
+REQUESTS = (
+    "{pid_kp: 1.5, pid_kd: 0.001, max_linear_speed: 0.4}",
+    "{feed_forward: {mass: 13.0}, max_linear_jerk: 4.0, keep_curvature: false}",
+)
+
+
+class SetParametersLockstepTest(unittest.TestCase):
+    def setUp(self) -> None:
+        init_test_node("set_parameters_lockstep_test")
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.log = Path(folder.name, "run.csv")
+        self.script = Path(folder.name, "commands.csv")
+        self.script.write_text("cycle,linear,angular\n1,0.5,0.2\n1000,0.5,0.2\n")
+        rospy.set_param("/use_sim_time", True)
+        rospy.set_param("/robot", {"clock": "lockstep", "command_script": str(self.script), "wait_for_telemetry": True})
+        self.telemetry = Program("telemetry", f"_directory:={folder.name}")
+        self.addCleanup(self.telemetry.end)
+        self.robot = Robot()
+        self.addCleanup(self.robot.end)
+
+    def call(self, service: str, form: type, *arguments: object) -> None:
+        rospy.wait_for_service(service, LIMIT)
+        answer = rospy.ServiceProxy(service, form)(*arguments)
+        self.assertTrue(answer.success, answer.message)
+
+    def step(self) -> None:
+        self.call(f"{PLANT}/step", Step, CYCLES)
+
+    def rows(self) -> list[dict[str, str]]:
+        with self.log.open() as file:
+            return list(csv.DictReader(file))
+
+    def test_the_same_numbers_in_every_cycle(self) -> None:
+        self.robot.start(PLANT)
+        self.call(f"{PLANT}/set_pause", SetBool, True)  # cycle 0 waits for the others
+        self.robot.start(ESTIMATOR, CONTROLLER, MONITOR)
+        rospy.wait_for_service("e_stop_reset", LIMIT)
+        rospy.wait_for_service(f"{CONTROLLER}/set_parameters", LIMIT)
+        self.step()
+        for request in REQUESTS:
+            self.call(f"{CONTROLLER}/set_parameters", SetParameters, request)
+            self.step()
+        wait_for("every row", lambda: self.log.exists() and len(self.rows()) >= 3 * CYCLES)
+        self.telemetry.end()
+
+        loop = ClosedLoop(params={"robot": {"command_script": str(self.script)}})
+        parts = [loop.step(CYCLES)]
+        for values in SETS:
+            loop.set_parameters(values)
+            parts.append(loop.step(CYCLES))
+        for k, row in enumerate(self.rows()):
+            for name, cell in row.items():
+                expected = float(parts[k // CYCLES][name][k % CYCLES])
+                number = float(cell) if cell else math.nan
+                same = number == expected or (math.isnan(number) and math.isnan(expected))
+                self.assertTrue(same, f"{name} in cycle {k}: {cell} and {expected}")
+        self.assertEqual({row["tuning"] for row in self.rows()}, {"0", "1", "2"})
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "set_parameters_lockstep", SetParametersLockstepTest)
