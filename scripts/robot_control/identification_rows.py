@@ -48,6 +48,13 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
     moving = driven & _any_wheel_planned(log, joints)
     if not moving.any():
         raise UnfitError("the wheels were asked for nothing but zero: drive ramps and turns, or let this tool do it")
+    for joint in joints:
+        effort = log[f"{joint}_effort"][moving]
+        if np.ptp(effort) == 0:
+            raise UnfitError(
+                f"{joint}: its measured effort is {effort[0]:g} N·m throughout: the driver does not measure it; "
+                "let it report at least the effort that it was told"
+            )
     clamped = driven & (_bits(log, "gate_reasons", CLAMPED) | _bits(log, "command_reasons", SATURATED))
     _refuse(
         clamped & moving,

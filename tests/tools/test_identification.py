@@ -112,6 +112,11 @@ def test_refuses_a_robot_that_was_asked_for_nothing(log):
     assert "nothing but zero" in refusal(log)
 
 
+def test_refuses_a_drive_that_measures_no_torque(log):
+    log["right_effort"][:] = 0
+    assert "right: its measured effort is 0 N·m throughout" in refusal(log)
+
+
 def test_refuses_saturated_torque(log):
     log["gate_reasons"][::10] = 1 << 10
     assert "at its limit" in refusal(log)
