@@ -76,7 +76,7 @@ def recording(running: str, config: str, going_on: Callable[[], bool]) -> Iterat
             _end(process)
             with contextlib.suppress(KeyError, rospy.ROSException, OSError):  # private parameters outlive their node
                 rospy.delete_param(NODE)
-    shutil.rmtree(folder, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _command(folder: Path, config: str) -> list[str]:
