@@ -46,7 +46,7 @@ JointCommand effort_command(double velocity, double effort) noexcept {
   return {.mode = JointMode::kEffort, .velocity = velocity, .effort = effort};
 }
 
-constexpr double kLeastPart = 0.01;  // a ramp never stands still for good
+constexpr double kLeastPart = 0.2;  // header
 
 constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;

@@ -22,12 +22,13 @@
 /// there, are scaled until no wheel exceeds what kinematics.h lets it use of its joint's limit. Torque: with effort_i =
 /// rest_i + inertial_i of the last cycle, inertial_i what feed-forward gives for its acceleration, the limiter may use
 ///
-///   part = used·min_i max(effort_limit_i − sign(inertial_i)·rest_i, 0)/|inertial_i|,   kLeastPart ≤ part ≤ 1
+///   part = used·min_i max(effort_limit_i − sign(inertial_i)·rest_i, 0)/|inertial_i|,   0.2 ≤ part ≤ 1
 ///
 /// of the acceleration limits, where `used` is what it used in that cycle: every wheel slows down its ramp alike, and
 /// no plan runs away from wheels that cannot follow. A ramp towards zero is never stretched: who cannot stop as planned
-/// is for the safety monitor to see (not_stopping, runaway). `rest` holds what the wheels lag behind, so wrong masses and
-/// slopes count, too.
+/// is for the safety monitor to see (not_stopping, runaway). So is who is held fast or pushed back: after five times
+/// its ramp the target is the wished speed whatever the wheels do (stall, wrong_direction). `rest` holds what the
+/// wheels lag behind, so wrong masses and slopes count, too.
 ///
 /// A state frame that is missing, held or invalid does not stop the drive: the wheel loops need only the encoders.
 /// Skipped cycles: dt = (k − k_previous)·period. After more than kCommandLife the driver has braked by itself.

@@ -60,7 +60,8 @@ TEST(TorqueSaturation, KeepsTheCurveWithAPayloadThatFeedForwardDoesNotKnow) {
   loaded.yaw_inertia *= 2;
   ControlBench bench(with_effort_limit(kWeak), patient(), 1e-3, loaded);
   bench.plant.counts = 4096;
-  EXPECT_LT(off_the_arc(bench, 6), 0.05);  // the torque that one count moves is a third of the limit
+  // One count moves the torque by a third of the limit, which clips it unevenly; each wheel for itself loses all of it.
+  EXPECT_LT(off_the_arc(bench, 6), 0.1);
   EXPECT_NEAR(bench.plant.twist.linear, kCurve.linear, 0.01);
 }
 
@@ -106,14 +107,14 @@ TEST(TorqueSaturation, AStopInTheMiddleOfTheRampBeginsAtOnce) {
   EXPECT_LT(fastest, speed + 0.62 * 0.62 / 20 + 2 * 0.62e-3);
 }
 
-TEST(TorqueSaturation, AWallIsToldFromARampByTheWheelsThatDoNotTurn) {
+TEST(TorqueSaturation, TheTargetGoesOnWhereTheWheelsCannot) {
   ControlBench bench(with_effort_limit(kWeak), patient());
   bench.plant.slope = 60 * std::numbers::pi / 180;  // steeper than it can climb
   bench.run(0.3);
   bench.send(0.5, 0);
-  bench.run(3.0);
+  bench.run(5 * (0.5 + 0.1));  // a fifth of the ramp 0.5/1 + 1/10 s
   EXPECT_NEAR(bench.command.joints[0].effort, kWeak, 1e-9);
-  EXPECT_GT(bench.command.joints[0].velocity, 0) << "it goes on asking: safety's stall looks at the target";
+  EXPECT_NEAR(bench.command.joints[0].velocity, 5, 1e-9) << "what the safety monitor compares the wheel with";
 }
 
 TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {

@@ -5,6 +5,8 @@ from robot_control import ClosedLoop, drive_figures
 from robot_control.drive_promises import ROBOTS, curves, rest, stops, straight
 from robot_control.robots import DIFFBOT, robot_names
 
+STOPPED = 4  # SupervisorState
+
 
 @pytest.fixture(params=ROBOTS)
 def robot(request) -> str:
@@ -76,6 +78,18 @@ def test_bears_motors_with_friction_and_gears_that_nobody_told_it():
     motor = {"motor_friction": 0.005, "motor_damping": 5e-5, "gear_ratio": 20, "rotor_inertia": 2e-5}
     figures = expect_straight({"mujoco_plant": motor})
     assert figures.overshoot < 0.01
+
+
+def test_a_robot_that_is_pushed_back_at_full_torque_is_stopped():
+    """Its ramp waits for wheels that cannot follow, but not so long that nobody could tell."""
+    params = {
+        "robot": {"wheel_effort_limit": 0.4},
+        "mujoco_plant": {"push_x": -9.0, "push_start": 1.0, "push_duration": 10.0},
+    }
+    loop = ClosedLoop(params)
+    loop.run(0.9, (0.0, 0.0))
+    log = loop.run(5.0, (0.5, 0.0))  # 0.5 m/s at a fifth of 1 m/s², doubled
+    assert log["supervisor_state"][-1] == STOPPED
 
 
 def test_a_figure_that_is_no_number_is_not_good():
