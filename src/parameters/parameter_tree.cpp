@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "parameters/text_file.h"
+#include "parameters/value_reader.h"
 
 namespace robot_control {
 namespace {
@@ -181,7 +182,13 @@ void lay_request_over(const std::string& block, const std::string& text, Paramet
                 [&](const std::string& path, Entry entry, const std::string&) {
                   entry.origin = "request";
                   entry.overlay = true;
-                  tree.entries.insert_or_assign(path, std::move(entry));
+                  Entry& old = tree.entries[path];
+                  if (old.overlay) {
+                    problems.add({printable(path), as_written(entry), "given twice, first as " + as_written(old),
+                                  "request", "remove one"});
+                    return;
+                  }
+                  old = std::move(entry);
                 });
     });
   } catch (const YAML::Exception& error) {

@@ -125,6 +125,13 @@ TEST_F(LiveParameters, RefusesUnknownKeysAndMeansTheNearest) {
   EXPECT_THAT(problem("{? [pid_kp] : 1}"), HasSubstr("a key must be a plain word"));
 }
 
+TEST_F(LiveParameters, RefusesAKeyInBothItsSpellings) {
+  EXPECT_EQ(problem("{feed_forward.mass: 13, feed_forward: {mass: 15}}"),
+            "diff_drive_controller.feed_forward.mass = 15: given twice, first as 13 [request]; remove one");
+  EXPECT_THAT(problem("{feed_forward: {mass: 15}, feed_forward.mass: 15}"), HasSubstr("given twice, first as 15"));
+  EXPECT_THAT(read("{feed_forward.mass: 13, feed_forward: {yaw_inertia: 1}}").problems, IsEmpty());
+}
+
 TEST_F(LiveParameters, RefusesWhatIsNoMap) {
   for (const char* text : {"", " ", "{}", "[]", "[max_linear_speed, 1]", "max_linear_speed", "1", "~", "---", "# none",
                            "{a: 1}\n---\n{b: 2}", "{", "}", "{pid_kp: 1", ",", "\"", "{pid_kp: *x}", "!!map"}) {
