@@ -101,7 +101,17 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   }
 
   bool set_parameters(msg::SetParametersRequest& request, msg::SetParametersResponse& response) {
-    const std::lock_guard lock(tuning_mutex_);  // what the server is told last is what holds
+    // One set at a time: what the server is told last is what holds. Nobody waits for it: the master may hang, and a
+    // callback thread has to be left for the commands.
+    const std::unique_lock lock(tuning_mutex_, std::try_to_lock);
+    if (!lock) {
+      response.success = 0;
+      response.message =
+          "set_parameters refused, nothing is changed: another set is being taken, or waits for the ROS master; call "
+          "again";
+      ROS_WARN("%s", response.message.c_str());
+      return true;
+    }
     try {
       const Retuned retuned = process().retuning().set(request.parameters);
       follow(process().retuning().in_force());
@@ -159,7 +169,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   ros::Publisher drive_state_;
   ros::ServiceServer set_parameters_;
-  std::mutex tuning_mutex_;                   ///< one set_parameters at a time
+  std::mutex tuning_mutex_;                   ///< one set_parameters at a time; only ever tried
   std::atomic<bool> report_outdated_{false};  ///< other limits hold than `command_report_` knows
   std::mutex input_mutex_;
   CommandInput input_;

@@ -9,7 +9,8 @@
 
 namespace robot_control {
 
-/// "pid_kp" → ~pid_kp, "feed_forward.mass" → ~feed_forward/mass. Empty, or why they could not be written.
+/// "pid_kp" → ~pid_kp, "feed_forward.mass" → ~feed_forward/mass. Empty, or which of them could not be written, and why.
+/// May take as long as the master does.
 std::string write_overrides(const std::vector<LiveValue>& values);
 
 }  // namespace robot_control
