@@ -37,7 +37,7 @@ CommandInput::CommandInput(double timeout, bool one_sender) : one_sender_(one_se
 void CommandInput::limit(double timeout) {
   timeout_ = timeout;
   timeout_ns_ = nanoseconds(timeout);
-  senders_.limit(nanoseconds(timeout > 0 ? timeout : kSenderWindow));
+  senders_.limit(nanoseconds(std::max(timeout, kSenderWindow)));
 }
 
 void CommandInput::hear(const ArrivedCommand& arrived, const ArrivalTime& time) {

@@ -4,9 +4,9 @@
 /// A message passes in this order:
 ///   1. its stamp (command_stamp.h): refused where it is too old or of the future; the command before it stands, as
 ///      long as it lives, and whoever sent it is no sender;
-///   2. its sender (command_senders.h): with `one_sender`, while two or more were heard within cmd_vel_timeout (where
-///      that is 0: within kSenderWindow), messages of all of them are refused, and the robot ramps to rest until one is
-///      left. Without, each message overrides the one before, and that is told;
+///   2. its sender (command_senders.h): with `one_sender`, while two or more were heard within cmd_vel_timeout, but no
+///      less than kSenderWindow, messages of all of them are refused, and the robot ramps to rest until one is left.
+///      Without, each message overrides the one before, and that is told;
 ///   3. NaN and infinity are the controller's to refuse (control/command_watch.h).
 ///
 /// Told: one warning per sender whose stamps are wrong, one per crowd and newcomer; again after kToldAgain at the
@@ -24,7 +24,8 @@
 
 namespace robot_control {
 
-/// s; the default of cmd_vel_timeout.
+/// s; the default of cmd_vel_timeout. A shorter timeout may lie below the senders' periods, and would then show no two
+/// of them at once.
 inline constexpr double kSenderWindow = 1.25;
 inline constexpr std::int64_t kToldAgain = 10'000'000'000;  ///< ns
 

@@ -170,6 +170,16 @@ TEST_F(CommandInputTest, OneNodeOnBothTopicsIsOneSender) {
   EXPECT_EQ(told(), "");
 }
 
+TEST_F(CommandInputTest, SendersSlowerThanAShortTimeoutAreACrowdAllTheSame) {
+  input_ = CommandInput(0.1, true);
+  for (int i = 0; i < 10; ++i) {  // each at 2 Hz
+    hear(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
+    EXPECT_EQ(value().many_senders, i == 0 ? 0u : 1u);
+    pass(kSecond / 4);
+  }
+  EXPECT_EQ(value().count, 1u);
+}
+
 TEST_F(CommandInputTest, TakingTurnsSlowerThanTheTimeoutIsNoCrowd) {
   for (int i = 0; i < 10; ++i) {
     hear(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
