@@ -3,7 +3,8 @@
 Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
-Of the same form is what the trials give that judge, too: campaign.py, driving.py, drive_promises.py, bench_limiter.
+Of the same form is what the trials give that judge, too: campaign.py, driving.py, drive_promises.py, bench_limiter;
+"not_judged" beside the rows names the robots that had to be left out.
 """
 
 from __future__ import annotations
@@ -59,13 +60,16 @@ def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 
 
 def to_table(result: dict[str, Any]) -> str:
-    """One line per figure: value, unit, reference of the same run, ratio to it."""
+    """One line per figure: value, unit, reference of the same run, ratio to it; and one of robots not judged."""
     wide = max(24, *(len(row["name"]) for row in result["rows"]))
     lines = [f"{result['bench']:<{wide + 2}}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]
     for row in result["rows"]:
         compared = row["reference"] != 0
         reference = f"{row['reference']:12.4g}{row['ratio']:10.3f}  of {row['reference_name']}" if compared else ""
         lines.append(f"  {row['name']:<{wide}}{row['value']:12.4g}  {row['unit']:<22}{reference}".rstrip())
+    if result.get("not_judged"):
+        absent = ", ".join(result["not_judged"])
+        lines.append(f"  not judged: {absent}; no descriptions here, ROBOT_CORPUS names the folder of real robots")
     return "\n".join(lines)
 
 

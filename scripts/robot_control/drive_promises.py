@@ -81,10 +81,10 @@ def promises(robot: str) -> Iterator[Figure]:
 
 def bench(tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
     """The result, and whether every promise is kept by every robot that is here."""
-    rows, good = [], True
+    rows, absent, good = [], [], True
     for robot in ROBOTS:
         if robot not in robot_names():
-            tell(f"{robot}: not here; ROBOT_CORPUS names the folder of real robots")
+            absent.append(robot)
             continue
         for figure in promises(robot):
             good = good and figure.good
@@ -93,4 +93,4 @@ def bench(tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
             ratio = float(np.abs(figure.value) / figure.bound)
             row = {"name": f"{robot} {figure.name}", "value": figure.value, "unit": figure.unit}
             rows.append(row | {"reference": figure.bound, "reference_name": "what is allowed", "ratio": ratio})
-    return {"bench": "drive", "rows": rows}, good
+    return {"bench": "drive", "rows": rows, "not_judged": absent}, good

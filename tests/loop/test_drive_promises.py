@@ -1,7 +1,7 @@
 """The drive does what its limits promise, on the simulated machine; `scripts/bench drive` shows the same figures."""
 
 import pytest
-from robot_control import ClosedLoop, drive_figures
+from robot_control import ClosedLoop, drive_figures, drive_promises
 from robot_control.drive_promises import ROBOTS, curves, rest, stops, straight
 from robot_control.robots import DIFFBOT, robot_names
 
@@ -90,6 +90,14 @@ def test_a_robot_that_is_pushed_back_at_full_torque_is_stopped():
     loop.run(0.9, (0.0, 0.0))
     log = loop.run(5.0, (0.5, 0.0))  # 0.5 m/s at a fifth of 1 m/s², doubled
     assert log["supervisor_state"][-1] == STOPPED
+
+
+def test_robots_without_a_description_are_reported_as_not_judged(monkeypatch):
+    monkeypatch.setattr(drive_promises, "robot_names", lambda: [DIFFBOT])
+    monkeypatch.setattr(drive_promises, "promises", lambda _: [drive_figures.Figure("way", 0.5, 1.0, "m")])
+    result, good = drive_promises.bench(print)
+    assert good
+    assert result["not_judged"] == [robot for robot in ROBOTS if robot != DIFFBOT]
 
 
 def test_a_figure_that_is_no_number_is_not_good():

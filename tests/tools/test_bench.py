@@ -24,6 +24,13 @@ def test_a_count_has_no_reference():
     assert bench.to_table({"bench": "step", "rows": [row]}).splitlines()[1].split() == ["gate", "allocations", "0"]
 
 
+def test_robots_that_are_absent_are_named_as_not_judged():
+    row = {"name": "diffbot overshoot", "value": 0.1, "unit": "%", "reference": 0, "reference_name": "", "ratio": 0}
+    table = bench.to_table({"bench": "drive", "rows": [row], "not_judged": ["kobuki", "jackal"]})
+    assert "not judged: kobuki, jackal; no descriptions here" in table.splitlines()[-1]
+    assert "not judged" not in bench.to_table({"bench": "drive", "rows": [row], "not_judged": []})
+
+
 def program(folder, text, name="bench_step"):
     path = folder / name
     path.write_text(f"#!{sys.executable}\n{text}\n")
