@@ -12,7 +12,8 @@ namespace robot_control {
 ///
 ///   max over wheels of (max_linear_speed + max_angular_speed·b/2)/radius,   b the effective wheel base
 ///
-/// and no more than the slowest wheel's velocity limit, to which the controller scales its command.
+/// and no more than the slowest wheel's velocity limit; the controller scales its command to kUsableWheelSpeed of that
+/// (control/kinematics.h).
 double commanded_wheel_speed(const DriveControllerParameters& controller, const RobotModel& robot);
 
 SafetyParameters safety_limits(const Parameters& parameters, const RobotModel& robot);

@@ -2,8 +2,9 @@
 /// Limits that a user leaves out, from the robot and from what its controller may ask of it. What is given stays.
 ///
 /// With ω = commanded_wheel_speed, the fastest that the controller's speed limits ask of any wheel, but no more than
-/// the slowest wheel's own velocity limit ω_m, at which the controller saturates (ω_m is left out where the robot knows
-/// none); τ a wheel's effort limit, J its inertia, T = 20 ms the window over which wheel speeds are measured:
+/// the slowest wheel's own velocity limit ω_m, of which the controller uses kUsableWheelSpeed (control/kinematics.h;
+/// ω_m is left out where the robot knows none); τ a wheel's effort limit, J its inertia, T = 20 ms the window over
+/// which wheel speeds are measured:
 ///
 ///   wheel_speed         Ω = max(1.1 ω, ω + kSpeedMargin, min(1.25 ω, ω_m))
 ///                       a quarter for overshoot, slopes and wheels that spin for a moment, where the wheel bears it
