@@ -69,6 +69,7 @@ AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limi
   step.acceleration = (step.state.speed - state.speed) / dt;
 
   const double bound = slows_down(state.speed, target) ? limits.deceleration : limits.acceleration;
+  step.planned = next == aim;
   step.acceleration_limited = next < arriving && next >= bound;
   step.jerk_limited = next < arriving && next < bound;
   if (stops) {

@@ -38,6 +38,7 @@ struct AxisState {
 struct AxisStep {
   AxisState state;            ///< after the step
   double acceleration = 0;    ///< of this step: its speed less the one before, over dt
+  bool planned = false;       ///< nothing of an earlier acceleration is left to fade
   bool jerk_limited = false;  ///< with more jerk it would be faster there
   bool acceleration_limited = false;
   bool jerk_yielded = false;  ///< the jerk limit did, at zero

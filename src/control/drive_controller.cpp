@@ -173,9 +173,9 @@ void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   }
 }
 
-double DriveController::affordable_part(const WheelValues& feed_forward) const noexcept {
+double DriveController::affordable_part(const PlanarTwist& limited, const WheelValues& feed_forward) const noexcept {
   if (part_ == 1 && std::ranges::none_of(loops_, &WheelLoop::saturated)) return 1;
-  const WheelValues unaccelerated = feed_forward_.efforts(limiter_.value(), {});
+  const WheelValues unaccelerated = feed_forward_.efforts(limited, {});
   double multiple = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double inertial = feed_forward[i] - unaccelerated[i];
@@ -216,7 +216,7 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
     out.joints[i] = effort_command(velocity[i], effort);
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }
-  part_ = followed_ ? affordable_part(feed_forward) : 1.0;
+  part_ = followed_ ? affordable_part(limited, feed_forward) : 1.0;
   out.twist_limited = spatial(limited);
 }
 

@@ -65,7 +65,13 @@ PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) n
   return {std::clamp(scale * target.linear, -linear, linear), std::clamp(scale * target.angular, -angular, angular)};
 }
 
+void SpeedLimiter::limit(const SpeedLimits& limits) noexcept {
+  limits_ = limits;
+  fading_ = {std::max(fading_.linear, limits.linear.jerk), std::max(fading_.angular, limits.angular.jerk)};
+}
+
 void SpeedLimiter::seed(const PlanarTwist& twist) noexcept {
+  fading_ = {limits_.linear.jerk, limits_.angular.jerk};
   linear_ = {.speed = twist.linear};
   angular_ = {.speed = twist.angular};
   acceleration_ = {};
@@ -93,11 +99,16 @@ PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emerge
   const Way linear_way = way(linear_, goal.linear, in_force(limits_.linear, emergency, part));
   const Way angular_way = way(angular_, goal.angular, in_force(limits_.angular, emergency, part));
   const bool coupled = limits_.keep_curvature && linear_way.distance > 0 && angular_way.distance > 0;
-  const AxisLimits linear_plan = coupled ? together(linear_way, angular_way) : linear_way.own;
-  const AxisLimits angular_plan = coupled ? together(angular_way, linear_way) : angular_way.own;
+  // Who slows down waits neither for a turn in an emergency nor for an axis that lacks torque.
+  const bool linear_waits = coupled && !emergency && !(part < 1 && linear_way.slows_down && !angular_way.slows_down);
+  const bool angular_waits = coupled && !(part < 1 && angular_way.slows_down && !linear_way.slows_down);
+  const AxisLimits linear_plan = linear_waits ? together(linear_way, angular_way) : linear_way.own;
+  const AxisLimits angular_plan = angular_waits ? together(angular_way, linear_way) : angular_way.own;
 
-  const AxisStep linear = axis_step(linear_, goal.linear, linear_plan, limits_.linear.jerk, dt);
-  const AxisStep angular = axis_step(angular_, goal.angular, angular_plan, limits_.angular.jerk, dt);
+  const AxisStep linear = axis_step(linear_, goal.linear, linear_plan, fading_.linear, dt);
+  const AxisStep angular = axis_step(angular_, goal.angular, angular_plan, fading_.angular, dt);
+  if (linear.planned) fading_.linear = limits_.linear.jerk;
+  if (angular.planned) fading_.angular = limits_.angular.jerk;
   const std::uint64_t shaped = reasons_of(linear) | reasons_of(angular);
   const bool kept = scaled(linear_plan, linear_way.own) || scaled(angular_plan, angular_way.own);
   if (kept && (shaped & (kReasonAccelerationLimited | kReasonJerkLimited)) != 0) reasons_ |= kReasonCurvatureKept;
@@ -105,8 +116,8 @@ PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emerge
   linear_ = linear.state;
   angular_ = angular.state;
   acceleration_ = {linear.acceleration, angular.acceleration};
-  bound_ = {linear_way.slows_down ? linear_way.bound() : limits_.linear.acceleration,
-            angular_way.slows_down ? angular_way.bound() : limits_.angular.acceleration};
+  bound_ = {linear_way.slows_down ? linear_way.own.deceleration : limits_.linear.acceleration,
+            angular_way.slows_down ? angular_way.own.deceleration : limits_.angular.acceleration};
   return value();
 }
 

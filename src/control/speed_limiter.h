@@ -14,7 +14,8 @@
 /// A target that changes during a ramp begins a new line, which the output reaches as soon as what was left of the
 /// acceleration has faded; no limit of an axis is exceeded for it.
 ///
-/// In an emergency the stronger deceleration holds. No limit depends on the direction of travel:
+/// In an emergency the stronger deceleration holds, and the turn follows the linear axis, but does not hold it up. No
+/// limit depends on the direction of travel:
 /// step(−x, −target) = −step(x, target). Only a seed (a measured speed) and limits that were lowered leave the output
 /// outside the speed limits; from there it returns at `deceleration`.
 
@@ -46,10 +47,12 @@ PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) n
 
 class SpeedLimiter {
  public:
-  explicit SpeedLimiter(const SpeedLimits& limits) : limits_(limits) {}
+  explicit SpeedLimiter(const SpeedLimits& limits)
+      : limits_(limits), fading_{.linear = limits.linear.jerk, .angular = limits.angular.jerk} {}
 
-  /// Other limits from the next step on.
-  void limit(const SpeedLimits& limits) noexcept { limits_ = limits; }
+  /// Other limits from the next step on. An acceleration that grew under a higher jerk limit may still fade at that:
+  /// a lower one would carry it past its target, and a stop past zero.
+  void limit(const SpeedLimits& limits) noexcept;
 
   /// Continue from this motion (the measured one), at zero acceleration.
   void seed(const PlanarTwist& twist) noexcept;
@@ -73,6 +76,7 @@ class SpeedLimiter {
   double allowed_part(double part, double dt) const noexcept;
 
   SpeedLimits limits_;
+  PlanarTwist fading_;  ///< m/s³, rad/s³: the jerk at which the acceleration of now may fade
   AxisState linear_;
   AxisState angular_;
   PlanarTwist acceleration_;

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace robot_control {
+namespace {
+
+constexpr double kForgetting = 0.1;  // s
+
+}  // namespace
 
 WheelLoop::WheelLoop(const WheelLoopGains& gains, double bandwidth, double effort_limit, double period)
     : gains_(gains), effort_limit_(effort_limit), period_(period), tracking_(bandwidth, period) {}
@@ -65,6 +70,7 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
     integral_ = std::clamp(effort - direct, -effort_limit_, effort_limit_);
     last_gains_.reset();
   }
+  if (gains_.ki == 0) integral_ -= integral_ * std::min(1.0, periods * period_ / kForgetting);
   const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
   const bool at_limit = clamped || std::abs(direct + integral) > effort_limit_;
   const bool winds_up = at_limit && (direct + integral) * error > 0;

@@ -17,8 +17,10 @@
 /// loop's residual finds the rest.
 ///
 /// Anti-windup by conditional integration: the integrator stops while the clamped sum is pushed further out, be it
-/// clamped here or by the gate, and |integral| ≤ effort_limit. Bumpless: `carry` gives the integrator the load that the
-/// brake was holding, so the first torque after a brake is the torque before it and a robot on a slope does not sag.
+/// clamped here or by the gate, and |integral| ≤ effort_limit. Where ki = 0 nobody would take back what it holds from a
+/// brake or from other gains: it fades within 0.1 s, the pace of derived gains. Bumpless: `carry` gives the integrator
+/// the load that the brake was holding, so the first torque after a brake is the torque before it and a robot on a
+/// slope does not sag.
 ///
 /// Bumpless in other gains, too (`tune`): in their first cycle the integrator takes over what proportional and
 /// derivative part give less than the old ones would, and the tracking loop's residual what the torque tells it less;

@@ -146,6 +146,19 @@ class TreeReader {
                     drive.max_linear_acceleration);
     check_emergency("angular", drive.max_angular_emergency_deceleration, drive.max_angular_deceleration,
                     drive.max_angular_acceleration);
+    // The jerk limit must let the brake of an emergency come.
+    constexpr double kBuildUp = 1.0;  // s
+    const auto check_jerk = [&](const std::string& axis, double jerk, double emergency) {
+      const std::string path = "diff_drive_controller.max_" + axis + "_jerk";
+      const std::string deceleration = "diff_drive_controller.max_" + axis + "_emergency_deceleration";
+      if (!sound_.contains(path) || !sound_.contains(deceleration)) return;
+      if (jerk == 0 || jerk * kBuildUp >= emergency) return;
+      const Entry& entry = tree_.entries.at(deceleration);
+      refuse(path, "must be 0 (off) or reach " + deceleration + " = " + as_written(entry) + " [" + entry.origin +
+                       "] within " + shortest(kBuildUp) + " s");
+    };
+    check_jerk("linear", drive.max_linear_jerk, drive.max_linear_emergency_deceleration);
+    check_jerk("angular", drive.max_angular_jerk, drive.max_angular_emergency_deceleration);
     // The sensors of one cycle, the permit of the next, the torque of the one after.
     constexpr double kCyclesToStop = 3;
     const std::string delay = "safety_monitor.stop_delay";

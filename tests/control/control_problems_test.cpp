@@ -56,5 +56,24 @@ TEST(ControlProblems, RefusesAWheelWithoutTorque) {
                   AllOf(HasSubstr("right_wheel_joint"), HasSubstr("effort limit"), HasSubstr("wheel_effort_limit"))));
 }
 
+TEST(ControlProblems, RefuseAMassThatIsASlipOfThePen) {
+  const RobotModel robot = make_test_robot();  // 12 kg
+  DriveControllerParameters parameters;
+  for (const double mass : {6.0, 40.0}) {
+    parameters.feed_forward.mass = mass;
+    EXPECT_TRUE(control_problems(parameters, robot, 1e-3).empty()) << mass;
+  }
+  for (const double mass : {1.2, 120.0}) {
+    parameters.feed_forward.mass = mass;
+    const auto problems = control_problems(parameters, robot, 1e-3);
+    ASSERT_EQ(problems.size(), 1u) << mass;
+    EXPECT_NE(problems[0].find("feed_forward.mass = "), std::string::npos) << problems[0];
+    EXPECT_NE(problems[0].find("says 12 kg"), std::string::npos) << problems[0];
+  }
+  parameters.feed_forward.mass.reset();
+  parameters.feed_forward.wheel_inertia = 5;
+  EXPECT_FALSE(control_problems(parameters, robot, 1e-3).empty());
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -124,7 +124,7 @@ class Trial {
     const PlanarTwist goal = within_speed(target_, limits_);
     line_.reset();
     const bool steady = axes_[0].acceleration == 0 && axes_[1].acceleration == 0;
-    if (limits_.keep_curvature && steady) {
+    if (limits_.keep_curvature && steady && !emergency_) {
       if (axes_[0].speed == 0 && axes_[1].speed == 0) line_ = goal;
       if (goal.linear == 0 && goal.angular == 0) line_ = {axes_[0].speed, axes_[1].speed};
     }

@@ -258,5 +258,58 @@ TEST(SpeedLimiter, HalfOfTheLimitsTakesTwiceAsLong) {
   EXPECT_NEAR(limiter.used_part(), 0.5, 1e-9);
 }
 
+// 1 m/s² grew under 10 m/s³: it fades as fast, and carries the speed on by 0.05 m/s, whatever the limit is now.
+TEST(SpeedLimiter, AJerkLimitLoweredDuringARampHoldsUpNoStop) {
+  for (const double jerk : {5.0, 2.0, 0.5, 0.1}) {
+    SpeedLimiter limiter(kSmooth);
+    while (limiter.value().linear < 0.2) limiter.step({1, 0}, kDt);
+    SpeedLimits lower = kSmooth;
+    lower.linear.jerk = jerk;
+    limiter.limit(lower);
+    double fastest = 0;
+    for (int k = 0; k < 20'000; ++k) {
+      const double before = limiter.value().linear;
+      const double acceleration = limiter.acceleration().linear;
+      const double now = limiter.step({0, 0}, kDt).linear;
+      fastest = std::fmax(fastest, now);
+      ASSERT_GE(now, 0) << jerk;
+      ASSERT_GE((now - before) / kDt, acceleration - 10 * kDt - 1e-9) << jerk << ": fades at the old limit at most";
+    }
+    EXPECT_LE(fastest, 0.2 + 1e-3 + 0.05) << jerk;
+    EXPECT_EQ(limiter.value().linear, 0) << jerk;
+    while (limiter.value().linear < 0.2) {
+      const double acceleration = limiter.acceleration().linear;
+      limiter.step({1, 0}, kDt);
+      ASSERT_LE(limiter.acceleration().linear, acceleration + jerk * kDt + 1e-9) << "the old limit is over";
+    }
+  }
+}
+
+TEST(SpeedLimiter, ATurnDoesNotHoldUpTheStopInAnEmergency) {
+  SpeedLimits limits = kSmooth;
+  limits.angular.deceleration = limits.angular.emergency_deceleration = 0.2;
+  SpeedLimiter limiter(limits);
+  cycles_to(limiter, {1, 1});
+  int k = 0;
+  while (limiter.value().linear != 0) {
+    limiter.step({0, 0}, kDt, true);
+    ++k;
+  }
+  EXPECT_NEAR(k, 1000 * (1 / 3.0 + 3.0 / 10), 1);
+  EXPECT_GT(limiter.value().angular, 0.5);
+}
+
+// The turn, of which the wheels can give a hundredth, must speed up while the robot slows down.
+TEST(SpeedLimiter, TooLittleTorqueForATurnDoesNotHoldUpWhoSlowsDown) {
+  SpeedLimiter limiter(kSmooth);
+  cycles_to(limiter, {0.3, 0});
+  int whole = 0;
+  SpeedLimiter strong = limiter;
+  while (strong.step({0, 2}, kDt).linear != 0) ++whole;
+  int weak = 0;
+  while (limiter.step({0, 2}, kDt, false, 0.01).linear != 0 && weak < 100'000) ++weak;
+  EXPECT_LE(weak, whole + 1);
+}
+
 }  // namespace
 }  // namespace robot_control

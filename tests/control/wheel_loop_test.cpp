@@ -136,5 +136,17 @@ TEST(WheelLoop, DoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
+TEST(WheelLoop, WithoutAnIntegratorForgetsWhatItCarried) {
+  WheelLoop loop = seeded(0, {.ki = 0});
+  loop.carry(1.3);
+  EXPECT_NEAR(loop.step({}, 1), 1.3, 0.02) << "no jump";
+  double angle = 0;
+  for (int k = 0; k < 1000; ++k) {
+    loop.measure({.position = angle}, 1, true);
+    loop.step({}, 1);
+  }
+  EXPECT_LT(loop.integral(), 1.3 * std::exp(-9.9)) << "a tenth of a second, ten times";
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -551,5 +551,20 @@ TEST(Suggestion, IsSilentWhenNothingIsNear) {
   EXPECT_EQ(suggest_key("robot.colour_of_hull"), "");
 }
 
+TEST_F(ReadParameters, RefusesAnEmergencyWeakerThanAUsualStopAndAJerkThatHoldsItUp) {
+  const std::string block = "diff_drive_controller.";
+  EXPECT_THAT(file.refusal({{block + "max_linear_deceleration", "2.5", "test"}}),
+              HasSubstr("max_linear_emergency_deceleration = 2.0: must not be below diff_drive_controller."
+                        "max_linear_deceleration = 2.5 [test]"));
+  EXPECT_THAT(file.refusal({{block + "max_angular_acceleration", "9", "test"}}),
+              HasSubstr("max_angular_emergency_deceleration = 8.0: must not be below diff_drive_controller."
+                        "max_angular_acceleration = 9 [test]"));
+  EXPECT_THAT(file.refusal({{block + "max_linear_jerk", "1.9", "test"}}),
+              HasSubstr("max_linear_jerk = 1.9: must be 0 (off) or reach diff_drive_controller."
+                        "max_linear_emergency_deceleration = 2.0"));
+  EXPECT_NO_THROW(read_parameters(file.path(), {{block + "max_linear_jerk", "2", "test"}}));
+  EXPECT_NO_THROW(read_parameters(file.path(), {{block + "max_linear_jerk", "0", "test"}}));
+}
+
 }  // namespace
 }  // namespace robot_control
