@@ -197,7 +197,7 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
     solution = _solve(parts, side, round(BLOCK / period))
     torque = np.concatenate([part.torque[:, side] for part in parts])
     effort = float(np.sqrt(np.mean(torque**2)))
-    fastest = float(max(np.abs(part.regressors[:, side, TERMS.index("damping")]).max() for part in parts))
+    fastest = float(np.abs(np.concatenate([part.regressors[:, side, TERMS.index("damping")] for part in parts])).max())
     found = {
         name: Estimate(float(value), float(error))
         for name, value, error in zip(TERMS, solution.values, solution.errors, strict=True)

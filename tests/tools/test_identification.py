@@ -78,6 +78,15 @@ def test_rows_that_are_missing_split_the_log_and_harm_nothing(log):
     assert values(found) == pytest.approx(TRUTH, rel=1e-4)
 
 
+def test_a_stretch_of_mere_standing_harms_nothing():
+    rests = 1000  # rows
+    log = drive.drive(np.concatenate([drive.plan(), np.zeros((rests, 2))]))
+    keep = np.ones(len(log["cycle"]), dtype=bool)
+    keep[len(keep) - rests] = False
+    found = identify({name: column[keep] for name, column in log.items()}, drive.BASE)
+    assert values(found) == pytest.approx(TRUTH, rel=1e-4)
+
+
 def test_what_the_gate_braked_is_left_out(log):
     log["gate_verdict"][10_000:11_000] = 0
     for wheel in drive.BASE.wheels:
