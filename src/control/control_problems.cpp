@@ -105,25 +105,25 @@ struct Believed {
   double most;  ///< times either way
 };
 
-void check_believable(const Believed& value, const std::string& source, std::vector<std::string>& problems) {
+void check_believable(const Believed& value, std::vector<std::string>& problems) {
   if (!value.given || (*value.given <= value.most * value.described && value.described <= value.most * *value.given)) {
     return;
   }
   std::ostringstream text;
   text.precision(4);
   text << "diff_drive_controller.feed_forward." << value.key << " = " << *value.given << " " << value.unit << ": "
-       << source << " says " << value.described << " " << value.unit << "; more than " << value.most
-       << " times either way is taken for a slip of the pen. Correct it, or the description.";
+       << "the description says " << value.described << " " << value.unit << "; more than " << value.most
+       << " times either way is taken for a slip of the pen. Correct the one or the other.";
   problems.push_back(text.str());
 }
 
 /// A payload, a rotor behind a gear: but not a hundred times what is described, which would drive the robot by itself.
 void check_believable(const FeedForwardParameters& given, const RobotModel& robot, std::vector<std::string>& problems) {
-  check_believable({"mass", "kg", given.mass, robot.mass, 5}, robot.source, problems);
-  check_believable({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, robot.source, problems);
+  check_believable({"mass", "kg", given.mass, robot.mass, 5}, problems);
+  check_believable({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
   if (robot.wheels.empty()) return;
   const double wheel = robot.wheels.front().inertia;
-  check_believable({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, robot.source, problems);
+  check_believable({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
 }
 
 }  // namespace
