@@ -20,8 +20,8 @@
 ///
 /// Saturation keeps the curvature. Speed: the wish, and what a target that changed during a ramp makes of the way
 /// there, are scaled until no wheel exceeds what kinematics.h lets it use of its joint's limit; without keep_curvature
-/// that bends ramps beyond an acceleration limit, by 1.4 times at the worst. Torque: with effort_i = rest_i + inertial_i
-/// of the last cycle, inertial_i what feed-forward gives for its acceleration, the limiter may use
+/// that bends ramps beyond an acceleration limit, by 1.4 times at the worst. Torque: with effort_i = rest_i +
+/// inertial_i of the last cycle, inertial_i what feed-forward gives for its acceleration, the limiter may use
 ///
 ///   part = used·min_i max(effort_limit_i − sign(inertial_i)·rest_i, 0)/|inertial_i|,   0.2 ≤ part ≤ 1
 ///
