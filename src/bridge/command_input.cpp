@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "bridge/joined.h"
+
 namespace robot_control {
 namespace {
 
@@ -20,12 +22,6 @@ std::string seconds(double value) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), std::abs(value) < 100 ? "%.3g s" : "%.0f s", value);
   return text.data();
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 }  // namespace

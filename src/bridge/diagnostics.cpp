@@ -3,18 +3,10 @@
 #include <array>
 #include <cstdio>
 
+#include "bridge/joined.h"
 #include "signals/names.h"
 
 namespace robot_control {
-namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-}  // namespace
 
 DiagnosticReport::DiagnosticReport(const std::string& node, const std::string& hardware) {
   message_.level = msg::DiagnosticStatus::OK;

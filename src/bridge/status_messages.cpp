@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "bridge/joined.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -25,12 +26,6 @@ std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t
 template <class Strings>
 void assign(Strings& to, const std::vector<std::string>& from) {
   to.assign(from.begin(), from.end());
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
 }
 
 /// "17.3 rad/s"

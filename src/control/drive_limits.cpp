@@ -1,13 +1,12 @@
 #include "control/drive_limits.h"
 
-namespace robot_control {
-namespace {
+#include <limits>
 
-double or_none(double jerk) noexcept {
+namespace robot_control {
+
+double jerk_limit(double jerk) noexcept {
   return jerk > 0 ? jerk : std::numeric_limits<double>::infinity();
 }
-
-}  // namespace
 
 SpeedLimits speed_limits(const DriveControllerParameters& parameters) noexcept {
   const double linear = parameters.max_linear_deceleration.value_or(parameters.max_linear_acceleration);
@@ -16,12 +15,12 @@ SpeedLimits speed_limits(const DriveControllerParameters& parameters) noexcept {
                      .acceleration = parameters.max_linear_acceleration,
                      .deceleration = linear,
                      .emergency_deceleration = parameters.max_linear_emergency_deceleration,
-                     .jerk = or_none(parameters.max_linear_jerk)},
+                     .jerk = jerk_limit(parameters.max_linear_jerk)},
           .angular = {.speed = parameters.max_angular_speed,
                       .acceleration = parameters.max_angular_acceleration,
                       .deceleration = angular,
                       .emergency_deceleration = parameters.max_angular_emergency_deceleration,
-                      .jerk = or_none(parameters.max_angular_jerk)},
+                      .jerk = jerk_limit(parameters.max_angular_jerk)},
           .keep_curvature = parameters.keep_curvature};
 }
 

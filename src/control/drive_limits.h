@@ -6,6 +6,9 @@
 
 namespace robot_control {
 
+/// Infinite where `jerk` is 0, which users say for none.
+double jerk_limit(double jerk) noexcept;
+
 /// Within the ranges of the schema.
 SpeedLimits speed_limits(const DriveControllerParameters& parameters) noexcept;
 

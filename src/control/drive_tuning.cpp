@@ -24,7 +24,7 @@ MotionLimits motion_limits(const AxisTuning& tuning) noexcept {
           .acceleration = tuning.acceleration,
           .deceleration = tuning.deceleration,
           .emergency_deceleration = tuning.emergency_deceleration,
-          .jerk = tuning.jerk > 0 ? tuning.jerk : std::numeric_limits<double>::infinity()};
+          .jerk = jerk_limit(tuning.jerk)};
 }
 
 }  // namespace
