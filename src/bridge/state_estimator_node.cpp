@@ -56,7 +56,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     response.success = missing.empty();
     response.message = response.success ? "the pose is zero from the next cycle on"
                                         : "not done: no sensors, " + missing.front() + " does not run";
-    if (response.success) process().cycle().request_pose_reset();
+    if (response.success) process().cycle().request_pose({0, 0, 0});
     return true;
   }
 

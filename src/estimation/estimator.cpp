@@ -119,7 +119,8 @@ void Estimator::reset() noexcept {
   gyro_ = {};
   accelerometer_good_ = false;
   gravity_ = kGravity;
-  began_ = anchored_ = pose_reset_pending_ = restart_pending_ = false;
+  began_ = anchored_ = restart_pending_ = false;
+  pose_pending_.reset();
   cycle_ = cycles_ = skipped_ = 0;
   flags_ = lasting_flags_ = 0;
   clear_gap();
@@ -144,8 +145,8 @@ void Estimator::resume(const StateFrame& last) noexcept {
   lasting_flags_ = kStateRestarted;
 }
 
-void Estimator::reset_pose() noexcept {
-  pose_reset_pending_ = true;
+void Estimator::set_pose(const Vector3& pose) noexcept {
+  pose_pending_ = pose;
 }
 
 void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
@@ -156,12 +157,18 @@ void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
   read_accelerometer(sensors);
   covariance_.grow_bias(square(parameters_.gyro_bias_walk) * static_cast<double>(cycles_) * period_);
   travel(sensors);
-  if (pose_reset_pending_) {
-    pose_reset_pending_ = false;
-    x_ = y_ = yaw_ = 0;
+  if (pose_pending_) {
+    x_ = (*pose_pending_)[0];
+    y_ = (*pose_pending_)[1];
+    yaw_ = (*pose_pending_)[2];
+    pose_pending_.reset();
     covariance_.reset_pose();
   }
   fill(out);
+}
+
+void Estimator::step(const SensorFrame& sensors, double /*dt*/, StateFrame& out) noexcept {
+  step(sensors, out);
 }
 
 void Estimator::count_cycles(std::uint64_t cycle) noexcept {

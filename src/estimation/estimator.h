@@ -18,6 +18,7 @@
 /// contradicts them); accelerometer exp(−((|a| − g) / 1 m/s²)² / 2), |a| smoothed: it is used at standstill only.
 
 #include <cstdint>
+#include <optional>
 
 #include "estimation/estimator_parameters.h"
 #include "estimation/pose_covariance.h"
@@ -54,10 +55,17 @@ class Estimator {
 
   /// reset_odometry: the pose is zero from this cycle on (exactly zero in the next frame); velocities, biases
   /// and distance stay.
-  void reset_pose() noexcept;
+  void reset_pose() noexcept { set_pose({0, 0, 0}); }
+
+  /// set_odometry: from this cycle on the pose is (x [m], y [m], yaw [rad]), exactly so in the next frame, with a
+  /// covariance of zero; all else stays.
+  void set_pose(const Vector3& pose) noexcept;
 
   /// Fills everything but `out.head`. dt = (sensors.head.cycle − the last one's) · period.
   void step(const SensorFrame& sensors, StateFrame& out) noexcept;
+
+  /// The same with samples that come at any time: `dt` [s] after the last one, > 0; the head's cycle only counts.
+  void step(const SensorFrame& sensors, double dt, StateFrame& out) noexcept;
 
  private:
   struct GyroSample {
@@ -98,7 +106,7 @@ class Estimator {
 
   bool began_ = false;     ///< a cycle of this run was seen
   bool anchored_ = false;  ///< the encoders' offset is known
-  bool pose_reset_pending_ = false;
+  std::optional<Vector3> pose_pending_;
   bool restart_pending_ = false;
   std::uint64_t cycle_ = 0;
   std::uint64_t cycles_ = 0;  ///< from the last frame to this one

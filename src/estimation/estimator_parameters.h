@@ -1,5 +1,8 @@
 #pragma once
-/// What a user sets of the state estimator.
+/// What a user sets of the state estimator. Deviations are standard deviations.
+
+#include "signals/geometry.h"
+#include "signals/state_frame.h"
 
 namespace robot_control {
 
@@ -8,11 +11,22 @@ struct EstimatorParameters {
   double gyro_noise = 1.0e-3;      ///< rad/s/√Hz, white noise density of the gyro
   double standstill_speed = 0.01;  ///< rad/s, wheel and yaw rate below which the robot may be standing
   double standstill_time = 0.25;   ///< s, for which all sensors must be quiet before the robot stands
-  double standstill_acceleration = 0.3;  ///< m/s² RMS; MEMS noise is 0.05, a shaken robot above 0.5
-  double gyro_turn_noise = 1.0e-3;       ///< rad/√rad: scale and alignment errors, as a random walk over the turn
-  double gyro_bias_initial = 0.05;       ///< rad/s, standard deviation at switch-on (3 °/s, a consumer MEMS gyro)
-  double gyro_bias_walk = 2.0e-5;        ///< rad/s/√s
-  double speed_bandwidth = 20.0;         ///< Hz, of the tracking loop behind the twist
+  double standstill_acceleration = 0.3;     ///< m/s² RMS; MEMS noise is 0.05, a shaken robot above 0.5
+  double gyro_turn_noise = 1.0e-3;          ///< rad/√rad: scale and alignment errors, as a random walk over the turn
+  double gyro_bias_initial = 0.05;          ///< rad/s, standard deviation at switch-on (3 °/s, a consumer MEMS gyro)
+  double gyro_bias_walk = 2.0e-5;           ///< rad/s/√s
+  double accelerometer_noise = 2.0e-3;      ///< m/s²/√Hz, white noise density
+  double accelerometer_bias_initial = 0.2;  ///< m/s², standard deviation at switch-on (20 mg)
+  double accelerometer_bias_walk = 1.0e-4;  ///< m/s²/√s
+  double speed_bandwidth = 20.0;            ///< Hz, of the tracking loop behind the twist
+
+  bool slip_detection = true;    ///< false: wheels are always believed
+  bool self_calibration = true;  ///< false: the calibration stays as it starts
+  bool planar = true;            ///< pose_odom is x, y, yaw, with z, roll and pitch zero; false: all six
+
+  /// What is known at the start, and how well; a deviation of 0 holds a value for ever.
+  WheelCalibration calibration{.radius_ratio_deviation = 0.01, .wheel_base_deviation = 0.03};
+  Vector3 gyro_bias{};  ///< rad/s, IMU axes, of an earlier run; its deviation is gyro_bias_initial
 };
 
 }  // namespace robot_control

@@ -31,9 +31,10 @@ bool EstimatorCycle::step() noexcept {
     return false;
   }
 
-  if (const std::uint64_t resets = pose_resets_.load(std::memory_order_relaxed); resets != pose_resets_done_) {
-    pose_resets_done_ = resets;
-    estimator_.reset_pose();
+  PoseRequest request;
+  if (inbox_.load(request) && request.count != received_) {
+    received_ = request.count;
+    estimator_.set_pose(request.pose);
   }
   estimator_.step(sensors_, trace_.state);
   const FrameHead head{.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};

@@ -2,11 +2,11 @@
 /// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on. Told to fail, it does
 /// (faulty_writer.h).
 
-#include <atomic>
 #include <cstdint>
 
 #include "estimation/estimator.h"
 #include "rt/latest_frames.h"
+#include "rt/latest_value.h"
 #include "runtime/cycle_clock.h"
 #include "runtime/faulty_writer.h"
 #include "signals/trace.h"
@@ -14,6 +14,11 @@
 namespace robot_control {
 
 class EstimatorCycle {
+  struct PoseRequest {
+    std::uint64_t count = 0;
+    Vector3 pose{};
+  };
+
  public:
   EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
                  const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
@@ -21,8 +26,12 @@ class EstimatorCycle {
   /// True when there was a new sensor frame of the driver's current run, and a state was published.
   bool step() noexcept;
 
-  /// Any thread: the pose is zero from the next cycle on.
-  void request_pose_reset() noexcept { pose_resets_.fetch_add(1); }
+  /// One thread: the pose is (x [m], y [m], yaw [rad]) from the next cycle on.
+  void request_pose(const Vector3& pose) noexcept {
+    ++requested_.count;
+    requested_.pose = pose;
+    inbox_.store(requested_);
+  }
 
   const EstimatorTrace& trace() const noexcept { return trace_; }
 
@@ -35,8 +44,9 @@ class EstimatorCycle {
   FrameWriter<StateFrame> state_channel_;
   FaultyWriter<StateFrame> out_{FaultComponent::kEstimator};
   std::uint64_t robot_hash_;
-  std::atomic<std::uint64_t> pose_resets_{0};
-  std::uint64_t pose_resets_done_ = 0;
+  PoseRequest requested_;  ///< the requesting thread's
+  LatestValue<PoseRequest> inbox_;
+  std::uint64_t received_ = 0;  ///< requests that were carried out
   SensorFrame sensors_;
   EstimatorTrace trace_;
 };

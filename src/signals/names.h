@@ -114,6 +114,20 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
     {kStateNoGyro, "no_gyro", "yaw comes from the wheels alone", "look at the IMU"},
     {kStateBadSample, "bad_sample", "a sample was missing, not finite or impossible and was not used",
      "look at the driver's faults"},
+    {kStateNoLeftEncoder, "no_left_encoder", "the left wheels are not heard", "look at the left encoder"},
+    {kStateNoRightEncoder, "no_right_encoder", "the right wheels are not heard", "look at the right encoder"},
+    {kStateNoAccelerometer, "no_accelerometer", "tilt, and slip of all wheels together, are not noticed",
+     "look at the IMU"},
+});
+
+inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
+    {kSlipLeft, "left", "the left wheels do not roll", ""},
+    {kSlipRight, "right", "the right wheels do not roll", ""},
+    {kSlipSpinning, "spinning", "a wheel turns faster than the ground passes", "accelerate less"},
+    {kSlipStalled, "stalled", "a wheel turns slower than the ground passes", "brake less"},
+    {kSlipTurn, "turn", "the wheels' yaw rate contradicts the gyro", ""},
+    {kSlipSideways, "sideways", "the robot slides sideways", "turn less fast"},
+    {kSlipLifted, "lifted", "the robot moves up or down: lifted, or over a kerb", ""},
 });
 
 inline constexpr auto kDigitalInputNames = std::to_array<BitName>({
@@ -255,6 +269,7 @@ constexpr bool in_bit_order(std::span<const BitName> table) noexcept {
 static_assert(in_bit_order(kStopCauseNames) && kStopCauseNames.size() == kStopCauses);
 static_assert(in_bit_order(kResetRefusalNames) && in_bit_order(kMissingNodeNames));
 static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames));
-static_assert(in_bit_order(kDriverFaultNames) && in_bit_order(kStateFlagNames) && in_bit_order(kDigitalInputNames));
+static_assert(in_bit_order(kDriverFaultNames) && in_bit_order(kStateFlagNames) && in_bit_order(kSlipReasonNames) &&
+              in_bit_order(kDigitalInputNames));
 
 }  // namespace robot_control

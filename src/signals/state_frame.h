@@ -9,30 +9,77 @@
 
 namespace robot_control {
 
-/// Index into StateFrame::confidence.
-enum SensorIndex : std::size_t { kLeftEncoder = 0, kRightEncoder = 1, kGyro = 2, kAccelerometer = 3 };
+/// Index into StateFrame::confidence, nis and rejected. The last two are what contact with the ground says: wheels do
+/// not slide sideways, the robot neither sinks nor flies.
+enum SensorIndex : std::size_t {
+  kLeftEncoder = 0,
+  kRightEncoder = 1,
+  kGyro = 2,
+  kAccelerometer = 3,
+  kLateralContact = 4,
+  kVerticalContact = 5,
+};
 inline constexpr std::size_t kMaxConfidences = 8;
 
 /// Bits of StateFrame::flags.
 enum StateFlag : std::uint64_t {
-  kStateValid = 1u << 0,       ///< Pose and twist may be used.
-  kStateSlip = 1u << 1,        ///< Wheels and inertial sensors disagree.
-  kStateStandstill = 1u << 2,  ///< All sensors are quiet.
-  kStateRestarted = 1u << 3,   ///< Continued from the last frame of an earlier process; covariance grown.
-  kStateSkipped = 1u << 4,     ///< At least one cycle of sensors was never seen since the last frame.
-  kStateNoGyro = 1u << 5,      ///< Yaw from the wheels alone.
-  kStateBadSample = 1u << 6,   ///< A sample of this cycle was missing or not finite and was not used.
+  kStateValid = 1u << 0,            ///< Pose and twist may be used.
+  kStateSlip = 1u << 1,             ///< Wheels and inertial sensors disagree.
+  kStateStandstill = 1u << 2,       ///< All sensors are quiet.
+  kStateRestarted = 1u << 3,        ///< Continued from the last frame of an earlier process; covariance grown.
+  kStateSkipped = 1u << 4,          ///< At least one cycle of sensors was never seen since the last frame.
+  kStateNoGyro = 1u << 5,           ///< Yaw from the wheels alone.
+  kStateBadSample = 1u << 6,        ///< A sample of this cycle was missing or not finite and was not used.
+  kStateNoLeftEncoder = 1u << 7,    ///< The left wheels are not heard.
+  kStateNoRightEncoder = 1u << 8,   ///< The right wheels are not heard.
+  kStateNoAccelerometer = 1u << 9,  ///< Tilt and slip of all wheels together are not noticed.
+};
+
+/// Bits of StateFrame::slip: which contact is not believed, and what contradicts it.
+enum SlipReason : std::uint64_t {
+  kSlipLeft = 1u << 0,      ///< The left wheels do not roll.
+  kSlipRight = 1u << 1,     ///< The right wheels do not roll.
+  kSlipSpinning = 1u << 2,  ///< A wheel turns faster than the ground passes.
+  kSlipStalled = 1u << 3,   ///< A wheel turns slower than the ground passes, or stands.
+  kSlipTurn = 1u << 4,      ///< The wheels' yaw rate contradicts the gyro.
+  kSlipSideways = 1u << 5,  ///< The robot slides sideways.
+  kSlipLifted = 1u << 6,    ///< The robot moves up or down: lifted, or over a kerb.
+};
+
+/// What the estimator believes of the wheels beyond RobotModel, and how well it knows it.
+struct WheelCalibration {
+  double radius_ratio = 1;            ///< right over left radius, relative to the model's
+  double wheel_base_factor = 1;       ///< effective wheel base over the model's
+  double radius_ratio_deviation = 0;  ///< standard deviation; 0: not estimated
+  double wheel_base_deviation = 0;    ///< standard deviation of wheel_base_factor; 0: not estimated
+};
+
+/// The wheels alone, by the model's numbers: no gyro, no calibration. For comparison.
+struct WheelOdometry {
+  double x = 0, y = 0;  ///< m, odom axes
+  double yaw = 0;       ///< rad
+  double linear = 0;    ///< m/s, base x
+  double angular = 0;   ///< rad/s, base z
 };
 
 struct StateFrame {
   FrameHead head;
-  Pose pose_odom;                                    ///< base_link in odom
-  Twist twist_base;                                  ///< of base_link in its own axes
-  Matrix6 pose_covariance{};                         ///< m², m·rad, rad²; odom axes
-  Matrix6 twist_covariance{};                        ///< base axes
-  Vector3 gyro_bias{};                               ///< rad/s, IMU axes
-  Vector3 accelerometer_bias{};                      ///< m/s², IMU axes
+  Pose pose_odom;                   ///< base_link in odom
+  Twist twist_base;                 ///< of base_link in its own axes
+  Matrix6 pose_covariance{};        ///< m², m·rad, rad²; odom axes
+  Matrix6 twist_covariance{};       ///< base axes
+  Vector3 gyro_bias{};              ///< rad/s, IMU axes
+  Vector3 accelerometer_bias{};     ///< m/s², IMU axes
+  Quaternion attitude{0, 0, 0, 1};  ///< base axes to odom axes, z against gravity; roll and pitch always estimated
+  std::array<double, 9> attitude_covariance{};  ///< rad², about odom axes
+  Vector3 gyro_bias_deviation{};                ///< rad/s, standard deviation, IMU axes
+  WheelCalibration calibration;
+  WheelOdometry wheels;
   std::array<double, kMaxConfidences> confidence{};  ///< 0 (not used) … 1 (agrees fully), by SensorIndex
+  std::array<double, kMaxConfidences>
+      nis{};  ///< normalised innovation squared per degree of freedom, smoothed; ideal 1
+  std::array<std::uint64_t, kMaxConfidences> rejected{};  ///< samples of this run that the chi-square gate refused
+  std::uint64_t slip = 0;                                 ///< SlipReason bits
   std::uint64_t flags = 0;
   double distance = 0;        ///< m travelled since the run began, always growing
   std::uint64_t skipped = 0;  ///< sensor cycles of this run never seen
