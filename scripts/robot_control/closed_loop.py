@@ -186,6 +186,20 @@ class ClosedLoop:
         finally:
             self._running = False
 
+    def record(self, commands: NDArray[np.float64]) -> Log:
+        """Drives one cycle per row of `commands`, shape (cycles, 2): linear m/s, angular rad/s, as if received in it;
+        NaN sends nothing.
+
+        Returns:
+            Arrays of one row per cycle, wheels left to right. Measured: `time` s, `wheel_position` (·, wheels) rad,
+            `gyro` (·, 3) rad/s and `accel` (·, 3) m/s² in IMU axes. Truth: `position` (·, 3) m and `orientation`
+            (·, 4) x y z w of the base from where it was at cycle 0, z the ground's normal; `linear` m/s and `angular`
+            rad/s (·, 3) in base axes; `wheel_speed` (·, wheels) rad/s; `slip` (·, wheels) m/s of the contact patch over
+            the ground; `load` (·, wheels) N. `stopped`: 1 where the safety monitor brakes, else 0.
+        """
+        self._refuse_inside_a_run("record")
+        return self._loop.record(commands)
+
     def _refuse_inside_a_run(self, what: str) -> None:
         if self._running:
             raise RuntimeError(f"{what} cannot be called from the command function of a run")

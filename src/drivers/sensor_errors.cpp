@@ -72,6 +72,7 @@ SensorErrors::SensorErrors(const RobotModel& robot, const MujocoPlantParameters&
       seed_(parameters.seed),
       period_(period),
       count_(parameters.encoder_resolution > 0 ? 2 * std::numbers::pi / parameters.encoder_resolution : 0),
+      gyro_scale_(1 + parameters.gyro_scale_error),
       gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
                      period, kAccelerometerDevice),
@@ -99,6 +100,7 @@ void SensorErrors::encode(Measurement& measurement) noexcept {
 void SensorErrors::step(Measurement& measurement) noexcept {
   if (!on_) return;
   if (count_ > 0) encode(measurement);
+  for (double& rate : measurement.imu.angular_velocity) rate *= gyro_scale_;
   gyro_.step(measurement.imu.angular_velocity);
   accelerometer_.step(measurement.imu.linear_acceleration);
   if (first_) delay_.fill(measurement);

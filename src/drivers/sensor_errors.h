@@ -11,7 +11,9 @@
 ///
 /// Gyro and accelerometer, each axis, with σ = noise, s = walk, and w, v, u independent standard normal numbers:
 ///
-///   measured(k) = true(k) + b(k) + σ/√T·w(k)      b(k) = b(k−m) + s·√(m·T)·v(k)      b(0) = bias·u
+///   measured(k) = (1 + e)·true(k) + b(k) + σ/√T·w(k)      b(k) = b(k−m) + s·√(m·T)·v(k)      b(0) = bias·u
+///
+/// with e = gyro_scale_error, 0 of the accelerometer.
 ///
 /// White noise of density σ, so that its integral over t has the variance σ²·t, on a bias that is drawn at switch-on
 /// and walks with the variance s²·t (the model of IEEE Std 952, Annex C, without its terms of bias instability and
@@ -112,6 +114,7 @@ class SensorErrors {
   std::vector<std::size_t> wheels_;
   std::array<double, kMaxWheels> counted_{};  ///< n of the last sample
   bool first_ = true;
+  double gyro_scale_;  ///< 1 + e
   InertialError gyro_, accelerometer_;
   DelayLine<Measurement, kLongestDelay> delay_;
 };

@@ -123,6 +123,7 @@ constexpr auto kMujocoPlant = std::to_array<Key>({
     {"gyro_noise", in<&P::plant, &Plant::gyro_noise>, "rad/s/√Hz", 0, 1},
     {"gyro_bias", in<&P::plant, &Plant::gyro_bias>, "rad/s", 0, 10},
     {"gyro_bias_walk", in<&P::plant, &Plant::gyro_bias_walk>, "rad/s/√s", 0, 1},
+    {"gyro_scale_error", in<&P::plant, &Plant::gyro_scale_error>, {}, -0.5, 0.5},
     {"accelerometer_noise", in<&P::plant, &Plant::accelerometer_noise>, "m/s²/√Hz", 0, 10},
     {"accelerometer_bias", in<&P::plant, &Plant::accelerometer_bias>, "m/s²", 0, 10},
     {"accelerometer_bias_walk", in<&P::plant, &Plant::accelerometer_bias_walk>, "m/s²/√s", 0, 10},

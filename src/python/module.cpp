@@ -18,6 +18,7 @@
 #include "drivers/mujoco_plant.h"
 #include "hal/driver.h"
 #include "python/describe.h"
+#include "python/recorder.h"
 #include "python/wheel_loops.h"
 #include "simulation/closed_loop.h"
 #include "telemetry/columns.h"
@@ -191,6 +192,7 @@ PYBIND11_MODULE(_robot_control, module) {
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
       .def("run", &run, py::arg("cycles"), py::arg("command"))
+      .def("record", &record, py::arg("commands"))
       .def(
           "stop_distance",
           [](const ClosedLoop& loop, double speed, bool emergency) {

@@ -217,6 +217,23 @@ TEST_F(SensorErrorsTest, AddToTheTruth) {
   }
 }
 
+TEST_F(SensorErrorsTest, ScaleTheTrueRateAndNothingElse) {
+  parameters_.gyro_noise = parameters_.gyro_bias_walk = 0;
+  parameters_.accelerometer_noise = parameters_.accelerometer_bias = parameters_.accelerometer_bias_walk = 0;
+  parameters_.gyro_scale_error = -0.004;
+  SensorErrors drawn = errors();
+  Measurement measurement;
+  measurement.imu.angular_velocity = {1, -2, 3};
+  measurement.imu.linear_acceleration = {1, -2, 3};
+  drawn.step(measurement);
+  const Vector3 bias = drawn.gyro().bias();
+  constexpr double kRounding = 1e-15;  // of numbers around 3
+  EXPECT_NEAR(measurement.imu.angular_velocity[0], 0.996 + bias[0], kRounding);
+  EXPECT_NEAR(measurement.imu.angular_velocity[1], -1.992 + bias[1], kRounding);
+  EXPECT_NEAR(measurement.imu.angular_velocity[2], 2.988 + bias[2], kRounding);
+  EXPECT_EQ(measurement.imu.linear_acceleration, (Vector3{1, -2, 3}));
+}
+
 TEST_F(SensorErrorsTest, OfOneDeviceDoNotDependOnTheOther) {
   const Record both = record(1000);
   parameters_.gyro_noise = parameters_.gyro_bias = parameters_.gyro_bias_walk = 0;
