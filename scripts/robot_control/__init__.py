@@ -1,8 +1,10 @@
-"""Motion control for mobile robots: the closed loop in one process, and what the scripts are made of."""
+"""Motion control for mobile robots: the closed loop in one process, its estimator for recorded data, and what the
+scripts are made of.
+"""
 
 from typing import Any
 
-__all__ = ["ClosedLoop", "DriverError", "ParameterError", "RobotError"]
+__all__ = ["ClosedLoop", "DriverError", "Estimator", "ParameterError", "RobotError"]
 
 
 def __getattr__(name: str) -> Any:
@@ -11,6 +13,10 @@ def __getattr__(name: str) -> Any:
         from robot_control.closed_loop import ClosedLoop
 
         return ClosedLoop
+    if name == "Estimator":
+        from robot_control.offline_estimator import Estimator
+
+        return Estimator
     if name in __all__:
         from robot_control import _robot_control
 

@@ -18,6 +18,7 @@
 #include "drivers/mujoco_plant.h"
 #include "hal/driver.h"
 #include "python/describe.h"
+#include "python/offline_estimator.h"
 #include "python/recorder.h"
 #include "python/wheel_loops.h"
 #include "simulation/closed_loop.h"
@@ -179,6 +180,7 @@ PYBIND11_MODULE(_robot_control, module) {
                         "lockstep"_a = parameters.loop.clock == ClockMode::kLockstep);
       },
       py::arg("path"), py::arg("values"));
+  bind_offline_estimator(module);
   py::class_<ClosedLoop>(module, "ClosedLoop")
       .def(py::init([](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
              return ClosedLoop(parameters_from(path, values));
