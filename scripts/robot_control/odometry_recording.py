@@ -105,11 +105,11 @@ def record(trial: Trial) -> Recording:
 
 def _loop(trial: Trial) -> ClosedLoop:
     if not trial.scene:
-        return ClosedLoop(params=trial.params)
+        return ClosedLoop(params=trial.params, seed=trial.plant_seed)
     with tempfile.NamedTemporaryFile("w", suffix=".xml") as scene:
         scene.write(trial.scene)
         scene.flush()
-        return ClosedLoop(params=trial.params, scene=scene.name)
+        return ClosedLoop(params=trial.params, seed=trial.plant_seed, scene=scene.name)
 
 
 def main() -> None:

@@ -34,6 +34,7 @@ class Trial:
     scenario: str
     seed: int
     errors: Errors
+    plant_seed: int  # of the sensors' random numbers
     params: dict[str, Any]
     commands: Array
     scene: str = ""
@@ -201,7 +202,8 @@ def draw_trial(scenario: str, seed: int) -> Trial:
     SCENARIOS[scenario](draft)
     errors = draw_errors(seed)
     tilt = float(draft.plant.get("slope", 0.0))
-    plant = {**errors.plant(), **draft.plant, "seed": len(SCENARIOS) * seed + number}
+    plant = {**errors.plant(), **draft.plant}
     params = {"mujoco_plant": plant, "diff_drive_controller": draft.controller, "safety_monitor": draft.safety}
     up = (float(np.sin(tilt)), 0.0, float(np.cos(tilt)))
-    return Trial(scenario, seed, errors, params, draft.program.commands, draft.scene, draft.marks, up)
+    plant_seed = len(SCENARIOS) * seed + number
+    return Trial(scenario, seed, errors, plant_seed, params, draft.program.commands, draft.scene, draft.marks, up)
