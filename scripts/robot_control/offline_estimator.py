@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robot_control import _robot_control
+from robot_control._robot_control import OfflineEstimator, slip_reasons, state_flags
 from robot_control.closed_loop import leaves
 from robot_control.share import share_file
 
@@ -25,10 +25,10 @@ SENSORS = ("left_encoder", "right_encoder", "gyro", "accelerometer", "lateral_co
 """Columns of `confidence`, `nis` and `rejected`. The contacts are what the ground says: wheels do not slide sideways,
 the robot neither sinks nor flies."""
 
-FLAGS: dict[str, int] = _robot_control.state_flags
+FLAGS: dict[str, int] = dict(state_flags)
 """Name → bit of `flags`: valid, slip, standstill, …; their meaning stands in src/signals/names.h."""
 
-SLIP_REASONS: dict[str, int] = _robot_control.slip_reasons
+SLIP_REASONS: dict[str, int] = dict(slip_reasons)
 """Name → bit of `slip`."""
 
 _STAMP_ROUNDING = 1e-9  # s: text and ROS stamps hold nanoseconds
@@ -89,7 +89,7 @@ class Estimator:
                 values.append((f"robot.{name}", repr(float(value)) if np.isfinite(value) else ".nan"))
         if period is not None and not (np.isfinite(period) and period > 0):
             raise ValueError(f"period is {period}; it must be above 0 s")
-        self._estimator = _robot_control.OfflineEstimator(
+        self._estimator = OfflineEstimator(
             path,
             values,
             two_wheels=urdf is None and wheel_radius is not None,

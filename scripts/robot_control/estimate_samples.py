@@ -1,0 +1,95 @@
+"""What a recording measured, in one table: a row per time, NaN where a sample is absent."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Robot = Mapping[str, Any]
+"""`Estimator.robot`"""
+
+GAP = 0.5
+"""s without any sample that are worth telling; a robot at 1 m/s is half a metre on"""
+
+
+class InputError(ValueError):
+    """The recording cannot be read; the message says what, where, and what to do."""
+
+
+@dataclass
+class Samples:
+    """All samples of a recording, strictly increasing in time."""
+
+    time_ns: IntArray  # (N,)
+    left: FloatArray  # (N,) or (N, wheels of the side), rad
+    right: FloatArray
+    gyro: FloatArray | None  # (N, 3), rad/s, IMU axes
+    accel: FloatArray | None  # (N, 3), m/s², IMU axes
+    notes: list[str] = field(default_factory=list)  # for the user's eyes
+
+    @property
+    def seconds(self) -> FloatArray:
+        """s since the first row."""
+        seconds: FloatArray = (self.time_ns - self.time_ns[0]) / 1e9
+        return seconds
+
+    @property
+    def duration(self) -> float:
+        """s"""
+        return float(self.seconds[-1])
+
+    def rates(self) -> dict[str, float]:
+        """Mean rate [Hz] of each sensor that there is."""
+        tables = {"wheels": self.left, "gyro": self.gyro, "accelerometer": self.accel}
+        return {name: _rate(self.seconds, table) for name, table in tables.items() if table is not None}
+
+    def gap_note(self) -> str | None:
+        """The longest silence of all sensors, where it is long for this recording."""
+        if self.time_ns.size < 3:
+            return None
+        steps = np.diff(self.seconds)
+        longest = int(np.argmax(steps))
+        if steps[longest] < max(GAP, 10 * float(np.median(steps))):
+            return None
+        return f"no sample for {steps[longest]:.3g} s after {self.seconds[longest]:.3f} s; the estimate runs on blind"
+
+
+@dataclass(frozen=True)
+class Stream:
+    """Samples of one source: `time_ns` (n,), any order; `values` (n, columns)."""
+
+    time_ns: IntArray
+    values: FloatArray
+
+    def ordered(self) -> tuple[Stream, int, int]:
+        """By time, the first one of each; how many came out of order, and how many of a time that was there."""
+        back = int(np.count_nonzero(np.diff(self.time_ns) < 0))
+        _, first = np.unique(self.time_ns, return_index=True)
+        return Stream(self.time_ns[first], self.values[first]), back, self.time_ns.size - first.size
+
+
+def merged(streams: Sequence[Stream]) -> tuple[IntArray, list[FloatArray]]:
+    """One row per time of any of the streams, each increasing; NaN where a stream has none."""
+    time_ns = np.unique(np.concatenate([stream.time_ns for stream in streams]))
+    tables = []
+    for stream in streams:
+        table = np.full((time_ns.size, stream.values.shape[1]), np.nan)
+        table[np.searchsorted(time_ns, stream.time_ns)] = stream.values
+        tables.append(table)
+    return time_ns, tables
+
+
+def wheel_joints(robot: Robot, side: str) -> list[str]:
+    """Joint names of one side's wheels, front to back."""
+    return [wheel["joint"] for wheel in robot["wheels"] if wheel["side"] == side]
+
+
+def _rate(seconds: FloatArray, table: FloatArray) -> float:
+    there = seconds[np.any(~np.isnan(table.reshape(seconds.size, -1)), axis=1)]
+    return 0.0 if there.size < 2 else (there.size - 1) / float(there[-1] - there[0])
