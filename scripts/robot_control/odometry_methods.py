@@ -10,7 +10,8 @@ goes with Δθ³ and vanishes at 1 kHz (Borenstein, Everett & Feng, "Where am I?
 
 b̂ is a scalar Kalman filter that is told the true noise densities σ, s of the gyro (sensor_errors.h) and the true prior:
 
-    while it moves   P += s² Δt      after T seconds of standstill, ω̄ its mean:  K = P/(P + σ²/T)   b̂ += K (ω̄ − b̂)   P −= K P
+    while it moves                             P += s² Δt
+    after T s of standstill, ω̄ its mean        K = P/(P + σ²/T)    b̂ += K (ω̄ − b̂)    P −= K P
 
 It stands where neither wheel moves by more than a count for STILL seconds and the gyro's mean is under 0.01 rad/s then.
 The first and last STILL seconds of a standstill are not used: there it may still rock.
@@ -23,7 +24,7 @@ from numpy.typing import NDArray
 
 from robot_control.odometry_errors import GYRO_BIAS
 from robot_control.odometry_recording import Recording
-from robot_control.odometry_truth import Array, Path
+from robot_control.odometry_truth import Array, Track
 
 STILL = 0.1  # s
 COUNT = 2 * np.pi / 4096 * 1.01  # rad, of the plant's encoders
@@ -31,13 +32,13 @@ QUIET = 0.01  # rad/s
 GYRO_NOISE, GYRO_WALK = 2.44e-4, 8.7e-6  # rad/s/√Hz, rad/s/√s: of the plant
 
 
-def raw_wheels(recording: Recording) -> Path:
+def raw_wheels(recording: Recording) -> Track:
     """By the numbers of the description."""
     radius, base = recording.nominal["wheel_radius"], recording.nominal["wheel_base"]
     return _wheels(recording, radius, radius, base)
 
 
-def calibrated_wheels(recording: Recording) -> Path:
+def calibrated_wheels(recording: Recording) -> Track:
     """By the true ones."""
     radius, base = recording.nominal["wheel_radius"], recording.nominal["wheel_base"]
     errors = recording.errors
@@ -49,12 +50,12 @@ def calibrated_wheels(recording: Recording) -> Path:
     )
 
 
-def gyro_without_bias(recording: Recording) -> Path:
+def gyro_without_bias(recording: Recording) -> Track:
     """Distance by raw wheels, heading by the gyro as it is."""
     return _sampled(recording, _distance(recording), _integrated(recording, recording.gyro[:, 2]))
 
 
-def simple_part(recording: Recording) -> Path:
+def simple_part(recording: Recording) -> Track:
     """Distance by raw wheels, heading by the gyro less the bias learned at standstill."""
     still = standing(recording)
     rate = recording.gyro[:, 2] - bias(recording, still)
@@ -105,7 +106,7 @@ def _period(recording: Recording) -> float:
     return float(recording.time[1] - recording.time[0])
 
 
-def _wheels(recording: Recording, left_radius: float, right_radius: float, base: float) -> Path:
+def _wheels(recording: Recording, left_radius: float, right_radius: float, base: float) -> Track:
     left = left_radius * (recording.left - recording.left[0])
     right = right_radius * (recording.right - recording.right[0])
     return _sampled(recording, (left + right) / 2, (right - left) / base)
@@ -113,7 +114,8 @@ def _wheels(recording: Recording, left_radius: float, right_radius: float, base:
 
 def _distance(recording: Recording) -> Array:
     radius = recording.nominal["wheel_radius"]
-    return radius * (recording.left - recording.left[0] + recording.right - recording.right[0]) / 2
+    distance: Array = radius * (recording.left - recording.left[0] + recording.right - recording.right[0]) / 2
+    return distance
 
 
 def _integrated(recording: Recording, rate: Array) -> Array:
@@ -121,12 +123,12 @@ def _integrated(recording: Recording, rate: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(turns)])
 
 
-def _sampled(recording: Recording, distance: Array, yaw: Array) -> Path:
+def _sampled(recording: Recording, distance: Array, yaw: Array) -> Track:
     """From distance and heading of each cycle to the poses at the truth rows."""
     step, heading = np.diff(distance), (yaw[1:] + yaw[:-1]) / 2
     x = np.concatenate([[0.0], np.cumsum(step * np.cos(heading))])
     y = np.concatenate([[0.0], np.cumsum(step * np.sin(heading))])
-    return Path(x[recording.index], y[recording.index], yaw[recording.index])
+    return Track(x[recording.index], y[recording.index], yaw[recording.index])
 
 
 def _mean_before(values: Array, window: int) -> Array:

@@ -12,7 +12,8 @@ way up is shorter there by cos a.
 Slip of a wheel, with r its true radius, q̇ its speed relative to the body, ω the body's turning, v its centre's
 velocity, both in base axes:
 
-    rim = r (q̇ + ω_y)      ground = ±√(v_x² + v_z²), sign of v_x      slip = |rim − ground| / max(|rim|, |ground|, 0.1 m/s)
+    rim = r (q̇ + ω_y)      ground = ±√(v_x² + v_z²), sign of v_x
+    slip = |rim − ground| / max(|rim|, |ground|, 0.1 m/s)
 
 The ground speed is that along the wheel's plane, upwards too: a wheel that rolls over a kerb does not slip. What slides
 sideways is not told by it. Below 0.1 m/s a difference of 2 cm/s is 20 %: a wheel at rest does not slip by a count.
@@ -32,7 +33,7 @@ SLOWEST = 0.1  # m/s, in the slip's denominator
 
 
 @dataclass(frozen=True)
-class Path:
+class Track:
     """M poses in a plane: m, m, rad."""
 
     x: Array
@@ -46,8 +47,8 @@ class Truth:
     `slip` (M, 2), left and right.
     """
 
-    ground: Path
-    odom: Path
+    ground: Track
+    odom: Track
     linear: Array
     angular: Array
     distance: Array
@@ -107,5 +108,5 @@ def wrapped(angle: Array) -> Array:
     return np.remainder(angle + np.pi, 2 * np.pi) - np.pi
 
 
-def _path(position: Array, turned: Array) -> Path:
-    return Path(position[:, 0], position[:, 1], np.unwrap(np.arctan2(turned[:, 1, 0], turned[:, 0, 0])))
+def _path(position: Array, turned: Array) -> Track:
+    return Track(position[:, 0], position[:, 1], np.unwrap(np.arctan2(turned[:, 1, 0], turned[:, 0, 0])))

@@ -1,0 +1,242 @@
+"""What one run of the odometry benchmark shows of each method: errors, consistency, slip noticed.
+
+position error   |estimated − true position| at the end of the run. UMBmark: of the ten return errors, each in the
+                 frame of its own start, the larger of the two distances of their centres of gravity, one of the
+                 five clockwise runs and one of the five counter-clockwise, from zero (Borenstein & Feng 1996,
+                 section III: E_max,syst)
+yaw error        |estimated − true| at the end, within half a turn. UMBmark: the largest of the ten
+NEES             eᵀ P⁻¹ e of e = (x, y, yaw) and of e = (forward speed, yaw rate), every SAMPLE s of the run, from
+                 the first one after the robot began to drive (Bar-Shalom, Li & Kirubarajan, "Estimation with
+                 Applications to Tracking and Navigation", 2001, section 5.4); ideal 3 and 2
+slip             of odometry_truth.py: SLIPPING, a wheel above 20 %, is to be flagged; ROLLING, all of them
+                 below 5 %, is not; what lies between is no one's
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robot_control.odometry_methods import METHODS, raw_wheels
+from robot_control.odometry_ours import Ours, estimate
+from robot_control.odometry_recording import Recording, load_recording, record
+from robot_control.odometry_scenarios import FIRST_STAND, draw_trial
+from robot_control.odometry_truth import Array, Track, Truth, truth_of, wrapped
+
+OURS = "ours"
+SAMPLE = 10.0  # s, between two looks at the NEES: errors of pose change over many seconds
+SLIPPING, ROLLING = 0.2, 0.05
+SETTLED = 3.0  # s after the last command, from which on a robot is at rest
+PICTURE_EVERY = 5  # truth rows: 20 Hz
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Truth rows of a run, of 10 ms each."""
+
+    slipping: int
+    noticed: int  # of the slipping ones
+    rolling: int
+    alarms: int  # of the rolling ones
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Of one run, 20 Hz, for the plots. `deviation` m: of the position, along its worst direction."""
+
+    time: Array
+    distance: Array
+    truth: Track
+    paths: dict[str, Track]
+    error: dict[str, Array]
+    deviation: Array
+    slip: Array
+    flagged: Array
+
+
+@dataclass(frozen=True)
+class Run:
+    """`position` m and `yaw` rad by method. `returns` (10, 2) m by method: of UMBmark. `killed`: position error of the
+    second half alone, driven without gyro, by method. `drift`: m and rad while it stands.
+    """
+
+    scenario: str
+    seed: int
+    stopped: bool
+    distance: float
+    position: dict[str, float]
+    yaw: dict[str, float]
+    times: Array
+    pose_nees: Array
+    twist_nees: Array
+    notice: Notice
+    pitch: float  # rad, RMS while it drives
+    invalid: float  # part of the run in which ours says that it is not valid
+    returns: dict[str, Array] = field(default_factory=dict)
+    killed: dict[str, float] = field(default_factory=dict)
+    drift: tuple[float, float] | None = None
+    picture: Picture | None = None
+
+
+def run(scenario: str, seed: int, *, picture: bool = False, cache: Path | None = None) -> Run:
+    """Drives, estimates and compares. `cache`: folder in which the recording is looked for, and kept."""
+    return judge(recorded(scenario, seed, cache), picture=picture)
+
+
+def recorded(scenario: str, seed: int, cache: Path | None) -> Recording:
+    """Out of the cache, else driven."""
+    path = None if cache is None else cache / f"{scenario}_{seed}.npz"
+    if path is not None and path.exists():
+        return load_recording(path)
+    recording = record(draw_trial(scenario, seed))
+    if path is not None:
+        recording.save(path)
+    return recording
+
+
+def judge(recording: Recording, *, picture: bool = False) -> Run:
+    """Estimates and compares."""
+    truth, ours = truth_of(recording), estimate(recording)
+    paths = {name: method(recording) for name, method in METHODS.items()} | {OURS: ours.path}
+    ends = {name: _errors(path, frame(truth, name)) for name, path in paths.items()}
+    returns: dict[str, Array] = {}
+    if recording.scenario == "umbmark":
+        returned = {name: return_errors(recording, path, frame(truth, name)) for name, path in paths.items()}
+        returns = {name: errors[:, :2] for name, errors in returned.items()}
+        ends = {name: (largest_mean(errors[:, :2]), np.abs(errors[:, 2]).max()) for name, errors in returned.items()}
+    rows = _sampled_rows(recording)
+    return Run(
+        scenario=recording.scenario,
+        seed=recording.seed,
+        stopped=recording.stopped,
+        distance=float(truth.distance[-1]),
+        position={name: float(end[0]) for name, end in ends.items()},
+        yaw={name: float(end[1]) for name, end in ends.items()},
+        times=recording.time[recording.index[rows]],
+        pose_nees=nees(pose_error(ours, truth)[rows], ours.pose_covariance[rows]),
+        twist_nees=nees(twist_error(ours, truth)[rows], ours.twist_covariance[rows]),
+        notice=notice(ours, truth),
+        pitch=_pitch(truth),
+        invalid=float(np.mean(~ours.valid)),
+        returns=returns,
+        killed=_without_gyro(recording, truth) if recording.scenario == "random" else {},
+        drift=_drift(recording, ours.path, truth.odom) if recording.scenario == "standstill" else None,
+        picture=_picture(recording, truth, ours, paths) if picture else None,
+    )
+
+
+def frame(truth: Truth, method: str) -> Track:
+    """Of the truth that a method is judged in: who does not know which way is up is judged in the ground's."""
+    return truth.odom if method == OURS else truth.ground
+
+
+def relative(path: Track, begin: int, end: int) -> Array:
+    """(x, y, yaw) of row `end` in the frame of row `begin`."""
+    dx, dy, yaw = path.x[end] - path.x[begin], path.y[end] - path.y[begin], path.yaw[begin]
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    return np.array([cos * dx + sin * dy, cos * dy - sin * dx, path.yaw[end] - yaw])
+
+
+def return_errors(recording: Recording, path: Track, true: Track) -> Array:
+    """(10, 3) m, m, rad: of the clockwise squares, then the others."""
+    starts = sorted(recording.marks["cw"]) + sorted(recording.marks["ccw"])
+    ends = sorted(recording.marks["end"])
+    errors = np.zeros((len(starts), 3))
+    for row, cycles in enumerate(zip(starts, ends, strict=True)):
+        begin, end = np.searchsorted(recording.index, cycles)
+        errors[row] = relative(path, begin, end) - relative(true, begin, end)
+    errors[:, 2] = wrapped(errors[:, 2])
+    return errors
+
+
+def largest_mean(returns: Array) -> float:
+    """m, of (10, 2): the first half clockwise."""
+    half = len(returns) // 2
+    return float(max(np.linalg.norm(returns[:half].mean(axis=0)), np.linalg.norm(returns[half:].mean(axis=0))))
+
+
+def pose_error(ours: Ours, truth: Truth) -> Array:
+    """(M, 3)"""
+    yaw = wrapped(ours.path.yaw - truth.odom.yaw)
+    return np.column_stack([ours.path.x - truth.odom.x, ours.path.y - truth.odom.y, yaw])
+
+
+def twist_error(ours: Ours, truth: Truth) -> Array:
+    """(M, 2)"""
+    return np.column_stack([ours.linear - truth.linear, ours.angular - truth.angular])
+
+
+def nees(error: Array, covariance: Array) -> Array:
+    """(M,) of (M, n) and (M, n, n); infinite where the covariance is none."""
+    result = np.full(len(error), np.inf)
+    for row, (e, p) in enumerate(zip(error, covariance, strict=True)):
+        if np.isfinite(p).all() and np.linalg.eigvalsh(p)[0] > 0:
+            result[row] = e @ np.linalg.solve(p, e)
+    return result
+
+
+def notice(ours: Ours, truth: Truth) -> Notice:
+    """How long slip was there, and noticed."""
+    slipping = (truth.slip > SLIPPING).any(axis=1)
+    rolling = (truth.slip < ROLLING).all(axis=1)
+    return Notice(
+        int(slipping.sum()), int((slipping & ours.slip).sum()), int(rolling.sum()), int((rolling & ours.slip).sum())
+    )
+
+
+def _errors(path: Track, true: Track) -> tuple[float, float]:
+    yaw = wrapped(path.yaw[-1:] - true.yaw[-1:])[0]
+    return float(np.hypot(path.x[-1] - true.x[-1], path.y[-1] - true.y[-1])), float(abs(yaw))
+
+
+def _sampled_rows(recording: Recording) -> NDArray[np.int64]:
+    times = np.arange(SAMPLE, recording.time[-1], SAMPLE)
+    times = times[times > FIRST_STAND]
+    return np.searchsorted(recording.time[recording.index], times)
+
+
+def _pitch(truth: Truth) -> float:
+    moving = np.abs(truth.linear) > 0.05
+    return float(np.std(truth.pitch[moving])) if moving.any() else 0.0
+
+
+def _without_gyro(recording: Recording, truth: Truth) -> dict[str, float]:
+    half = len(recording.index) // 2
+    killed = estimate(recording, gyro_until=float(recording.time[recording.index[half]]))
+    paths = {OURS: (killed.path, truth.odom), "raw wheels": (raw_wheels(recording), truth.ground)}
+    return {
+        name: float(np.linalg.norm((relative(path, half, -1) - relative(true, half, -1))[:2]))
+        for name, (path, true) in paths.items()
+    }
+
+
+def _drift(recording: Recording, path: Track, true: Track) -> tuple[float, float]:
+    begin = int(np.searchsorted(recording.time[recording.index], recording.marks["rest"][0] * 0.001 + SETTLED))
+    moved_x, moved_y = path.x - true.x, path.y - true.y
+    turned = path.yaw - true.yaw
+    way = np.hypot(moved_x[begin:] - moved_x[begin], moved_y[begin:] - moved_y[begin])
+    return float(way.max()), float(np.abs(turned[begin:] - turned[begin]).max())
+
+
+def _picture(recording: Recording, truth: Truth, ours: Ours, paths: dict[str, Track]) -> Picture:
+    def thin(path: Track) -> Track:
+        return Track(path.x[::PICTURE_EVERY], path.y[::PICTURE_EVERY], path.yaw[::PICTURE_EVERY])
+
+    def error(path: Track, true: Track) -> Array:
+        distance: Array = np.hypot(path.x - true.x, path.y - true.y)[::PICTURE_EVERY]
+        return distance
+
+    worst = np.linalg.eigvalsh(ours.pose_covariance[::PICTURE_EVERY, :2, :2])[:, 1]
+    return Picture(
+        time=recording.time[recording.index][::PICTURE_EVERY],
+        distance=truth.distance[::PICTURE_EVERY],
+        truth=thin(truth.odom),
+        paths={name: thin(path) for name, path in paths.items()},
+        error={name: error(path, frame(truth, name)) for name, path in paths.items()},
+        deviation=np.sqrt(np.maximum(worst, 0)),
+        slip=truth.slip.max(axis=1)[::PICTURE_EVERY],
+        flagged=ours.slip[::PICTURE_EVERY].astype(float),
+    )

@@ -1,0 +1,172 @@
+"""What the odometry promises, each with its measured figure: `scripts/bench odometry`.
+
+The bounds are those of the project's requirements. They hold for robots and sensors as odometry_errors.py draws them,
+in the drives of odometry_scenarios.py, judged as odometry_judge.py says; "with n seeds" where fewer can tell less.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from robot_control.odometry_judge import OURS, Run
+from robot_control.odometry_scenarios import SCENARIOS
+from robot_control.odometry_truth import Array
+
+SIMPLE, RAW, CALIBRATED = "simple part", "raw wheels", "calibrated wheels"
+WITHOUT_SLIP = "random"  # the scenario whose NEES is judged; within default limits on dry ground nothing slips
+WORTH = 0.2  # m, that calibrated wheels have to err by for a slip run to count
+
+
+@dataclass(frozen=True)
+class Promise:
+    """`bound` is the most that `value` may be; with `least`, the least."""
+
+    name: str
+    value: float
+    bound: float
+    unit: str
+    least: bool = False
+
+    @property
+    def kept(self) -> bool:
+        """NaN is not."""
+        return self.value >= self.bound if self.least else self.value <= self.bound
+
+    def __str__(self) -> str:
+        rule = "at least" if self.least else "at most"
+        return f"{self.name}: {self.value:.4g} {self.unit}, promised {rule} {self.bound:.4g}".replace(" ,", ",")
+
+
+def of(runs: Sequence[Run], scenario: str) -> list[Run]:
+    """Those of one scenario."""
+    return [run for run in runs if run.scenario == scenario]
+
+
+def positions(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
+    """m, by seed."""
+    return np.array([run.position[method] for run in of(runs, scenario)])
+
+
+def yaws(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
+    """degrees, by seed."""
+    return np.rad2deg([run.yaw[method] for run in of(runs, scenario)])
+
+
+def all_promises(runs: Sequence[Run]) -> list[Promise]:
+    """Of the scenarios that there are runs of."""
+    there = {run.scenario for run in runs}
+    promises = []
+    for scenario, part in {
+        "umbmark": umbmark,
+        "random": random_drive,
+        "standstill": standstill,
+        "slip": slip,
+    }.items():
+        if scenario in there:
+            promises += part(runs)
+    return promises + false_alarms(runs) + never_worse(runs)
+
+
+def umbmark(runs: Sequence[Run]) -> list[Promise]:
+    """Largest mean return error."""
+    ours, raw = positions(runs, "umbmark"), positions(runs, "umbmark", RAW)
+    return [
+        Promise("UMBmark, worst seed", 1e3 * ours.max(), 40, "mm"),
+        Promise("UMBmark, mean", 1e3 * ours.mean(), 20, "mm"),
+        Promise("UMBmark, raw wheels over ours", raw.mean() / ours.mean(), 20, "", least=True),
+    ]
+
+
+def random_drive(runs: Sequence[Run]) -> list[Promise]:
+    """Ten minutes; and the second half of them without gyro."""
+    drives = of(runs, "random")
+    share = 100 * np.array([run.position[OURS] / run.distance for run in drives])
+    yaw = yaws(runs, "random")
+    killed = {name: float(np.median([run.killed[name] for run in drives])) for name in (OURS, RAW)}
+    return [
+        Promise("random drive, position, p95", float(np.percentile(share, 95)), 0.5, "% of way"),
+        Promise("random drive, yaw, mean", float(yaw.mean()), 1, "°"),
+        Promise("random drive, yaw, p95", float(np.percentile(yaw, 95)), 3, "°"),
+        Promise("NEES of the pose in its band", 100 * in_band(drives, "pose"), 90, "% of times", least=True),
+        Promise("NEES of the twist in its band", 100 * in_band(drives, "twist"), 90, "% of times", least=True),
+        Promise("gyro dead, over raw wheels", killed[OURS] / killed[RAW], 0.2, ""),
+    ]
+
+
+def standstill(runs: Sequence[Run]) -> list[Promise]:
+    """Ten minutes of it, the worst seed."""
+    drifts = np.array([run.drift for run in of(runs, "standstill")])
+    return [
+        Promise("standstill, way in 10 min", 1e3 * drifts[:, 0].max(), 0.1, "mm"),
+        Promise("standstill, yaw in 10 min", np.rad2deg(drifts[:, 1].max()), 0.01, "°"),
+    ]
+
+
+def slip(runs: Sequence[Run]) -> list[Promise]:
+    """A minute of it each."""
+    ours, wheels = positions(runs, "slip"), positions(runs, "slip", CALIBRATED)
+    worth = wheels > WORTH
+    notices = [run.notice for run in of(runs, "slip")]
+    noticed = sum(each.noticed for each in notices) / max(1, sum(each.slipping for each in notices))
+    nees = np.concatenate([run.pose_nees for run in of(runs, "slip")])
+    better = float(np.mean(wheels[worth] >= 5 * ours[worth])) if worth.any() else math.nan
+    return [
+        Promise("slip, 5 × better than wheels", 100 * better, 80, "% of runs", least=True),
+        Promise("slip, worst over wheels", float((ours / wheels).max()), 1.1, ""),
+        Promise("slip above 20 % flagged", 100 * noticed, 90, "% of time", least=True),
+        Promise("slip, mean NEES of the pose", float(nees.mean()), 10, ""),
+    ]
+
+
+def false_alarms(runs: Sequence[Run]) -> list[Promise]:
+    """Of all runs of a scenario together, where no wheel slips by more than 5 %."""
+    promises = []
+    for scenario in SCENARIOS:
+        notices = [run.notice for run in of(runs, scenario)]
+        if notices and scenario != "standstill":
+            alarms = sum(each.alarms for each in notices) / max(1, sum(each.rolling for each in notices))
+            promises.append(Promise(f"false alarms, {scenario}", 100 * alarms, 3, "% of time"))
+    return promises
+
+
+def never_worse(runs: Sequence[Run]) -> list[Promise]:
+    """Than 1.1 × its simple part, in the median of every scenario."""
+    return [
+        Promise(
+            f"{scenario}, median over simple part's",
+            float(np.median(positions(runs, scenario)) / np.median(positions(runs, scenario, SIMPLE))),
+            1.1,
+            "",
+        )
+        for scenario in SCENARIOS
+        if of(runs, scenario)
+    ]
+
+
+def in_band(runs: Sequence[Run], what: str) -> float:
+    """Part of the sampled times at which the mean NEES over the runs is inside the band."""
+    means, (low, high) = mean_nees(runs, what)
+    return float(np.mean((means >= low) & (means <= high)))
+
+
+def mean_nees(runs: Sequence[Run], what: str) -> tuple[Array, tuple[float, float]]:
+    """Over the runs, at each sampled time that all of them reach; and its band."""
+    series = [run.pose_nees if what == "pose" else run.twist_nees for run in runs]
+    count = min(len(each) for each in series)
+    means: Array = np.mean([each[:count] for each in series], axis=0)
+    return means, nees_band(len(runs), 3 if what == "pose" else 2)
+
+
+def nees_band(runs: int, dimension: int) -> tuple[float, float]:
+    """In which the mean of `runs` values of χ² with `dimension` degrees of freedom lies with 95 %: quantiles of χ² with
+    n = runs · dimension, over runs, by Wilson & Hilferty (1931), n (1 − 2/(9n) ± 1.96 √(2/(9n)))³, right to 3 % for
+    n = 6 and to 0.01 % for n = 100.
+    """
+    n = runs * dimension
+    part = 2 / (9 * n)
+    low, high = (n * (1 - part + z * math.sqrt(part)) ** 3 / runs for z in (-1.96, 1.96))
+    return low, high
