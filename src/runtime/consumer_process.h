@@ -70,8 +70,9 @@ class ConsumerProcess : public Process {
 
   bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
 
-  /// The loop: the frame that is there first, then one step per wake. `silence` is called when no frame came
-  /// within `wait_ns`.
+  /// The loop: the frame that is there first, then one step per wake. `silence` is called when nothing woke it for
+  /// `wait_ns`; a driver that begins, or an object that is mapped anew, wakes it and begins another wait. Whether a
+  /// driver was away is thus not to be told by silence alone.
   template <class Cycle, class Waking, class Silence>
   void consume(Cycle& cycle, const FrameReader<Waking>& wake, std::int64_t wait_ns, Silence silence) noexcept {
     while (!stopping().load(std::memory_order_relaxed)) {

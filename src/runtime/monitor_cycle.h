@@ -33,8 +33,8 @@ class MonitorCycle {
   /// True when there was a new sensor frame of the driver's current run, and a permit was published.
   bool step() noexcept;
 
-  /// Wall clock: the wait for sensors ended without a frame. Unless the driver's last word was "paused", that
-  /// latches kCauseDriverLost, and the last permit is published again with it, for display. Then as `idle`.
+  /// Wall clock: a whole wait for sensors has passed and nothing woke it. Unless the driver's last word was "paused",
+  /// that latches kCauseDriverLost, and the last permit is published again with it, for display. Then as `idle`.
   void silence() noexcept;
 
   /// No frame has come for a while: answers resets, with a refusal, and emergency stops, with the latch.

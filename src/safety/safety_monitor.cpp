@@ -70,7 +70,7 @@ void SafetyMonitor::resume(const Permit& last) noexcept {
 }
 
 void SafetyMonitor::driver_lost() noexcept {
-  if (driver_known_ && !driver_paused_) pending_ |= kCauseDriverLost;
+  if (driver_ && !driver_paused_) pending_ |= kCauseDriverLost;
 }
 
 void SafetyMonitor::sensors_corrupt() noexcept {
@@ -89,7 +89,6 @@ bool SafetyMonitor::note_emergency_stop(const OperatorInput& operator_input) noe
 }
 
 void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {
-  if (driver_known_) return;
   const bool continued = last_ && last_->boot == sensors.boot;
   const Permit last = continued ? *last_ : Permit{};
   last_.reset();
@@ -98,6 +97,13 @@ void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {
   evidence_.restore(last);
   pending_ |= kCauseMonitorRestarted;
   if ((last.active & kCauseEmergencyStopTopic) != 0) operator_facts_.hold_e_stop();
+}
+
+void SafetyMonitor::meet_driver(const SensorFrame& sensors) noexcept {
+  if (!driver_) decide_restart(sensors);
+  if (driver_ && *driver_ != sensors.boot) pending_ |= kCauseDriverLost;
+  driver_ = sensors.boot;
+  driver_paused_ = sensors.driver_state == DriverState::kPaused;
 }
 
 void SafetyMonitor::look(const MonitorInput& input) noexcept {
@@ -128,12 +134,10 @@ void SafetyMonitor::look_at_motion(const MonitorInput& input, std::uint64_t elap
 }
 
 void SafetyMonitor::add_pending() noexcept {
-  constexpr auto kPeriods = static_cast<double>(kDriverLossPeriods);
   constexpr auto kCorrupt = static_cast<double>(FrameFacts::kPersistence);
   for (std::uint64_t rest = pending_; rest != 0; rest &= rest - 1) {
     const auto cause = static_cast<StopCause>(rest & (~rest + 1));
     Finding finding{.beyond = true};
-    if (cause == kCauseDriverLost) finding = counted(kPeriods);
     if (cause == kCauseCorruptFrame) finding = counted(kCorrupt);
     active_.add(cause, Reaction::kBrake, finding);
   }
@@ -170,10 +174,7 @@ double SafetyMonitor::speed_limit(const OperatorInput& operator_input) const noe
 
 void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {
   const SensorFrame& sensors = *input.sensors;
-  decide_restart(sensors);
-  driver_known_ = true;
-  driver_paused_ = sensors.driver_state == DriverState::kPaused;
-
+  meet_driver(sensors);
   const bool again = cycle_ == sensors.head.cycle;
   if (!again) look(input);
   cycle_ = sensors.head.cycle;

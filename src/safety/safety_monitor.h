@@ -14,6 +14,10 @@
 /// latches a stop (stop_category.h, SafetyParameters). The permit of cycle k is alive until k + kPermitLife: a monitor
 /// that makes no progress permits nothing.
 ///
+/// The driver is lost when it is silent (wall clock), and when a frame carries another SensorFrame::boot than the one
+/// before it (any clock): a driver that was started again is lost however soon it came back, whatever it last said.
+/// A simulation that is set down anew keeps its boot.
+///
 /// The speed limit of a permit is the least of slow_speed, where a cause slows the robot down, and of what the
 /// clearance allows; it latches nothing.
 
@@ -87,6 +91,7 @@ class SafetyMonitor {
 
  private:
   void decide_restart(const SensorFrame& sensors) noexcept;
+  void meet_driver(const SensorFrame& sensors) noexcept;
   void look(const MonitorInput& input) noexcept;
   void look_at_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept;
   void add_pending() noexcept;
@@ -116,8 +121,8 @@ class SafetyMonitor {
   std::optional<Permit> last_;          ///< of an earlier monitor, until the first step
   std::optional<std::uint64_t> cycle_;  ///< of the last step in this run
   double last_speed_limit_ = kNoSpeedLimit;
-  std::uint64_t pending_ = 0;  ///< causes from outside a step
-  bool driver_known_ = false;
+  std::uint64_t pending_ = 0;            ///< causes from outside a step
+  std::optional<std::uint64_t> driver_;  ///< SensorFrame::boot of the last step
   bool driver_paused_ = false;
   std::uint64_t resets_handled_ = 0;
   std::uint64_t reset_refusal_ = 0;

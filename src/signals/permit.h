@@ -36,7 +36,7 @@ enum StopCause : std::uint64_t {
   kCauseEmergencyStopTopic = 1u << 0,
   kCauseEmergencyStopService = 1u << 1,
   kCauseEmergencyStopInput = 1u << 2,
-  kCauseDriverLost = 1u << 3,  ///< No sensor frame for 20 periods (wall clock only).
+  kCauseDriverLost = 1u << 3,  ///< No sensor frame for 20 periods (wall clock only), or the driver was restarted.
   kCauseDriverFault = 1u << 4,
   kCauseControllerLost = 1u << 5,    ///< No command for loss_cycles cycles.
   kCauseEstimatorLost = 1u << 6,     ///< No state for loss_cycles cycles.

@@ -1,5 +1,7 @@
 /// A node is stopped, killed, or crashes, at full speed.
 
+#include <filesystem>
+
 #include "losses_fixture.h"
 
 namespace robot_control {
@@ -89,6 +91,41 @@ TEST_P(ALostPlant, IsNamedByEveryOtherAndHoldsTheLatch) {
 
 INSTANTIATE_TEST_SUITE_P(Each, ALostPlant, ::testing::Values(SIGSTOP, SIGKILL, SIGSEGV),
                          [](const auto& each) { return name_of_signal(each.param); });
+
+/// It was away for some milliseconds, or nobody could see it go: time is no witness.
+class APlantStartedAgain : public Losses {
+ protected:
+  void start_again() {
+    nodes().end(LoopNode::kPlant);
+    log().forget();
+    robot_.restart(LoopNode::kPlant);
+  }
+
+  void expect_lost() {
+    EXPECT_TRUE(robot_.await([&] { return log().rested(DrivingRobot::kRestCycles); })) << robot_.situation();
+    expect_latched_until_reset_and_new_command(kCauseDriverLost);
+  }
+};
+
+TEST_F(APlantStartedAgain, AtOnceIsLost) {
+  start_again();
+  expect_lost();
+}
+
+TEST_F(APlantStartedAgain, WithAnotherObjectOfItsSensorsIsLost) {
+  std::filesystem::remove("/dev/shm" + bus_object_name(nodes().bus(), ChannelNames::kSensors));
+  start_again();
+  expect_lost();
+}
+
+TEST_F(APlantStartedAgain, BesideAMonitorThatSleptMeanwhileIsLost) {
+  nodes().process(LoopNode::kMonitor).send(SIGSTOP);
+  const std::uint64_t before = robot_.sensors().head.run;
+  start_again();
+  EXPECT_TRUE(robot_.await([&] { return robot_.sensors().head.run != before && robot_.cycle() > 20; }));
+  nodes().process(LoopNode::kMonitor).send(SIGCONT);
+  expect_lost();
+}
 
 /// The log's reader.
 class ALostTelemetry : public Losses, public ::testing::WithParamInterface<int> {};

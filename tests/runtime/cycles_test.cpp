@@ -198,6 +198,15 @@ TEST_F(RunningLoop, LatchesTheLossOfTheDriverOnceItIsSilent) {
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
 }
 
+TEST_F(RunningLoop, LatchesTheLossOfADriverThatIsBackBeforeSilenceTold) {
+  loop.driver.set_boot(100);
+  loop.driver.begin_run(2);
+  loop.steps(5);
+  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
+  EXPECT_EQ(loop.newest_permit().causes, std::uint64_t{kCauseDriverLost});
+  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
+}
+
 TEST_F(RunningLoop, AResetAskedForDuringSilenceReleasesNothingLater) {
   loop.controller->inbox().store({.twist = {}, .count = 2});
   loop.steps(20);

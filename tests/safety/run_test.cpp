@@ -163,6 +163,51 @@ TEST_F(RunTest, HeartbeatsOfTheLastRunAreNotAwaited) {
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
+// A restart of the driver, which no clock tells.
+
+TEST_F(RunTest, ADriverStartedAgainIsLostHoweverSoonItIsBack) {
+  drive();
+  sensors_.boot = 78;
+  new_run();
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.action, PermitAction::kBrake);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseDriverLost});
+  EXPECT_EQ(permit_.evidence[0].cause, std::uint64_t{kCauseDriverLost});
+  step();
+  EXPECT_EQ(permit_.active, 0u);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+}
+
+TEST_F(RunTest, ADriverStartedAgainIsLostWhateverItsLastWordWas) {
+  sensors_.driver_state = DriverState::kPaused;
+  step();
+  sensors_.driver_state = DriverState::kRunning;
+  sensors_.boot = 78;
+  new_run();
+  step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseDriverLost});
+}
+
+TEST_F(RunTest, EachRestartOfTheDriverIsAnother) {
+  for (const std::uint64_t boot : {78U, 79U, 77U}) {
+    sensors_.boot = boot;
+    new_run();
+    step();
+    EXPECT_EQ(permit_.causes, std::uint64_t{kCauseDriverLost}) << boot;
+    stand();
+    ASSERT_EQ(reset(), 0u) << boot;
+  }
+}
+
+TEST_F(RunTest, ANewRunOfTheSameDriverIsNoLoss) {
+  drive();
+  new_run();
+  steps(5);
+  EXPECT_EQ(permit_.causes, 0u);
+  EXPECT_EQ(permit_.state, SupervisorState::kDrive);
+}
+
 // A restart of the monitor.
 
 class RestartTest : public RunTest {
