@@ -3,8 +3,9 @@
 Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
-Of the same form is what the trials give that judge, too: campaign.py, driving.py, drive_promises.py, bench_limiter;
-"not_judged" beside the rows names the robots that had to be left out.
+Of the same form is what the trials give that judge, too: campaign.py, driving.py, drive_promises.py, odometry_bench.py,
+bench_limiter; "not_judged" beside the rows names the robots that had to be left out, "table" are lines to be shown
+above them.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from typing import Any
 from robot_control.fault_sequence import ALL_RUNS
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
-JUDGED = ("campaign", "driving", "limiter", "drive")  # only when they are named
+JUDGED = ("campaign", "driving", "limiter", "drive", "odometry")  # only when they are named
 NAMES = MEASURED + JUDGED
 LIMITER_RUNS = 1_000_000  # sequences of 200 cycles, a minute on two cores
 
@@ -56,13 +57,18 @@ def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
         from robot_control import drive_promises
 
         return drive_promises.bench(tell)
+    if name == "odometry":
+        from robot_control import odometry_bench
+
+        return odometry_bench.bench(given.first, given.runs or odometry_bench.SEEDS, tell, plots=given.plots)
     return run_program(given.programs / f"bench_{name}", given.params), True
 
 
 def to_table(result: dict[str, Any]) -> str:
     """One line per figure: value, unit, reference of the same run, ratio to it; and one of robots not judged."""
     wide = max(24, *(len(row["name"]) for row in result["rows"]))
-    lines = [f"{result['bench']:<{wide + 2}}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]
+    lines = [*result["table"], ""] if result.get("table") else []
+    lines += [f"{result['bench']:<{wide + 2}}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]
     for row in result["rows"]:
         compared = row["reference"] != 0
         reference = f"{row['reference']:12.4g}{row['ratio']:10.3f}  of {row['reference_name']}" if compared else ""
@@ -106,9 +112,10 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    parser.add_argument("--first", type=_whole(0), default=0, help="campaign, limiter: first seed")
-    parser.add_argument("--runs", type=_whole(1), help="campaign, limiter: number of seeds")
+    parser.add_argument("--first", type=_whole(0), default=0, help="campaign, limiter, odometry: first seed")
+    parser.add_argument("--runs", type=_whole(1), help="campaign, limiter, odometry: number of seeds")
     parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
+    parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)

@@ -50,20 +50,14 @@ def _save(figure: plt.Figure, path: Path) -> None:
 
 
 def _umbmark(runs: Sequence[Run]) -> plt.Figure:
-    figure, (wide, narrow) = plt.subplots(1, 2, figsize=(14, 7), layout="constrained")
+    figure, (wide, narrow) = plt.subplots(1, 2, figsize=(14, 7.6), layout="constrained")
     _returns(wide, runs, (RAW, "gyro, no bias", SIMPLE, OURS), 1.0)
     _returns(narrow, runs, (SIMPLE, OURS), 1e3)
     wide.set_title("All methods")
-    narrow.set_title("The two best")
+    narrow.set_title("The two best, in millimetres")
     wide.set(xlabel="return error in x [m]", ylabel="return error in y [m]")
     narrow.set(xlabel="return error in x [mm]", ylabel="return error in y [mm]")
-    figure.suptitle(
-        f"UMBmark, 4 m square, {len(runs)} robots: centres of gravity of five runs each way",
-        fontsize=14,
-        fontweight="bold",
-        x=0.01,
-        ha="left",
-    )
+    _head(figure, f"UMBmark, square of 4 m: centres of gravity of five runs each way, {len(runs)} robots")
     return figure
 
 
@@ -71,14 +65,23 @@ def _returns(axes: Axes, runs: Sequence[Run], methods: Sequence[str], scale: flo
     for method in methods:
         means = np.array([run.returns[method].reshape(2, -1, 2).mean(axis=1) for run in runs]) * scale
         for way, marker, size in ((0, "v", 42), (1, "o", 34)):
-            name = f"{method}, {'counter-' if way else ''}clockwise"
-            axes.scatter(*means[:, way].T, marker=marker, s=size, color=COLOURS[method], alpha=0.7, lw=0, label=name)
+            axes.scatter(*means[:, way].T, marker=marker, s=size, color=COLOURS[method], alpha=0.7, lw=0)
+        axes.plot([], [], "s", color=COLOURS[method], label=method)
+    for name, marker in (("clockwise", "v"), ("counter-clockwise", "o")):
+        axes.plot([], [], marker, color="none", markeredgecolor="black", label=name)
     reach = 1.1 * max(abs(np.array([axes.get_xlim(), axes.get_ylim()])).max(), 1e-6)
     axes.axhline(0, color="black", linewidth=0.8)
     axes.axvline(0, color="black", linewidth=0.8)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_aspect("equal")
-    axes.legend(loc="upper right", fontsize=9)
+    axes.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=6, fontsize=10, columnspacing=1, handletextpad=0.2
+    )
+
+
+def _head(figure: plt.Figure, text: str) -> None:
+    figure.suptitle(text, fontsize=14, fontweight="bold", x=0.01, ha="left")
+    figure.get_layout_engine().set(w_pad=0.12, h_pad=0.1, wspace=0.03)
 
 
 def _random_drive(picture: Picture) -> plt.Figure:
@@ -104,12 +107,13 @@ def _random_drive(picture: Picture) -> plt.Figure:
         errors.plot(
             picture.distance, error, color=COLOURS[method], linewidth=2.2 if method == OURS else 1.2, label=method
         )
-    errors.axline((0, 0), slope=0.005, color="black", linewidth=1, linestyle=":", label="0.5 % of the way")
+    errors.plot(picture.distance, 0.005 * picture.distance, color="black", lw=1, ls=":", label="0.5 % of the way")
     errors.set_yscale("log")
     top = 2 * max(error.max() for error in picture.error.values())
     errors.set(xlim=(0, picture.distance[-1]), ylim=(1e-3, top), xlabel="way [m]", ylabel="position error [m]")
-    errors.set_title("Position error over the way")
-    errors.legend(loc="upper left", ncols=2, fontsize=9)
+    errors.set_title("Position error")
+    errors.legend(loc="lower right", ncols=2, fontsize=10, frameon=True, framealpha=0.85, edgecolor="none")
+    _head(figure, f"Random drive of {picture.time[-1] / 60:.0f} minutes, {picture.distance[-1]:.0f} m")
     return figure
 
 
@@ -127,6 +131,7 @@ def _consistency(runs: Sequence[Run]) -> plt.Figure:
         panel.set(ylabel="NEES", ylim=(0, None))
         panel.legend(loc="upper right")
     axes[1].set(xlabel=f"time [s], every {SAMPLE:.0f} s", xlim=(0, None))
+    _head(figure, f"Random drive: how honest the covariance is, {len(runs)} robots")
     return figure
 
 
@@ -155,12 +160,13 @@ def _slip(picture: Picture) -> plt.Figure:
         step="mid",
         label="flagged",
     )
-    ratio.plot(picture.time, 100 * picture.slip, color=SLIP, linewidth=1, label="true, the worse wheel")
+    slip = np.minimum(100 * picture.slip, 100)  # a wheel that turns against its way slips by up to twice that
+    ratio.plot(picture.time, slip, color=SLIP, linewidth=1, label="true, the worse wheel")
     for bound in (SLIPPING, ROLLING):
         ratio.axhline(100 * bound, color="black", linewidth=0.8, linestyle=":")
-    ratio.set(ylabel="slip [%]", ylim=(0, 105), xlim=(0, picture.time[-1]))
+    ratio.set(ylabel="slip [%]", ylim=(0, 125), yticks=range(0, 101, 20), xlim=(0, picture.time[-1]))
     ratio.set_title("Slip, and what is said of it")
-    ratio.legend(loc="upper right")
+    ratio.legend(loc="upper right", ncols=2)
     ratio.tick_params(labelbottom=False)
     error.fill_between(picture.time, 0, 2 * picture.deviation, color=COLOURS[OURS], alpha=0.18, lw=0, label="ours, 2 σ")
     for method in (CALIBRATED, SIMPLE, OURS):
@@ -169,4 +175,5 @@ def _slip(picture: Picture) -> plt.Figure:
     error.set(xlabel="time [s]", ylabel="position error [m]", xlim=(0, picture.time[-1]), ylim=(0, max(top, 0.01)))
     error.set_title("Position error")
     error.legend(loc="upper left")
+    _head(figure, "A run with spinning and locked wheels")
     return figure

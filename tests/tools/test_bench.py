@@ -31,6 +31,13 @@ def test_robots_that_are_absent_are_named_as_not_judged():
     assert "not judged" not in bench.to_table({"bench": "drive", "rows": [row], "not_judged": []})
 
 
+def test_a_table_stands_above_the_rows():
+    row = {"name": "seeds", "value": 3, "unit": "", "reference": 0, "reference_name": "", "ratio": 0}
+    lines = bench.to_table({"bench": "odometry", "rows": [row], "table": ["a line", "another"]}).splitlines()
+    assert lines[:3] == ["a line", "another", ""]
+    assert lines[3].startswith("odometry")
+
+
 def program(folder, text, name="bench_step"):
     path = folder / name
     path.write_text(f"#!{sys.executable}\n{text}\n")
@@ -63,7 +70,7 @@ def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])
     assert (
-        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving, limiter, drive"
+        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving, limiter, drive, odometry"
         in capsys.readouterr().err
     )
 
