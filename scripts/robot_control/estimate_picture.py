@@ -130,6 +130,11 @@ def _ellipse(x: float, y: float, covariance: FloatArray) -> Ellipse:
     return Ellipse((x, y), 2 * half[1], 2 * half[0], angle=angle)
 
 
+def _legend_above(axes: Axes) -> None:
+    """Beside the title, where no curve can be."""
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, borderaxespad=0.2)
+
+
 def _draw_yaw(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Yaw [°]")
     yaw = np.unwrap(rows["yaw"]) * DEGREES
@@ -137,14 +142,14 @@ def _draw_yaw(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.plot(time, np.unwrap(rows["wheel_yaw"]) * DEGREES, color=WHEELS, linewidth=1.2, label="wheels alone")
     axes.plot(time, yaw, color=OURS, linewidth=1.6, label="estimate")
     axes.fill_between(time, yaw - 2 * deviation, yaw + 2 * deviation, color=OURS, alpha=0.2, linewidth=0, label="± 2 σ")
-    axes.legend(loc="best", ncols=3)
+    _legend_above(axes)
 
 
 def _draw_speeds(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Speeds [m/s], [rad/s]")
     axes.plot(time, rows["linear"][:, 0], color=OURS, linewidth=1.4, label="forward [m/s]")
     axes.plot(time, rows["angular"][:, 2], color=ANGULAR, linewidth=1.4, label="turn [rad/s]")
-    axes.legend(loc="best", ncols=2)
+    _legend_above(axes)
 
 
 def _draw_bias(axes: Axes, time: FloatArray, rows: Estimate) -> None:
@@ -154,4 +159,4 @@ def _draw_bias(axes: Axes, time: FloatArray, rows: Estimate) -> None:
         deviation = rows["gyro_bias_deviation"][:, i] * DEGREES
         axes.plot(time, bias, color=color, linewidth=1.4, label=name)
         axes.fill_between(time, bias - 2 * deviation, bias + 2 * deviation, color=color, alpha=0.12, linewidth=0)
-    axes.legend(loc="best", ncols=3)
+    _legend_above(axes)

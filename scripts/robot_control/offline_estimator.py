@@ -209,7 +209,7 @@ class Estimator:
 
 def _numbers(name: str, given: ArrayLike) -> FloatArray:
     try:
-        return np.ascontiguousarray(given, dtype=np.float64)
+        return np.asarray(given, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} is no array of numbers: {error}") from None
 
