@@ -22,6 +22,7 @@ from robot_control.identify_log import RecordingError, recording
 from robot_control.identify_robot import RunningRobot
 from robot_control.run_log import FloatArray, LogError, read_log
 from robot_control.share import share_file
+from robot_control.topic_sender import Signals, ended_by_signals
 from robot_control.tuning_proposal import NoGainsError
 from robot_control.why_facts import COMMAND_TOPICS, nodes_of, senders_of
 from robot_control.why_node import Master
@@ -59,7 +60,9 @@ def main() -> None:
             _fit(dict(read_log(options.log)), _settings_of_files(options), options, f"log {options.log.name}")
         else:
             with _running() as settings:
-                _fit(_drive(settings, options), settings, options, "driven")
+                with ended_by_signals() as signals:
+                    log = _drive(settings, options, signals)
+                _fit(log, settings, options, "driven")
     except REFUSALS as error:
         sys.exit(f"identify.py: {error}")
 
@@ -103,34 +106,33 @@ def _running() -> Iterator[Settings]:
         yield Settings(path, tuple(values))
 
 
-def _drive(settings: Settings, options: Options) -> dict[str, FloatArray]:
+def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, FloatArray]:
     excitation = plan(settings, options)
     robot = RunningRobot()
-    rospy.on_shutdown(robot.send_last_zero)
-    senders, telemetry = _others(robot)
+    senders, telemetry = _others(robot, signals)
     look = robot.look(senders)
     reason = hindrance(look)
     if reason:
         raise RefusedError(f"{reason}. Nothing was driven")
     running = ""
     if telemetry:
-        _wait(lambda: any(name in robot.logs for name in telemetry))
+        _wait(lambda: any(name in robot.logs for name in telemetry), signals)
         running = next((robot.logs[name] for name in telemetry if name in robot.logs), "")
         if not running:
             raise RefusedError(f"{telemetry[0]} runs, but does not say where it writes; end it. Nothing was driven")
-    with recording(running, settings.path, lambda: not rospy.is_shutdown()) as log:
+    with recording(running, settings.path, signals.going_on) as log:
         print(
             f"driving {excitation.seconds:.0f} s: up to {excitation.linear:.2f} m/s, {excitation.reach:.2f} m ahead "
             f"and back, then turns on the spot, up to {excitation.angular:.2f} rad/s. Ctrl-C stops",
             flush=True,
         )
-        _follow(robot, excitation)
+        _follow(robot, excitation, signals)
         return log.read()
 
 
-def _others(robot: RunningRobot) -> tuple[tuple[str, ...], list[str]]:
+def _others(robot: RunningRobot, signals: Signals) -> tuple[tuple[str, ...], list[str]]:
     """Who else may send commands, and which telemetry runs; waits until the robot was heard."""
-    _wait(lambda: robot.listened_to() and robot.look().pose is not None and bool(robot.look().state))
+    _wait(lambda: robot.listened_to() and robot.look().pose is not None and bool(robot.look().state), signals)
     state = Master(rospy.get_name()).state()
     if state is None:
         raise RefusedError("the ROS master does not answer. Nothing was driven")
@@ -140,14 +142,14 @@ def _others(robot: RunningRobot) -> tuple[tuple[str, ...], list[str]]:
     return senders, sorted(nodes_of(state) & {rospy.resolve_name("telemetry")})
 
 
-def _wait(condition: Callable[[], bool]) -> None:
+def _wait(condition: Callable[[], bool], signals: Signals) -> None:
     """Until it holds, at most PATIENCE."""
     end = time.monotonic() + PATIENCE
-    while not condition() and time.monotonic() < end and not rospy.is_shutdown():
+    while not condition() and time.monotonic() < end and signals.going_on():
         time.sleep(0.02)
 
 
-def _follow(robot: RunningRobot, excitation: Excitation) -> None:
+def _follow(robot: RunningRobot, excitation: Excitation, signals: Signals) -> None:
     """Sends the plan; whatever happens, a zero is the last thing sent."""
     start = robot.look().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
     unanswered = 0.0  # s
@@ -158,7 +160,7 @@ def _follow(robot: RunningRobot, excitation: Excitation) -> None:
                 look = robot.look()
                 unanswered = 0.0 if moves(look) else unanswered
                 reason = (
-                    "interrupted" if rospy.is_shutdown() else interruption(look, start, excitation.reach, unanswered)
+                    interruption(look, start, excitation.reach, unanswered) if signals.going_on() else "interrupted"
                 )
                 if reason:
                     raise RefusedError(f"{reason}. A zero was sent, nothing is written")

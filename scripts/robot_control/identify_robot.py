@@ -12,12 +12,13 @@ from nav_msgs.msg import Odometry
 
 from robot_control.excitation_watch import Look, Pose
 from robot_control.msg import SafetyStatus
+from robot_control.topic_sender import Sender
 
 NEVER = -math.inf
 
 
 class RunningRobot:
-    """Listens to one robot; speaks to it on cmd_vel."""
+    """Listens to one robot; speaks to it on cmd_vel, a zero when the node is shut down."""
 
     def __init__(self) -> None:
         self.logs: dict[str, str] = {}  # telemetry node → path of its log
@@ -26,6 +27,7 @@ class RunningRobot:
         self._status: SafetyStatus | None = None
         self._status_at = NEVER
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+        self._sender = Sender(self._publisher, Twist())
         self._subscribers = [
             rospy.Subscriber("odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
             rospy.Subscriber("safety_status", SafetyStatus, self._hear_status),
@@ -36,12 +38,7 @@ class RunningRobot:
         """m/s, rad/s."""
         message = Twist()
         message.linear.x, message.angular.z = linear, angular
-        self._publisher.publish(message)
-
-    def send_last_zero(self) -> None:
-        """For rospy.on_shutdown: there the connections are still open."""
-        self.send(0, 0)
-        time.sleep(0.1)  # lets the socket's thread send it
+        self._sender.send(message)
 
     def listened_to(self) -> bool:
         """A controller is there for what is sent."""

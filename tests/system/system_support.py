@@ -93,15 +93,18 @@ class Program:
         self._process.send_signal(number)
 
     def wait(self, limit: float = LIMIT) -> int:
-        """The exit code; negative after a signal."""
-        return self._process.wait(limit)
+        """The exit code; negative after a signal. Fails with what the program said."""
+        try:
+            return self._process.wait(limit)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"{self.name} has not ended within {limit:g} s:\n{self.output}") from None
 
     def end(self) -> int:
         """SIGINT, SIGKILL if that does not help; the exit code."""
         if self.running:
             self.send_signal(signal.SIGINT)
             try:
-                return self.wait(10.0)
+                return self._process.wait(10.0)
             except subprocess.TimeoutExpired:
                 self.send_signal(signal.SIGKILL)
         return self.wait()

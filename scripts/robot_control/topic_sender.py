@@ -1,0 +1,127 @@
+"""A node that sends on a topic and ends properly: its last message is one that stops the robot, and it leaves.
+
+    publish      queues; a thread of each connection writes later, and a node that ends closes its connections at once
+    a signal     rospy shuts the node down inside the handler, in the midst of what the main thread does. If that is a
+                 call to the master (every loginfo is one), it waits for that call's lock: for itself, for ever
+
+Hence a signal is only noted here, the main thread ends the node, and the end waits until the last message is written.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from types import FrameType
+from typing import Any, Protocol
+
+import rospy
+
+LIMIT = 5.0
+"""s that the end of a node waits for a connection that takes nothing"""
+GRACE = 0.1
+"""s for roscpp's subscribers, which drop what they have not yet read when the master says that the publisher is gone"""
+LOOK = 0.005
+"""s between two looks at the connections"""
+NUMBERS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Publisher(Protocol):
+    """What is used of a rospy.Publisher; `impl.get_stats()[2]`: (id, bytes, messages written, connected) of each."""
+
+    impl: Any
+
+    def publish(self, message: object) -> None:
+        """Queues it for all who listen."""
+
+
+class Sender:
+    """Publishes until its last word, which comes when the node is shut down, whoever does that; nothing after it."""
+
+    def __init__(self, publisher: Publisher, last: object, said: Callable[[int], None] = lambda _: None) -> None:
+        """`said` is told after the last word how many of those who listened were not sent it."""
+        self._publisher, self._last, self._said = publisher, last, said
+        self._lock = threading.Lock()
+        self._over = False
+        rospy.on_shutdown(self._end)  # the connections are still open there; in a `finally` they are not
+
+    def send(self, message: object) -> None:
+        """Queues it for all who listen."""
+        with self._lock:
+            if not self._over:
+                self._publisher.publish(message)
+
+    def _end(self) -> None:
+        with self._lock:
+            self._over = True
+        self._said(publish_last(self._publisher, self._last))
+
+
+class Signals:
+    """SIGINT and SIGTERM, noted; one that comes when the end has had its time ends the program as it is."""
+
+    def __init__(self) -> None:
+        self._came_at = math.inf
+        for number in NUMBERS:
+            signal.signal(number, self._note)
+
+    @property
+    def came(self) -> bool:
+        """One at least."""
+        return self._came_at < math.inf
+
+    def going_on(self) -> bool:
+        """None came, and nobody shuts the node down."""
+        return not (self.came or rospy.core.is_shutdown_requested())
+
+    def _note(self, number: int, _frame: FrameType | None) -> None:
+        now = time.monotonic()
+        if now - self._came_at > 2 * LIMIT:
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+        self._came_at = min(self._came_at, now)
+
+
+@contextlib.contextmanager
+def ended_by_signals() -> Iterator[Signals]:
+    """After init_node, in the main thread: the node lives as long as the block, and has said its last word after it."""
+    signals = Signals()
+    try:
+        yield signals
+    finally:
+        rospy.signal_shutdown("a signal came" if signals.came else "all is done")
+        for number in NUMBERS:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def written(publisher: Publisher) -> dict[int, int]:
+    """Messages handed to the kernel, by connection that is open."""
+    return {connection: messages for connection, _, messages, is_open in publisher.impl.get_stats()[2] if is_open}
+
+
+def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) -> int:
+    """Publishes and waits until all who listen now were sent it; how many were not, within `limit` seconds.
+
+    Said twice: the first message written from now on may be one that a connection's thread had already taken from its
+    queue, the second is this one.
+    """
+    end = time.monotonic() + limit
+    before = written(publisher)
+    for messages in (1, 2):
+        publisher.publish(message)
+        while behind := _behind(publisher, before, messages):
+            if time.monotonic() > end:
+                return behind
+            time.sleep(LOOK)
+    if before:
+        time.sleep(GRACE)
+    return 0
+
+
+def _behind(publisher: Publisher, before: dict[int, int], messages: int) -> int:
+    """Connections that were open then, still are, and have written fewer messages since."""
+    now = written(publisher)
+    return sum(now[connection] < count + messages for connection, count in before.items() if connection in now)
