@@ -134,14 +134,14 @@ def standstill(draft: Draft) -> None:
 
 
 def waves(draft: Draft) -> None:
-    """Over humps that pitch the body by 1° RMS, to and fro and in eights, within the 10 m that they cover."""
+    """Over humps that pitch the body by 1° RMS, to and fro and in eights, within the 6 m that they cover."""
     draft.scene = _scene("waves")
-    for _ in range(2):
+    for _ in range(3):
         speed = draft.random.uniform(0.2, 0.5)
         for way in (1.0, -1.0):
-            draft.program.ways(way * speed, 3.0, 0.5)
+            draft.program.ways(way * speed, 2.0, 0.5)
         draft.program.turn(0.8, draft.random.uniform(0.5, 2.5), 0.5)
-        radius = draft.random.uniform(0.6, 1.2)
+        radius = draft.random.uniform(0.6, 1.0)
         for way in (1, -1):
             draft.program.drive(speed, way * speed / radius, 2 * np.pi * radius / speed)
         draft.program.stand(1.0 + draft.random.uniform(0.5, 2.0))
