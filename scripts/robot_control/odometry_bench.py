@@ -16,16 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from robot_control.odometry_judge import OURS, Run, run
-from robot_control.odometry_methods import METHODS
-from robot_control.odometry_promises import all_promises, of, positions, yaws
+from robot_control.odometry_judge import Run, run
+from robot_control.odometry_promises import all_promises, of
 from robot_control.odometry_scenarios import SCENARIOS
-from robot_control.odometry_truth import Array
+from robot_control.odometry_table import table
 
 SEEDS = 50
 LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors have something to do to the end
 REPORT_EVERY = 20.0  # s
-NAMES = (*METHODS, OURS)
 
 
 def all_runs(
@@ -67,22 +65,6 @@ def _outcomes(
 def _one(work: tuple[str, int], pictured: int | None, cache: Path | None) -> Run:
     scenario, seed = work
     return run(scenario, seed, picture=seed == pictured, cache=cache)
-
-
-def table(runs: Sequence[Run]) -> list[str]:
-    """A line per scenario and error, median and 95th percentile of each method."""
-    lines = [f"{'median / p95 over seeds':<26}" + "".join(f"{name:>20}" for name in NAMES)]
-    for scenario in SCENARIOS:
-        if not of(runs, scenario):
-            continue
-        for what, values, unit, scale in (("position", positions, "mm", 1e3), ("yaw", yaws, "°", 1.0)):
-            cells = [_spread(scale * values(runs, scenario, name)) for name in NAMES]
-            lines.append(f"{f'{scenario}, {what} [{unit}]':<26}" + "".join(f"{cell:>20}" for cell in cells))
-    return lines
-
-
-def _spread(values: Array) -> str:
-    return f"{np.median(values):.3g} / {np.percentile(values, 95):.3g}"
 
 
 def result_of(runs: Sequence[Run], seconds: float) -> dict[str, Any]:

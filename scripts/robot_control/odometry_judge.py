@@ -5,11 +5,7 @@ position error   |estimated − true position| at the end of the run. UMBmark: o
                  five clockwise runs and one of the five counter-clockwise, from zero (Borenstein & Feng 1996,
                  section III: E_max,syst)
 yaw error        |estimated − true| at the end, within half a turn. UMBmark: the largest of the ten
-NEES             eᵀ P⁻¹ e of e = (x, y, yaw) and of e = (forward speed, yaw rate), every SAMPLE s of the run, from
-                 the first one after the robot began to drive (Bar-Shalom, Li & Kirubarajan, "Estimation with
-                 Applications to Tracking and Navigation", 2001, section 5.4); ideal 3 and 2
-slip             of odometry_truth.py: SLIPPING, a wheel above 20 %, is to be flagged; ROLLING, all of them
-                 below 5 %, is not; what lies between is no one's
+NEES             of odometry_consistency.py, every SAMPLE s from when the robot began to drive
 """
 
 from __future__ import annotations
@@ -20,41 +16,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_control.odometry_consistency import Notice, nees, notice, pose_error, twist_error
+from robot_control.odometry_drives import FIRST_STAND
 from robot_control.odometry_methods import METHODS, raw_wheels
-from robot_control.odometry_ours import Ours, estimate
+from robot_control.odometry_ours import OURS, estimate, true_track
+from robot_control.odometry_picture import Picture, picture_of
 from robot_control.odometry_recording import Recording, load_recording, record
-from robot_control.odometry_scenarios import FIRST_STAND, draw_trial
+from robot_control.odometry_scenarios import draw_trial
 from robot_control.odometry_truth import Array, Track, Truth, truth_of, wrapped
 
-OURS = "ours"
 SAMPLE = 10.0  # s, between two looks at the NEES: errors of pose change over many seconds
-SLIPPING, ROLLING = 0.2, 0.05
 SETTLED = 3.0  # s after the last command, from which on a robot is at rest
-PICTURE_EVERY = 5  # truth rows: 20 Hz
-
-
-@dataclass(frozen=True)
-class Notice:
-    """Truth rows of a run, of 10 ms each."""
-
-    slipping: int
-    noticed: int  # of the slipping ones
-    rolling: int
-    alarms: int  # of the rolling ones
-
-
-@dataclass(frozen=True)
-class Picture:
-    """Of one run, 20 Hz, for the plots. `deviation` m: of the position, along its worst direction."""
-
-    time: Array
-    distance: Array
-    truth: Track
-    paths: dict[str, Track]
-    error: dict[str, Array]
-    deviation: Array
-    slip: Array
-    flagged: Array
 
 
 @dataclass(frozen=True)
@@ -101,10 +73,10 @@ def judge(recording: Recording, *, picture: bool = False) -> Run:
     """Estimates and compares."""
     truth, ours = truth_of(recording), estimate(recording)
     paths = {name: method(recording) for name, method in METHODS.items()} | {OURS: ours.path}
-    ends = {name: _errors(path, frame(truth, name)) for name, path in paths.items()}
+    ends = {name: _errors(path, true_track(truth, name)) for name, path in paths.items()}
     returns: dict[str, Array] = {}
     if recording.scenario == "umbmark":
-        returned = {name: return_errors(recording, path, frame(truth, name)) for name, path in paths.items()}
+        returned = {name: return_errors(recording, path, true_track(truth, name)) for name, path in paths.items()}
         returns = {name: errors[:, :2] for name, errors in returned.items()}
         ends = {name: (largest_mean(errors[:, :2]), np.abs(errors[:, 2]).max()) for name, errors in returned.items()}
     rows = _sampled_rows(recording)
@@ -124,13 +96,8 @@ def judge(recording: Recording, *, picture: bool = False) -> Run:
         returns=returns,
         killed=_without_gyro(recording, truth) if recording.scenario == "random" else {},
         drift=_drift(recording, ours.path, truth.odom) if recording.scenario == "standstill" else None,
-        picture=_picture(recording, truth, ours, paths) if picture else None,
+        picture=picture_of(recording, truth, ours, paths) if picture else None,
     )
-
-
-def frame(truth: Truth, method: str) -> Track:
-    """Of the truth that a method is judged in: who does not know which way is up is judged in the ground's."""
-    return truth.odom if method == OURS else truth.ground
 
 
 def relative(path: Track, begin: int, end: int) -> Array:
@@ -156,35 +123,6 @@ def largest_mean(returns: Array) -> float:
     """m, of (10, 2): the first half clockwise."""
     half = len(returns) // 2
     return float(max(np.linalg.norm(returns[:half].mean(axis=0)), np.linalg.norm(returns[half:].mean(axis=0))))
-
-
-def pose_error(ours: Ours, truth: Truth) -> Array:
-    """(M, 3)"""
-    yaw = wrapped(ours.path.yaw - truth.odom.yaw)
-    return np.column_stack([ours.path.x - truth.odom.x, ours.path.y - truth.odom.y, yaw])
-
-
-def twist_error(ours: Ours, truth: Truth) -> Array:
-    """(M, 2)"""
-    return np.column_stack([ours.linear - truth.linear, ours.angular - truth.angular])
-
-
-def nees(error: Array, covariance: Array) -> Array:
-    """(M,) of (M, n) and (M, n, n); infinite where the covariance is none."""
-    result = np.full(len(error), np.inf)
-    for row, (e, p) in enumerate(zip(error, covariance, strict=True)):
-        if np.isfinite(p).all() and np.linalg.eigvalsh(p)[0] > 0:
-            result[row] = e @ np.linalg.solve(p, e)
-    return result
-
-
-def notice(ours: Ours, truth: Truth) -> Notice:
-    """How long slip was there, and noticed."""
-    slipping = (truth.slip > SLIPPING).any(axis=1)
-    rolling = (truth.slip < ROLLING).all(axis=1)
-    return Notice(
-        int(slipping.sum()), int((slipping & ours.slip).sum()), int(rolling.sum()), int((rolling & ours.slip).sum())
-    )
 
 
 def _errors(path: Track, true: Track) -> tuple[float, float]:
@@ -219,24 +157,3 @@ def _drift(recording: Recording, path: Track, true: Track) -> tuple[float, float
     turned = path.yaw - true.yaw
     way = np.hypot(moved_x[begin:] - moved_x[begin], moved_y[begin:] - moved_y[begin])
     return float(way.max()), float(np.abs(turned[begin:] - turned[begin]).max())
-
-
-def _picture(recording: Recording, truth: Truth, ours: Ours, paths: dict[str, Track]) -> Picture:
-    def thin(path: Track) -> Track:
-        return Track(path.x[::PICTURE_EVERY], path.y[::PICTURE_EVERY], path.yaw[::PICTURE_EVERY])
-
-    def error(path: Track, true: Track) -> Array:
-        distance: Array = np.hypot(path.x - true.x, path.y - true.y)[::PICTURE_EVERY]
-        return distance
-
-    worst = np.linalg.eigvalsh(ours.pose_covariance[::PICTURE_EVERY, :2, :2])[:, 1]
-    return Picture(
-        time=recording.time[recording.index][::PICTURE_EVERY],
-        distance=truth.distance[::PICTURE_EVERY],
-        truth=thin(truth.odom),
-        paths={name: thin(path) for name, path in paths.items()},
-        error={name: error(path, frame(truth, name)) for name, path in paths.items()},
-        deviation=np.sqrt(np.maximum(worst, 0)),
-        slip=truth.slip.max(axis=1)[::PICTURE_EVERY],
-        flagged=ours.slip[::PICTURE_EVERY].astype(float),
-    )

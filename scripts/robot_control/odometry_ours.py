@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_control.odometry_recording import TRUTH_EVERY, Recording
-from robot_control.odometry_truth import Array, Track
+from robot_control.odometry_truth import Array, Track, Truth
 from robot_control.offline_estimator import FLAGS, Estimator
 
+OURS = "ours"  # its name among the methods
 PLANAR = [0, 1, 5]  # x, y, yaw of a pose; of a twist 0 and 5 are forward speed and yaw rate
 DRIVEN = [0, 5]
 
@@ -50,3 +51,8 @@ def estimate(recording: Recording, gyro_until: float = np.inf) -> Ours:
         radius_ratio=out["radius_ratio"][rows],
         wheel_base_factor=out["wheel_base_factor"][rows],
     )
+
+
+def true_track(truth: Truth, method: str) -> Track:
+    """Of the truth that a method is judged in: who does not know which way is up is judged in the ground's."""
+    return truth.odom if method == OURS else truth.ground

@@ -12,7 +12,10 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from robot_control.odometry_judge import OURS, ROLLING, SAMPLE, SLIPPING, Picture, Run
+from robot_control.odometry_consistency import ROLLING, SLIPPING
+from robot_control.odometry_judge import SAMPLE, Run
+from robot_control.odometry_ours import OURS
+from robot_control.odometry_picture import Picture
 from robot_control.odometry_promises import CALIBRATED, RAW, SIMPLE, mean_nees, of
 from robot_control.run_picture import STYLE
 

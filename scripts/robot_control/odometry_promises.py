@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_control.odometry_judge import OURS, Run
+from robot_control.odometry_consistency import nees_band
+from robot_control.odometry_judge import Run
+from robot_control.odometry_ours import OURS
 from robot_control.odometry_scenarios import SCENARIOS
 from robot_control.odometry_truth import Array
 
@@ -159,14 +161,3 @@ def mean_nees(runs: Sequence[Run], what: str) -> tuple[Array, tuple[float, float
     count = min(len(each) for each in series)
     means: Array = np.mean([each[:count] for each in series], axis=0)
     return means, nees_band(len(runs), 3 if what == "pose" else 2)
-
-
-def nees_band(runs: int, dimension: int) -> tuple[float, float]:
-    """In which the mean of `runs` values of χ² with `dimension` degrees of freedom lies with 95 %: quantiles of χ² with
-    n = runs · dimension, over runs, by Wilson & Hilferty (1931), n (1 − 2/(9n) ± 1.96 √(2/(9n)))³, right to 3 % for
-    n = 6 and to 0.01 % for n = 100.
-    """
-    n = runs * dimension
-    part = 2 / (9 * n)
-    low, high = (n * (1 - part + z * math.sqrt(part)) ** 3 / runs for z in (-1.96, 1.96))
-    return low, high

@@ -5,9 +5,10 @@ stands beside it: LOOSER holds the factor by which a figure may miss its bound.
 """
 
 import pytest
-from robot_control.odometry_bench import all_runs, table
+from robot_control.odometry_bench import all_runs
 from robot_control.odometry_promises import all_promises
 from robot_control.odometry_scenarios import SCENARIOS
+from robot_control.odometry_table import table
 
 SEEDS = range(3)
 LONG = ("standstill", "waves")  # ten minutes of nothing, and ground that takes long to compute: one robot each

@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 from robot_control import ClosedLoop
+from robot_control.odometry_consistency import ROLLING, SLIPPING
+from robot_control.odometry_drives import FIRST_STAND, SIDE
 from robot_control.odometry_errors import draw_errors
 from robot_control.odometry_methods import calibrated_wheels, raw_wheels, standing
 from robot_control.odometry_recording import TRUTH_EVERY, load_recording, record
-from robot_control.odometry_scenarios import FIRST_STAND, SCENARIOS, SIDE, draw_trial
+from robot_control.odometry_scenarios import SCENARIOS, draw_trial
 from robot_control.odometry_slip import KINDS
 from robot_control.odometry_truth import truth_of
-
-SLIPPING, ROLLING = 0.2, 0.05
 
 
 def shortened(scenario, seed, cycles):

@@ -5,10 +5,11 @@ import math
 
 import numpy as np
 import pytest
+from robot_control.odometry_consistency import Notice, nees, nees_band, notice
 from robot_control.odometry_errors import Errors
-from robot_control.odometry_judge import OURS, Notice, Run, largest_mean, nees, notice, relative, return_errors
+from robot_control.odometry_judge import Run, largest_mean, relative, return_errors
 from robot_control.odometry_methods import raw_wheels
-from robot_control.odometry_ours import Ours
+from robot_control.odometry_ours import OURS, Ours
 from robot_control.odometry_promises import (
     CALIBRATED,
     RAW,
@@ -17,7 +18,6 @@ from robot_control.odometry_promises import (
     all_promises,
     false_alarms,
     in_band,
-    nees_band,
     never_worse,
     slip,
     umbmark,
@@ -140,7 +140,7 @@ def test_only_slip_above_a_fifth_has_to_be_flagged_and_only_below_a_twentieth_it
     truth.slip[:30, 0] = 0.3
     truth.slip[30:90] = 0.01
     ours.slip[20:40] = True
-    assert notice(ours, truth) == Notice(slipping=30, noticed=10, rolling=60, alarms=10)
+    assert notice(ours, truth) == Notice(slipping=30, noticed=10, rolling=60, alarms=10, rows=len(truth.linear))
 
 
 def _ours(rows):
@@ -164,7 +164,7 @@ def run_of(scenario="slip", ours=0.1, wheels=1.0, seed=0, **more):
         "times": np.arange(1.0, 4.0),
         "pose_nees": np.full(3, 3.0),
         "twist_nees": np.full(3, 2.0),
-        "notice": Notice(100, 95, 1000, 10),
+        "notice": Notice(100, 95, 1000, 10, 2000),
         "pitch": 0.0,
         "invalid": 0.0,
     }
@@ -191,9 +191,9 @@ def test_runs_in_which_wheels_do_well_do_not_count_as_missed():
     [
         ({"ours": 0.21}, "slip, 5 × better than wheels"),
         ({"ours": 1.2}, "slip, worst over wheels"),
-        ({"notice": Notice(100, 89, 1000, 10)}, "slip above 20 % flagged"),
+        ({"notice": Notice(100, 89, 1000, 10, 2000)}, "slip above 20 % flagged"),
         ({"pose_nees": np.array([3.0, 30.0, 3.0])}, "slip, mean NEES of the pose"),
-        ({"notice": Notice(100, 95, 1000, 31)}, "false alarms, slip"),
+        ({"notice": Notice(100, 95, 1000, 31, 2000)}, "false alarms, slip"),
         ({"ours": 0.12}, "slip, median over simple part's"),
     ],
 )
@@ -203,7 +203,7 @@ def test_each_broken_promise_is_told(broken, name):
 
 
 def test_alarms_are_counted_over_all_runs_of_a_scenario():
-    runs = [run_of("waves", notice=Notice(0, 0, 900, 0)), run_of("waves", notice=Notice(0, 0, 100, 40))]
+    runs = [run_of("waves", notice=Notice(0, 0, 900, 0, 2000)), run_of("waves", notice=Notice(0, 0, 100, 40, 2000))]
     assert false_alarms(runs)[0].value == pytest.approx(4.0)
 
 
