@@ -65,5 +65,10 @@ def notice(ours: Ours, truth: Truth) -> Notice:
     """How long slip was there, and noticed."""
     slipping = (truth.slip > SLIPPING).any(axis=1)
     rolling = (truth.slip < ROLLING).all(axis=1)
-    counts = (slipping, slipping & ours.slip, rolling, rolling & ours.slip)
-    return Notice(*(int(rows.sum()) for rows in counts), rows=len(rolling))
+    return Notice(
+        slipping=int(slipping.sum()),
+        noticed=int((slipping & ours.slip).sum()),
+        rolling=int(rolling.sum()),
+        alarms=int((rolling & ours.slip).sum()),
+        rows=len(rolling),
+    )
