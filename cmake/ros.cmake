@@ -9,7 +9,7 @@ find_package(catkin REQUIRED COMPONENTS
 
 catkin_python_setup()
 add_message_files(FILES DriveState.msg SafetyStatus.msg)
-add_service_files(FILES InjectFault.srv SetParameters.srv Step.srv)
+add_service_files(FILES InjectFault.srv SetOdometry.srv SetParameters.srv Step.srv)
 generate_messages(DEPENDENCIES std_msgs)
 catkin_package(CATKIN_DEPENDS message_runtime std_msgs)
 unset(CMAKE_RUNTIME_OUTPUT_DIRECTORY)  # catkin's: test programs are no nodes

@@ -2,11 +2,17 @@
 
 #include <array>
 #include <cstdio>
+#include <numbers>
 
 #include "bridge/joined.h"
 #include "signals/names.h"
 
 namespace robot_control {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;  // ° per rad
+
+}  // namespace
 
 DiagnosticReport::DiagnosticReport(const std::string& node, const std::string& hardware) {
   message_.level = msg::DiagnosticStatus::OK;
@@ -68,13 +74,36 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
   report.reasons("gate", kGateReasonNames, sensors.gate.reasons);
 }
 
-void report_state(DiagnosticReport& report, const StateFrame& state) {
-  if ((state.flags & kStateSlip) != 0) report.warn("wheels and inertial sensors disagree");
-  if ((state.flags & kStateValid) == 0) report.warn("the state is not valid");
+void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately) {
+  constexpr std::uint64_t kLost = kStateNoGyro | kStateNoAccelerometer | kStateNoLeftEncoder | kStateNoRightEncoder;
+  if ((state.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
+  if ((state.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.flags & kLost));
+  if ((slip_lately | state.slip) != 0) {
+    report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.slip));
+  } else if ((state.flags & kStateSlip) != 0) {
+    report.warn("slip: wheels and inertial sensors disagree");
+  }
   report.value("cycle", state.head.cycle);
   report.value("flags", names_of(kStateFlagNames, state.flags));
   report.value("distance_m", state.distance);
   report.value("skipped", state.skipped);
+  report.value("slip", names_of(kSlipReasonNames, state.slip));
+  report.value("slip_lately", names_of(kSlipReasonNames, slip_lately));
+  for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
+    const std::string sensor(kStateSensorNames[i]);
+    report.value("confidence_" + sensor, state.confidence[i]);
+    report.value("nis_" + sensor, state.nis[i]);
+    report.value("rejected_" + sensor, state.rejected[i]);
+  }
+  report.value("radius_ratio", state.calibration.radius_ratio);
+  report.value("radius_ratio_deviation", state.calibration.radius_ratio_deviation);
+  report.value("wheel_base_factor", state.calibration.wheel_base_factor);
+  report.value("wheel_base_deviation", state.calibration.wheel_base_deviation);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name = std::string("gyro_bias_") + "xyz"[axis];
+    report.value(name + "_deg_s", state.gyro_bias[axis] * kDegrees);
+    report.value(name + "_deviation_deg_s", state.gyro_bias_deviation[axis] * kDegrees);
+  }
 }
 
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,

@@ -41,7 +41,8 @@ class DiagnosticReport {
 void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing);
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor);
-void report_state(DiagnosticReport& report, const StateFrame& state);
+/// `slip_lately`: SlipReason bits of any cycle since the last report.
+void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately);
 /// `lately`: CommandReason bits of any cycle since the last report; `senders` of commands, by name.
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
                     const std::vector<std::string>& senders);

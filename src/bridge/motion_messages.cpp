@@ -1,6 +1,8 @@
 #include "bridge/motion_messages.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "signals/names.h"
 
@@ -83,6 +85,15 @@ msg::TransformStamped transform(const msg::Odometry& odometry) {
   return message;
 }
 
+msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                             ros::Time stamp) {
+  const WheelOdometry& wheels = state.wheels;
+  const Pose pose{.position = {wheels.x, wheels.y, 0},
+                  .orientation = {0, 0, std::sin(wheels.yaw / 2), std::cos(wheels.yaw / 2)}};
+  return odometry_of(pose, {.linear = {wheels.linear, 0, 0}, .angular = {0, 0, wheels.angular}}, odom_frame, base_frame,
+                     stamp);
+}
+
 msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
                            ros::Time stamp) {
   return odometry_of(truth.pose_world, truth.twist_base, odom_frame, base_frame, stamp);
@@ -100,6 +111,29 @@ msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stam
   if ((sensors.valid & kValidGyro) == 0) message.angular_velocity_covariance[0] = kNotMeasured;
   if ((sensors.valid & kValidAccelerometer) == 0) message.linear_acceleration_covariance[0] = kNotMeasured;
   return message;
+}
+
+msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
+                  const EstimatorParameters& parameters, double period, ros::Time stamp) {
+  msg::Imu message = imu(sensors, robot, stamp);
+  const auto rotation = [](const Quaternion& q) { return Eigen::Quaterniond(q[3], q[0], q[1], q[2]); };
+  const Eigen::Quaterniond q = rotation(state.attitude) * rotation(robot.imu_in_base.orientation);
+  message.orientation = quaternion_message({q.x(), q.y(), q.z(), q.w()});
+  std::ranges::copy(state.attitude_covariance, message.orientation_covariance.begin());
+  const double gyro = parameters.gyro_noise * parameters.gyro_noise / period;
+  const double accelerometer = parameters.accelerometer_noise * parameters.accelerometer_noise / period;
+  for (const std::size_t diagonal : {0, 4, 8}) {
+    message.angular_velocity_covariance[diagonal] = gyro;
+    message.linear_acceleration_covariance[diagonal] = accelerometer;
+  }
+  return message;
+}
+
+bool has_imu_data(const SensorFrame& sensors, const StateFrame& state) {
+  constexpr std::uint64_t kMeasured = kValidGyro | kValidAccelerometer;
+  constexpr std::uint64_t kNotBelieved = kStateNoGyro | kStateNoAccelerometer;
+  return (sensors.valid & kMeasured) == kMeasured && (state.flags & kNotBelieved) == 0 &&
+         (state.flags & kStateValid) != 0;
 }
 
 msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot) {

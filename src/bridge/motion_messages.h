@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bridge/messages.h"
+#include "estimation/estimator_parameters.h"
 #include "robot/robot_model.h"
 #include "signals/command_frame.h"
 #include "signals/sensor_frame.h"
@@ -27,12 +28,28 @@ msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, c
 /// odom_frame → base_frame.
 msg::TransformStamped transform(const msg::Odometry& odometry);
 
+/// The wheels alone, in the same form. Nobody estimates how well they know it: both covariances are all zero, "unknown"
+/// as in sensor_msgs.
+msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                             ros::Time stamp);
+
 /// What really happens, in the same form; covariances are zero, because truth has none.
 msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
                            ros::Time stamp);
 
 /// REP 145: in the IMU link's axes; a covariance that begins with −1 says "not measured", all zero "unknown".
 msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
+
+/// The same with all that is known (REP 145 "imu/data"): orientation of the IMU's axes in odom, z against gravity,
+///   q = attitude ⊗ imu_in_base,   covariance StateFrame::attitude_covariance, about odom axes;
+/// rates and accelerations as measured, bias and all. Their covariance is that of white noise sampled at the loop's
+/// rate, density² / period. `sensors` and `state` are of one cycle.
+msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
+                  const EstimatorParameters& parameters, double period, ros::Time stamp);
+
+/// Nothing of the above is made up: gyro and accelerometer were measured in this cycle and are believed, the state is
+/// valid.
+bool has_imu_data(const SensorFrame& sensors, const StateFrame& state);
 
 /// Velocity targets of the wheels [rad/s] in the order of RobotModel::wheels; dim[0].label is "wheel".
 msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot);

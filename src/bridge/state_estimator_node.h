@@ -1,5 +1,6 @@
 #pragma once
-/// state_estimator: joint_states, odom, tf; service reset_odometry.
+/// state_estimator: joint_states, odom, wheel_odom, imu/data, tf; services reset_odometry, set_odometry; the
+/// calibration file.
 
 #include <memory>
 

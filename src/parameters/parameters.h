@@ -47,13 +47,14 @@ struct LoopParameters {
 /// Rates and names of what the nodes publish; nothing of it touches the loop.
 struct ReportParameters {
   double joint_states_rate = 100;  ///< Hz
-  double odom_rate = 50;           ///< Hz
+  double odom_rate = 50;           ///< Hz, odom and wheel_odom
   bool publish_tf = true;
   std::string odom_frame = "odom";
   std::string base_frame;    ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
   double command_rate = 50;  ///< Hz, joint_commands, joint_targets, cmd_vel_out and drive_state
-  double imu_rate = 100;     ///< Hz
-  double truth_rate = 50;    ///< Hz
+  double imu_rate = 100;       ///< Hz, imu/data_raw
+  double imu_data_rate = 100;  ///< Hz, imu/data
+  double truth_rate = 50;      ///< Hz
 };
 
 struct TelemetryParameters {
@@ -66,6 +67,7 @@ struct Parameters {
   LoopParameters loop;
   MujocoPlantParameters plant;
   EstimatorParameters estimator;
+  std::string calibration_file;  ///< path, see calibration_file.h; empty: none
   DriveControllerParameters controller;
   SafetyParameters safety;
   ReportParameters report;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "parameters/calibration_bounds.h"
 #include "parameters/problem_list.h"
 
 namespace robot_control {
@@ -82,6 +83,8 @@ constexpr auto kRobot = std::to_array<Key>({
     {"mass", in<&P::robot, &Robot::mass>, "kg", 0.01, 100000, kOptional},
     {"centre_of_gravity", in<&P::robot, &Robot::centre_of_gravity>, "m", -10, 10, kOptional},
     {"imu_link", in<&P::robot, &Robot::imu_link>, {}, 0, 0, kMayBeEmpty},
+    {"imu_position", in<&P::robot, &Robot::imu_position>, "m", -10, 10, kOptional},
+    {"imu_orientation", in<&P::robot, &Robot::imu_orientation>, "rad", -6.3, 6.3, kOptional},  // two turns hold all
     {"fail_action", in<&P::loop, &LoopParameters::fail_action>},
     {"rate", in<&P::loop, &LoopParameters::rate>, "Hz", 100, 2000},
     {"clock", in<&P::loop, &LoopParameters::clock>},
@@ -141,6 +144,12 @@ constexpr auto kMujocoPlant = std::to_array<Key>({
     {"truth_rate", in<&P::report, &ReportParameters::truth_rate>, "Hz", 0.1, 2000, kPublishRate},
 });
 
+template <auto Member>
+Field in_wheels(Parameters& parameters) {
+  return &(parameters.estimator.calibration.*Member);
+}
+
+using Wheels = WheelCalibration;
 constexpr auto kStateEstimator = std::to_array<Key>({
     {"wheel_slip_noise", in<&P::estimator, &EstimatorParameters::wheel_slip_noise>, "m/√m", 1.0e-6, 1},
     {"gyro_noise", in<&P::estimator, &EstimatorParameters::gyro_noise>, "rad/s/√Hz", 1.0e-9, 1},
@@ -150,9 +159,24 @@ constexpr auto kStateEstimator = std::to_array<Key>({
     {"gyro_turn_noise", in<&P::estimator, &EstimatorParameters::gyro_turn_noise>, "rad/√rad", 1.0e-6, 1},
     {"gyro_bias_initial", in<&P::estimator, &EstimatorParameters::gyro_bias_initial>, "rad/s", 1.0e-6, 10},
     {"gyro_bias_walk", in<&P::estimator, &EstimatorParameters::gyro_bias_walk>, "rad/s/√s", 1.0e-9, 1},
+    {"accelerometer_noise", in<&P::estimator, &EstimatorParameters::accelerometer_noise>, "m/s²/√Hz", 1.0e-9, 10},
+    {"accelerometer_bias_initial", in<&P::estimator, &EstimatorParameters::accelerometer_bias_initial>, "m/s²", 1.0e-6,
+     10},
+    {"accelerometer_bias_walk", in<&P::estimator, &EstimatorParameters::accelerometer_bias_walk>, "m/s²/√s", 1.0e-9,
+     10},
+    {"slip_detection", in<&P::estimator, &EstimatorParameters::slip_detection>},
+    {"self_calibration", in<&P::estimator, &EstimatorParameters::self_calibration>},
+    {"planar", in<&P::estimator, &EstimatorParameters::planar>},
+    {"radius_ratio", in_wheels<&Wheels::radius_ratio>, {}, kRadiusRatioMin, kRadiusRatioMax},
+    {"radius_ratio_deviation", in_wheels<&Wheels::radius_ratio_deviation>, {}, 0, 0.05},
+    {"wheel_base_factor", in_wheels<&Wheels::wheel_base_factor>, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
+    {"wheel_base_deviation", in_wheels<&Wheels::wheel_base_deviation>, {}, 0, 0.3},
+    {"gyro_bias", in<&P::estimator, &EstimatorParameters::gyro_bias>, "rad/s", -kGyroBiasMax, kGyroBiasMax},
+    {"calibration_file", in<&P::calibration_file>, {}, 0, 0, kPath | kMayBeEmpty},
     {"speed_bandwidth", in<&P::estimator, &EstimatorParameters::speed_bandwidth>, "Hz", 0.1, 500},
     {"joint_states_rate", in<&P::report, &ReportParameters::joint_states_rate>, "Hz", 0.1, 2000, kPublishRate},
     {"odom_rate", in<&P::report, &ReportParameters::odom_rate>, "Hz", 0.1, 2000, kPublishRate},
+    {"imu_rate", in<&P::report, &ReportParameters::imu_data_rate>, "Hz", 0.1, 2000, kPublishRate},
     {"publish_tf", in<&P::report, &ReportParameters::publish_tf>},
     {"odom_frame", in<&P::report, &ReportParameters::odom_frame>},
     {"base_frame", in<&P::report, &ReportParameters::base_frame>, {}, 0, 0, kMayBeEmpty},
@@ -319,6 +343,7 @@ std::string rule_of(const Key& key) {
       Cases{
           [&](double* to) { return number(to); },
           [&](std::optional<double>* to) { return number(to); },
+          [&](Vector3*) { return range_of(key, "a list of three numbers, each"); },
           [&](std::optional<Vector3>*) { return range_of(key, "a list of three numbers, each"); },
           [&](std::int64_t* to) { return whole(to); },
           [&](std::uint64_t* to) { return whole(to); },

@@ -15,9 +15,9 @@
 namespace robot_control {
 
 /// Where a value goes; the type of the pointer is the type of the parameter.
-using Field = std::variant<double*, std::optional<double>*, std::optional<Vector3>*, std::int64_t*, std::uint64_t*,
-                           bool*, std::string*, std::vector<std::string>*, ClockMode*, RealtimePolicy*, TyreModel*,
-                           Reaction*, FailAction*>;
+using Field = std::variant<double*, std::optional<double>*, Vector3*, std::optional<Vector3>*, std::int64_t*,
+                           std::uint64_t*, bool*, std::string*, std::vector<std::string>*, ClockMode*, RealtimePolicy*,
+                           TyreModel*, Reaction*, FailAction*>;
 
 /// What a key allows beyond its range; bits of Key::traits.
 enum KeyTrait : unsigned {

@@ -48,18 +48,8 @@ class Reader {
     return true;
   }
 
-  bool operator()(std::optional<Vector3>* to) {
-    constexpr std::size_t kComponents = 3;
-    if (entry_.kind != Entry::Kind::kList || entry_.items.size() != kComponents) {
-      return refuse("must be " + rule_of(key_));
-    }
-    Vector3 value{};
-    for (std::size_t i = 0; i < kComponents; ++i) {
-      if (!number(entry_.items[i], value[i])) return false;
-    }
-    *to = value;
-    return true;
-  }
+  bool operator()(Vector3* to) { return vector(*to); }
+  bool operator()(std::optional<Vector3>* to) { return vector(*to); }
 
   bool operator()(std::vector<std::string>* to) {
     // A single name stands for a list of one.
@@ -123,6 +113,20 @@ class Reader {
     const auto real = static_cast<double>(value);
     const bool off = (key_.traits & kZeroIsOff) != 0 && value == Number{0};
     if (!off && !(real >= key_.min && real <= key_.max)) return refuse("must be " + rule_of(key_));
+    to = value;
+    return true;
+  }
+
+  template <class To>
+  bool vector(To& to) {
+    constexpr std::size_t kComponents = 3;
+    if (entry_.kind != Entry::Kind::kList || entry_.items.size() != kComponents) {
+      return refuse("must be " + rule_of(key_));
+    }
+    Vector3 value{};
+    for (std::size_t i = 0; i < kComponents; ++i) {
+      if (!number(entry_.items[i], value[i])) return false;
+    }
     to = value;
     return true;
   }

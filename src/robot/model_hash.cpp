@@ -23,6 +23,10 @@ class Fnv1a {
     add_byte(value.has_value());
     add(value.value_or(0.0));
   }
+  void add(const std::optional<Vector3>& vector) {
+    add(std::optional<double>(vector ? 1.0 : 0.0));
+    for (const double component : vector.value_or(Vector3{})) add(component);
+  }
   std::uint64_t value() const { return hash_; }
 
  private:
@@ -44,9 +48,10 @@ std::uint64_t model_hash(const std::string& urdf, const RobotParameters& paramet
   hash.add(parameters.wheel_velocity_limit);
   hash.add(parameters.wheel_effort_rate);
   hash.add(parameters.mass);
-  hash.add(std::optional<double>(parameters.centre_of_gravity ? 1.0 : 0.0));
-  for (const double value : parameters.centre_of_gravity.value_or(Vector3{})) hash.add(value);
+  hash.add(parameters.centre_of_gravity);
   hash.add(parameters.imu_link);
+  hash.add(parameters.imu_position);
+  hash.add(parameters.imu_orientation);
   return hash.value();
 }
 

@@ -158,11 +158,7 @@ void note_unequal_loads(const RobotParameters& parameters, RobotModel& model) {
 
 void read_imu(const RigidBodies& robot, const RobotParameters& parameters, RobotModel& model) {
   model.imu_link = imu_link_of(robot, parameters.imu_link, model.notes);
-  if (model.imu_link.empty()) return;
-  const Eigen::Isometry3d& place = robot.links.at(model.imu_link).in_body;
-  const Eigen::Quaterniond rotation(place.linear());
-  model.imu_in_base.position = plain(place.translation());
-  model.imu_in_base.orientation = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
+  model.imu_in_base = imu_pose(robot, model.imu_link, parameters, model.wheel_base, model.notes);
 }
 
 void note_mecanum(RobotModel& model) {

@@ -130,6 +130,10 @@ inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
     {kSlipLifted, "lifted", "the robot moves up or down: lifted, or over a kerb", ""},
 });
 
+/// By SensorIndex.
+inline constexpr std::array<std::string_view, 6> kStateSensorNames{"left_encoder",  "right_encoder",   "gyro",
+                                                                   "accelerometer", "lateral_contact", "vertical_contact"};
+
 inline constexpr auto kDigitalInputNames = std::to_array<BitName>({
     {kInputEmergencyStop, "e_stop", "the emergency stop button is pressed", "release the button"},
 });

@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "signals/names.h"
+
 namespace robot_control {
 namespace {
 
@@ -48,6 +50,16 @@ Column column(std::string name, std::string unit, Get, std::size_t joint = 0) {
 double yaw_of(const Quaternion& q) {
   const auto [x, y, z, w] = q;
   return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+}
+
+double roll_of(const Quaternion& q) {
+  const auto [x, y, z, w] = q;
+  return std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y));
+}
+
+double pitch_of(const Quaternion& q) {
+  const auto [x, y, z, w] = q;
+  return std::asin(std::clamp(2 * (w * y - z * x), -1.0, 1.0));
 }
 
 /// Between the vertical of the start pose and the base's.
@@ -100,16 +112,61 @@ void add_estimate(Columns& to) {
   to.push_back(column<E>("estimate_y_variance", "m²", [](const E& e, J) { return e.state.pose_covariance[7]; }));
   to.push_back(column<E>("estimate_yaw_variance", "rad²",
                          [](const E& e, J) { return e.state.pose_covariance[kYaw * 6 + kYaw]; }));
+  to.push_back(column<E>("estimate_xy_covariance", "m²", [](const E& e, J) { return e.state.pose_covariance[1]; }));
   to.push_back(
-      column<E>("confidence_left_encoder", "0…1", [](const E& e, J) { return e.state.confidence[kLeftEncoder]; }));
+      column<E>("estimate_x_yaw_covariance", "m·rad", [](const E& e, J) { return e.state.pose_covariance[kYaw]; }));
   to.push_back(
-      column<E>("confidence_right_encoder", "0…1", [](const E& e, J) { return e.state.confidence[kRightEncoder]; }));
-  to.push_back(column<E>("confidence_gyro", "0…1", [](const E& e, J) { return e.state.confidence[kGyro]; }));
+      column<E>("estimate_y_yaw_covariance", "m·rad", [](const E& e, J) { return e.state.pose_covariance[6 + kYaw]; }));
   to.push_back(
-      column<E>("confidence_accelerometer", "0…1", [](const E& e, J) { return e.state.confidence[kAccelerometer]; }));
+      column<E>("estimate_linear_variance", "m²/s²", [](const E& e, J) { return e.state.twist_covariance[0]; }));
+  to.push_back(column<E>("estimate_angular_variance", "rad²/s²",
+                         [](const E& e, J) { return e.state.twist_covariance[kYaw * 6 + kYaw]; }));
+  to.push_back(column<E>("estimate_linear_angular_covariance", "m·rad/s²",
+                         [](const E& e, J) { return e.state.twist_covariance[kYaw]; }));
+  to.push_back(column<E>("estimate_lateral", "m/s", [](const E& e, J) { return e.state.twist_base.linear[1]; }));
+  to.push_back(
+      column<E>("estimate_lateral_variance", "m²/s²", [](const E& e, J) { return e.state.twist_covariance[7]; }));
+  to.push_back(column<E>("estimate_z", "m", [](const E& e, J) { return e.state.pose_odom.position[2]; }));
+  to.push_back(column<E>("estimate_roll", "rad", [](const E& e, J) { return roll_of(e.state.attitude); }));
+  to.push_back(column<E>("estimate_pitch", "rad", [](const E& e, J) { return pitch_of(e.state.attitude); }));
   to.push_back(column<E>("estimate_flags", "StateFlag", [](const E& e, J) { return e.state.flags; }));
+  to.push_back(column<E>("estimate_slip", "SlipReason", [](const E& e, J) { return e.state.slip; }));
   to.push_back(column<E>("estimate_distance", "m", [](const E& e, J) { return e.state.distance; }));
   to.push_back(column<E>("estimate_skipped", "", [](const E& e, J) { return e.state.skipped; }));
+}
+
+// How far each sensor and the ground agree with the rest, and what was learned of them.
+void add_trust(Columns& to) {
+  for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
+    const std::string sensor(kStateSensorNames[i]);
+    to.push_back(column<E>(
+        "confidence_" + sensor, "0…1", [](const E& e, J j) { return e.state.confidence[j]; }, i));
+    to.push_back(column<E>(
+        "nis_" + sensor, "", [](const E& e, J j) { return e.state.nis[j]; }, i));
+    to.push_back(column<E>(
+        "rejected_" + sensor, "", [](const E& e, J j) { return e.state.rejected[j]; }, i));
+  }
+  to.push_back(column<E>("radius_ratio", "", [](const E& e, J) { return e.state.calibration.radius_ratio; }));
+  to.push_back(column<E>("radius_ratio_deviation", "",
+                         [](const E& e, J) { return e.state.calibration.radius_ratio_deviation; }));
+  to.push_back(column<E>("wheel_base_factor", "", [](const E& e, J) { return e.state.calibration.wheel_base_factor; }));
+  to.push_back(
+      column<E>("wheel_base_deviation", "", [](const E& e, J) { return e.state.calibration.wheel_base_deviation; }));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name = std::string("gyro_bias_") + "xyz"[axis];
+    to.push_back(column<E>(
+        name, "rad/s", [](const E& e, J j) { return e.state.gyro_bias[j]; }, axis));
+    to.push_back(column<E>(
+        name + "_deviation", "rad/s", [](const E& e, J j) { return e.state.gyro_bias_deviation[j]; }, axis));
+  }
+}
+
+void add_wheel_odometry(Columns& to) {
+  to.push_back(column<E>("wheel_odom_x", "m", [](const E& e, J) { return e.state.wheels.x; }));
+  to.push_back(column<E>("wheel_odom_y", "m", [](const E& e, J) { return e.state.wheels.y; }));
+  to.push_back(column<E>("wheel_odom_yaw", "rad", [](const E& e, J) { return e.state.wheels.yaw; }));
+  to.push_back(column<E>("wheel_odom_linear", "m/s", [](const E& e, J) { return e.state.wheels.linear; }));
+  to.push_back(column<E>("wheel_odom_angular", "rad/s", [](const E& e, J) { return e.state.wheels.angular; }));
 }
 
 void add_command(Columns& to) {
@@ -267,6 +324,8 @@ std::vector<Column> log_columns(const std::vector<std::string>& joints, bool tim
   add_row(columns);
   add_truth(columns);
   add_estimate(columns);
+  add_trust(columns);
+  add_wheel_odometry(columns);
   add_command(columns);
   for (std::size_t j = 0; j < joints.size(); ++j) add_joint(columns, joints[j], j);
   add_tuning(columns);

@@ -3,10 +3,11 @@
 ///
 /// Names are those of the frames' members. Bits and enums are integers; their meaning stands where `unit`
 /// points: the enum of that name in signals/. Poses are planar (x, y, yaw): truth in the world minus the pose at
-/// cycle 0, the estimate in odom; twists in base axes; yaw in (−π, π]. NaN: there is none (no speed limit, no battery).
-/// `tuning` counts the sets of live parameters; behind it stands what held in this cycle, derived values among them
-/// (signals/drive_tuning.h): a joint that no loop drives has gains 0.
-/// `evidence_…`: by what the first cause was told, else the first warning; unit by its row in signals/cause_names.h.
+/// cycle 0, the estimate in odom; twists in base axes; yaw in (−π, π]. estimate_roll and estimate_pitch are those of
+/// the attitude against gravity, wheel_odom_… the wheels alone by the model's numbers. NaN: there is none (no speed
+/// limit, no battery). `tuning` counts the sets of live parameters; behind it stands what held in this cycle, derived
+/// values among them (signals/drive_tuning.h): a joint that no loop drives has gains 0. `evidence_…`: by what the first
+/// cause was told, else the first warning; unit by its row in signals/cause_names.h.
 
 #include <cstdint>
 #include <string>
@@ -28,7 +29,7 @@ struct Column {
   std::string unit;  ///< "m", "rad/s", "" for counts, or the name of the enum
   ColumnSource source = ColumnSource::kRow;
   ColumnKind kind = ColumnKind::kPhysical;
-  std::size_t joint = 0;  ///< index handed to the getters; columns of one joint only
+  std::size_t joint = 0;  ///< index handed to the getters; columns of one joint, sensor or axis only
   /// Exactly one of the two is set. Call only when `present`.
   double (*real)(const JoinedRow& row, std::size_t joint) = nullptr;
   std::int64_t (*integer)(const JoinedRow& row, std::size_t joint) = nullptr;

@@ -56,6 +56,76 @@ TEST_F(PermitReport, ACauseOutweighsAWarning) {
   EXPECT_THAT(report().message().message, HasSubstr("tilted too far"));
 }
 
+class StateReport : public testing::Test {
+ protected:
+  StateReport() { state_.flags = kStateValid; }
+
+  DiagnosticReport report(std::uint64_t slip_lately = 0) const {
+    DiagnosticReport report("state_estimator", "diffbot");
+    report_state(report, state_, slip_lately);
+    return report;
+  }
+
+  StateFrame state_;
+};
+
+TEST_F(StateReport, IsContentWithAHealthyState) {
+  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+  EXPECT_EQ(value_of(report(), "slip"), "");
+}
+
+TEST_F(StateReport, WarnsOfASensorThatIsLost) {
+  for (const std::uint64_t flag : {kStateNoGyro, kStateNoAccelerometer, kStateNoLeftEncoder, kStateNoRightEncoder}) {
+    state_.flags = kStateValid | flag;
+    EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+    EXPECT_THAT(report().message().message, HasSubstr(sentences_of(kStateFlagNames, flag)));
+  }
+}
+
+TEST_F(StateReport, WarnsOfAStateThatIsNotValid) {
+  state_.flags = 0;
+  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_THAT(report().message().message, HasSubstr("not valid"));
+}
+
+TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
+  state_.slip = kSlipLeft | kSlipSpinning;
+  EXPECT_THAT(report().message().message, HasSubstr("the left wheels do not roll; a wheel turns faster than the ground "
+                                                    "passes (accelerate less)"));
+  EXPECT_EQ(value_of(report(), "slip"), "left spinning");
+  state_.slip = 0;
+  EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_THAT(report(kSlipSideways).message().message, HasSubstr("the robot slides sideways"));
+  EXPECT_EQ(value_of(report(kSlipSideways), "slip"), "");
+  EXPECT_EQ(value_of(report(kSlipSideways), "slip_lately"), "sideways");
+}
+
+TEST_F(StateReport, TellsHowFarEachSensorAgrees) {
+  state_.confidence[kGyro] = 0.5;
+  state_.nis[kLateralContact] = 1.25;
+  state_.rejected[kVerticalContact] = 17;
+  EXPECT_EQ(value_of(report(), "confidence_gyro"), "0.5");
+  EXPECT_EQ(value_of(report(), "nis_lateral_contact"), "1.25");
+  EXPECT_EQ(value_of(report(), "rejected_vertical_contact"), "17");
+  for (const std::string_view sensor : kStateSensorNames) {
+    EXPECT_NE(value_of(report(), "nis_" + std::string(sensor)), "(none)") << sensor;
+  }
+}
+
+// 1 rad/s is 57.2958 °/s.
+TEST_F(StateReport, TellsWhatWasLearned) {
+  state_.calibration = {
+      .radius_ratio = 1.01, .wheel_base_factor = 0.98, .radius_ratio_deviation = 0.001, .wheel_base_deviation = 0.002};
+  state_.gyro_bias = {0, 0, 1};
+  state_.gyro_bias_deviation = {0, 1, 0};
+  EXPECT_EQ(value_of(report(), "radius_ratio"), "1.01");
+  EXPECT_EQ(value_of(report(), "radius_ratio_deviation"), "0.001");
+  EXPECT_EQ(value_of(report(), "wheel_base_factor"), "0.98");
+  EXPECT_EQ(value_of(report(), "wheel_base_deviation"), "0.002");
+  EXPECT_EQ(value_of(report(), "gyro_bias_z_deg_s"), "57.2958");
+  EXPECT_EQ(value_of(report(), "gyro_bias_y_deviation_deg_s"), "57.2958");
+}
+
 TEST(CommandReasons, AreEachAValueInWords) {
   CommandFrame command;
   command.reasons = kReasonTimedOut | kReasonHolding;

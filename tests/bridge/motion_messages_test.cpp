@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "signals/names.h"
 
 namespace robot_control {
@@ -85,6 +87,71 @@ TEST_F(MotionMessagesTest, ImuSaysWhatItDoesNotMeasure) {
   sensors_.valid = kValidOrientation;
   EXPECT_EQ(imu(sensors_, robot_, stamp_).orientation_covariance[0], 0);
   EXPECT_EQ(imu(sensors_, robot_, stamp_).angular_velocity_covariance[0], -1);
+}
+
+TEST_F(MotionMessagesTest, WheelOdometryIsTheWheelsAloneWithUnknownCovariance) {
+  state_.pose_odom.position = {9, 9, 9};
+  state_.pose_covariance.fill(9);
+  state_.wheels = {.x = 1, .y = 2, .yaw = 1, .linear = 3, .angular = 4};
+  const msg::Odometry message = wheel_odometry(state_, "odom", "base_link", stamp_);
+  EXPECT_EQ(message.header.frame_id, "odom");
+  EXPECT_EQ(message.child_frame_id, "base_link");
+  EXPECT_EQ(message.pose.pose.position.x, 1);
+  EXPECT_EQ(message.pose.pose.position.y, 2);
+  EXPECT_EQ(message.pose.pose.position.z, 0);
+  EXPECT_EQ(message.pose.pose.orientation.z, std::sin(0.5));
+  EXPECT_EQ(message.pose.pose.orientation.w, std::cos(0.5));
+  EXPECT_EQ(message.twist.twist.linear.x, 3);
+  EXPECT_EQ(message.twist.twist.angular.z, 4);
+  EXPECT_THAT(message.pose.covariance, Each(0));
+  EXPECT_THAT(message.twist.covariance, Each(0));
+}
+
+// The base pitched up by a right angle (x of the base points up), the IMU yawed by one on it: x of the IMU is y of the
+// base, and that stays y of odom. Half angles of 45°: exact but for the rounding of √½.
+TEST_F(MotionMessagesTest, ImuDataHasTheOrientationOfTheImuNotOfTheBase) {
+  const double half = std::sqrt(0.5);
+  state_.attitude = {0, -half, 0, half};
+  robot_.imu_in_base.orientation = {0, 0, half, half};
+  const msg::Imu message = imu_data(sensors_, state_, robot_, EstimatorParameters{}, 0.001, stamp_);
+  EXPECT_EQ(message.header.frame_id, "imu_link");
+  EXPECT_EQ(message.header.stamp, stamp_);
+  const auto& q = message.orientation;
+  const double x_of_imu_in_odom[] = {1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y + q.z * q.w),
+                                     2 * (q.x * q.z - q.y * q.w)};
+  EXPECT_NEAR(x_of_imu_in_odom[0], 0, 1e-15);
+  EXPECT_NEAR(x_of_imu_in_odom[1], 1, 1e-15);
+  EXPECT_NEAR(x_of_imu_in_odom[2], 0, 1e-15);
+}
+
+TEST_F(MotionMessagesTest, ImuDataCarriesTheSamplesAndEveryCovariance) {
+  sensors_.imu.angular_velocity = {1, 2, 3};
+  sensors_.imu.linear_acceleration = {4, 5, 6};
+  state_.attitude_covariance = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  EstimatorParameters parameters;
+  parameters.gyro_noise = 2;
+  parameters.accelerometer_noise = 3;
+  const msg::Imu message = imu_data(sensors_, state_, robot_, parameters, 0.25, stamp_);
+  EXPECT_EQ(message.angular_velocity.z, 3);
+  EXPECT_EQ(message.linear_acceleration.x, 4);
+  EXPECT_THAT(message.orientation_covariance, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
+  EXPECT_THAT(message.angular_velocity_covariance, ElementsAre(16, 0, 0, 0, 16, 0, 0, 0, 16));
+  EXPECT_THAT(message.linear_acceleration_covariance, ElementsAre(36, 0, 0, 0, 36, 0, 0, 0, 36));
+}
+
+TEST_F(MotionMessagesTest, ThereIsImuDataOnlyWhereBothSensorsAreBelieved) {
+  state_.flags = kStateValid;
+  EXPECT_TRUE(has_imu_data(sensors_, state_));
+  for (const std::uint64_t flags :
+       {kStateValid | kStateNoGyro, kStateValid | kStateNoAccelerometer, std::uint64_t{0}}) {
+    state_.flags = flags;
+    EXPECT_FALSE(has_imu_data(sensors_, state_)) << flags;
+  }
+  state_.flags = kStateValid;
+  for (const std::uint64_t one : {std::uint64_t{kValidGyro}, std::uint64_t{kValidAccelerometer}}) {
+    sensors_.valid = kValidJoints | one;
+    EXPECT_FALSE(has_imu_data(sensors_, state_)) << one;
+  }
 }
 
 TEST_F(MotionMessagesTest, JointCommandsAreTheWheelsVelocityTargets) {

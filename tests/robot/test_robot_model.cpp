@@ -179,6 +179,8 @@ TEST(RobotModel, EqualHashMeansEqualRobot) {
   EXPECT_TRUE(changed([](RobotParameters& p) { p.mass = 13; }));
   EXPECT_TRUE(changed([](RobotParameters& p) { p.centre_of_gravity = Vector3{}; }));
   EXPECT_TRUE(changed([](RobotParameters& p) { p.imu_link = "base_link"; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.imu_position = Vector3{}; }));
+  EXPECT_TRUE(changed([](RobotParameters& p) { p.imu_orientation = Vector3{}; }));
   EXPECT_TRUE(changed([](RobotParameters& p) {
     p.left_wheel_joints = {"left_wheel_joint"};
     p.right_wheel_joints = {"right_wheel_joint"};
@@ -195,6 +197,35 @@ TEST(RobotModel, ImuSitsAtItsLink) {
   EXPECT_NEAR(robot.imu_in_base.position[2], 0.06, kRounding);
   EXPECT_NEAR(robot.imu_in_base.orientation[2], std::sqrt(0.5), kRounding);
   EXPECT_NEAR(robot.imu_in_base.orientation[3], std::sqrt(0.5), kRounding);
+}
+
+// Roll then pitch then yaw about fixed axes: x of an IMU rolled and yawed by a right angle each points to the left, its
+// y up.
+TEST(RobotModel, AnotherPlaceOfTheImuIsBelievedInThePlaceOfTheUrdfs) {
+  RobotParameters parameters;
+  parameters.imu_position = Vector3{-0.1, 0.03, 0.2};
+  parameters.imu_orientation = Vector3{std::acos(0.0), 0, std::acos(0.0)};
+  const RobotModel robot = read_robot(diffbot_urdf(), parameters);
+  EXPECT_EQ(robot.imu_link, "imu_link");
+  EXPECT_EQ(robot.imu_in_base.position, (Vector3{-0.1, 0.03, 0.2}));
+  for (const double component : robot.imu_in_base.orientation) EXPECT_NEAR(component, 0.5, kRounding);
+  std::vector<std::string> noted;
+  for (const RobotNote& note : robot.notes) {
+    if (note.kind == RobotNote::Kind::kOverridden) noted.push_back(note.element + ": " + note.text);
+  }
+  EXPECT_EQ(noted, (std::vector<std::string>{
+                       "robot/imu_position: -0.1, 0.03, 0.2 m holds, the URDF says 0.05, 0.02, 0.06 m",
+                       "robot/imu_orientation: 1.5708, 0, 1.5708 rad holds, the URDF says 0, 0, 0 rad"}));
+}
+
+// 4 mm of a wheel base of 0.5 m, and 0.005 rad: a ruler's and a screw's.
+TEST(RobotModel, AnImuAlmostWhereTheUrdfSaysIsNotNoted) {
+  RobotParameters parameters;
+  parameters.imu_position = Vector3{0.054, 0.02, 0.06};
+  parameters.imu_orientation = Vector3{0, 0, 0.005};
+  const RobotModel robot = read_robot(diffbot_urdf(), parameters);
+  EXPECT_EQ(robot.imu_in_base.position[0], 0.054);
+  EXPECT_EQ(robot.notes.size(), read_robot(diffbot_urdf(), {}).notes.size());
 }
 
 TEST(RobotModel, WithoutAnImuLinkTheImuIsInTheBase) {

@@ -171,6 +171,15 @@ TEST(RobotRefusals, AnImuOnAWheel) {
   EXPECT_EQ(refusal(description), "accepted");
 }
 
+TEST(RobotRefusals, AnImuNowhere) {
+  RobotParameters parameters;
+  parameters.imu_position = Vector3{0, std::numeric_limits<double>::quiet_NaN(), 0};
+  EXPECT_THAT(refusal(diffbot_urdf(), parameters), names("robot/imu_position", "three finite numbers"));
+  parameters.imu_position.reset();
+  parameters.imu_orientation = Vector3{0, 0, std::numeric_limits<double>::infinity()};
+  EXPECT_THAT(refusal(diffbot_urdf(), parameters), names("robot/imu_orientation", "three finite numbers"));
+}
+
 TEST(RobotRefusals, AFloatingJointInTheTree) {
   EXPECT_THAT(refusal(diffbot_with("<joint name=\"imu_joint\"", "fixed", "floating")), names("imu_joint", "floating"));
 }

@@ -70,6 +70,31 @@ TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
                                                "confidence_right_encoder",
                                                "confidence_gyro",
                                                "confidence_accelerometer",
+                                               "estimate_xy_covariance",
+                                               "estimate_x_yaw_covariance",
+                                               "estimate_y_yaw_covariance",
+                                               "estimate_linear_variance",
+                                               "estimate_angular_variance",
+                                               "estimate_linear_angular_covariance",
+                                               "estimate_lateral",
+                                               "estimate_lateral_variance",
+                                               "estimate_z",
+                                               "estimate_roll",
+                                               "estimate_pitch",
+                                               "estimate_slip",
+                                               "confidence_lateral_contact",
+                                               "nis_gyro",
+                                               "nis_vertical_contact",
+                                               "rejected_left_encoder",
+                                               "radius_ratio",
+                                               "radius_ratio_deviation",
+                                               "wheel_base_factor",
+                                               "wheel_base_deviation",
+                                               "gyro_bias_x",
+                                               "gyro_bias_z_deviation",
+                                               "wheel_odom_x",
+                                               "wheel_odom_y",
+                                               "wheel_odom_yaw",
                                                "estimate_flags",
                                                "requested_linear",
                                                "requested_angular",
@@ -224,6 +249,65 @@ TEST_F(Columns, TakeVariancesFromTheDiagonal) {
   EXPECT_EQ(value("estimate_x_variance"), 1);
   EXPECT_EQ(value("estimate_y_variance"), 2);
   EXPECT_EQ(value("estimate_yaw_variance"), 3);
+}
+
+// Row-major over x, y, z, roll, pitch, yaw.
+TEST_F(Columns, TakeThePlanarBlocksOfTheCovariances) {
+  for (std::size_t i = 0; i < 36; ++i) {
+    estimator.state.pose_covariance[i] = static_cast<double>(i);
+    estimator.state.twist_covariance[i] = 100 + static_cast<double>(i);
+  }
+  EXPECT_EQ(value("estimate_xy_covariance"), 1);
+  EXPECT_EQ(value("estimate_x_yaw_covariance"), 5);
+  EXPECT_EQ(value("estimate_y_yaw_covariance"), 11);
+  EXPECT_EQ(value("estimate_linear_variance"), 100);
+  EXPECT_EQ(value("estimate_lateral_variance"), 107);
+  EXPECT_EQ(value("estimate_linear_angular_covariance"), 105);
+  EXPECT_EQ(value("estimate_angular_variance"), 135);
+}
+
+// Yaw 0.7, then pitch 0.2, then roll −0.3 about the turned axes. Tolerance: a few roundings.
+TEST_F(Columns, TakeRollAndPitchFromTheAttitude) {
+  const double cr = std::cos(-0.15), sr = std::sin(-0.15), cp = std::cos(0.1), sp = std::sin(0.1);
+  const double cy = std::cos(0.35), sy = std::sin(0.35);
+  estimator.state.attitude = {sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy,
+                              cr * cp * cy + sr * sp * sy};
+  EXPECT_NEAR(value("estimate_roll"), -0.3, 1e-15);
+  EXPECT_NEAR(value("estimate_pitch"), 0.2, 1e-15);
+  EXPECT_EQ(value("estimate_yaw"), 0);  // of the pose, which is planar
+}
+
+TEST_F(Columns, KeepTheSensorsApart) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    estimator.state.confidence[i] = 10 + static_cast<double>(i);
+    estimator.state.nis[i] = 20 + static_cast<double>(i);
+    estimator.state.rejected[i] = 30 + i;
+  }
+  EXPECT_EQ(value("confidence_left_encoder"), 10);
+  EXPECT_EQ(value("confidence_accelerometer"), 13);
+  EXPECT_EQ(value("nis_gyro"), 22);
+  EXPECT_EQ(value("nis_lateral_contact"), 24);
+  EXPECT_EQ(value("rejected_right_encoder"), 31);
+  EXPECT_EQ(value("rejected_vertical_contact"), 35);
+}
+
+TEST_F(Columns, TellWhatTheEstimatorLearned) {
+  estimator.state.calibration = {
+      .radius_ratio = 1, .wheel_base_factor = 2, .radius_ratio_deviation = 3, .wheel_base_deviation = 4};
+  estimator.state.gyro_bias = {5, 6, 7};
+  estimator.state.gyro_bias_deviation = {8, 9, 10};
+  estimator.state.wheels = {.x = 11, .y = 12, .yaw = 13, .linear = 14, .angular = 15};
+  estimator.state.slip = kSlipLeft | kSlipLifted;
+  EXPECT_EQ(value("radius_ratio"), 1);
+  EXPECT_EQ(value("wheel_base_factor"), 2);
+  EXPECT_EQ(value("radius_ratio_deviation"), 3);
+  EXPECT_EQ(value("wheel_base_deviation"), 4);
+  EXPECT_EQ(value("gyro_bias_y"), 6);
+  EXPECT_EQ(value("gyro_bias_z_deviation"), 10);
+  EXPECT_EQ(value("wheel_odom_x"), 11);
+  EXPECT_EQ(value("wheel_odom_yaw"), 13);
+  EXPECT_EQ(value("wheel_odom_angular"), 15);
+  EXPECT_EQ(value("estimate_slip"), 1 + 64);
 }
 
 TEST_F(Columns, LogTheGateOfTickKNotOfTheTickBefore) {

@@ -1,0 +1,287 @@
+#include "parameters/calibration_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <system_error>
+
+#include "parameters/calibration_bounds.h"
+#include "parameters/parameter_tree.h"
+#include "parameters/value_reader.h"
+
+namespace robot_control {
+namespace {
+
+constexpr const char* kBlock = "calibration";
+constexpr const char* kRemedy = "delete it to begin anew, or name another file";
+
+/// All that stands in the file.
+struct Content {
+  std::string robot;
+  double wheel_radius = 0;
+  double wheel_base = 0;
+  double initial_radius_ratio = 1;
+  double initial_wheel_base_factor = 1;
+  LearnedCalibration learned;
+};
+
+Content content_of(const LearnedCalibration& calibration, const RobotModel& robot,
+                   const EstimatorParameters& parameters) {
+  double radius = 0;
+  for (const WheelModel& wheel : robot.wheels) radius += wheel.radius / static_cast<double>(robot.wheels.size());
+  return {robot.name,
+          radius,
+          robot.effective_wheel_base(),
+          parameters.calibration.radius_ratio,
+          parameters.calibration.wheel_base_factor,
+          calibration};
+}
+
+Field a_number(Parameters& parameters) {
+  return &parameters.estimator.calibration.radius_ratio;
+}
+Field a_vector(Parameters& parameters) {
+  return &parameters.estimator.gyro_bias;
+}
+Field a_text(Parameters& parameters) {
+  return &parameters.report.odom_frame;
+}
+
+struct Row {
+  Key key;
+  Field (*in)(Content&);
+};
+
+// clang-format off
+const Row kRows[] = {
+    {{"robot", a_text}, [](Content& c) -> Field { return &c.robot; }},
+    {{"wheel_radius", a_number, "m", 0, 10}, [](Content& c) -> Field { return &c.wheel_radius; }},
+    {{"wheel_base", a_number, "m", 0, 100}, [](Content& c) -> Field { return &c.wheel_base; }},
+    {{"initial_radius_ratio", a_number, {}, kRadiusRatioMin, kRadiusRatioMax},
+     [](Content& c) -> Field { return &c.initial_radius_ratio; }},
+    {{"initial_wheel_base_factor", a_number, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
+     [](Content& c) -> Field { return &c.initial_wheel_base_factor; }},
+    {{"radius_ratio", a_number, {}, kRadiusRatioMin, kRadiusRatioMax},
+     [](Content& c) -> Field { return &c.learned.wheels.radius_ratio; }},
+    {{"radius_ratio_deviation", a_number, {}, 0, 1},
+     [](Content& c) -> Field { return &c.learned.wheels.radius_ratio_deviation; }},
+    {{"wheel_base_factor", a_number, {}, kWheelBaseFactorMin, kWheelBaseFactorMax},
+     [](Content& c) -> Field { return &c.learned.wheels.wheel_base_factor; }},
+    {{"wheel_base_deviation", a_number, {}, 0, 1},
+     [](Content& c) -> Field { return &c.learned.wheels.wheel_base_deviation; }},
+    {{"gyro_bias", a_vector, "rad/s", -kGyroBiasMax, kGyroBiasMax},
+     [](Content& c) -> Field { return &c.learned.gyro_bias; }},
+    {{"gyro_bias_deviation", a_vector, "rad/s", 0, 10},
+     [](Content& c) -> Field { return &c.learned.gyro_bias_deviation; }},
+};
+// clang-format on
+
+Content content_of(const ParameterTree& tree, const std::string& path, ProblemList& problems) {
+  Content content;
+  for (const BlockEntry& block : tree.blocks) {
+    if (block.name != kBlock) problems.add({printable(block.name), "", "unknown block", block.origin, kRemedy});
+  }
+  for (const auto& [name, entry] : tree.entries) {
+    const bool known = std::ranges::any_of(
+        kRows, [&](const Row& row) { return name == std::string(kBlock) + "." + std::string(row.key.name); });
+    if (!known && name.starts_with(std::string(kBlock) + ".")) {
+      problems.add({printable(name), as_written(entry), "unknown key", entry.origin, kRemedy});
+    }
+  }
+  for (const Row& row : kRows) {
+    const std::string name = std::string(kBlock) + "." + std::string(row.key.name);
+    const auto entry = tree.entries.find(name);
+    if (entry == tree.entries.end()) {
+      problems.add({name, "", "missing", path, kRemedy});
+    } else {
+      read_value(entry->second, name, row.key, row.in(content), problems);
+    }
+  }
+  return content;
+}
+
+/// Numbers were written to the last digit.
+bool equal(double a, double b) {
+  return std::abs(a - b) <= 1.0e-9 * std::max(std::abs(a), std::abs(b));
+}
+
+void check_owner(const Content& found, const Content& own, const std::string& path, ProblemList& problems) {
+  const auto differ = [&](const std::string& name, const std::string& value, const std::string& wanted) {
+    problems.add({std::string(kBlock) + "." + name, value,
+                  "was learned of another robot or with other parameters: " + wanted + " holds here", path, kRemedy});
+  };
+  if (found.robot != own.robot) differ("robot", printable(found.robot), printable(own.robot));
+  const auto check = [&](const std::string& name, double value, double wanted) {
+    if (!equal(value, wanted)) differ(name, shortest(value), shortest(wanted));
+  };
+  check("wheel_radius", found.wheel_radius, own.wheel_radius);
+  check("wheel_base", found.wheel_base, own.wheel_base);
+  check("initial_radius_ratio", found.initial_radius_ratio, own.initial_radius_ratio);
+  check("initial_wheel_base_factor", found.initial_wheel_base_factor, own.initial_wheel_base_factor);
+}
+
+std::filesystem::path folder_of(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  return folder.empty() ? "." : folder;
+}
+
+std::string text_of(const Content& content) {
+  const auto vector = [](const Vector3& v) {
+    return "[" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) + "]";
+  };
+  std::string text = "# What state_estimator learned while it drove; delete this file to begin anew.\n";
+  text.append(kBlock).append(":\n");
+  Content copy = content;
+  for (const Row& row : kRows) {
+    text.append("  ").append(row.key.name).append(": ");
+    const Field field = row.in(copy);
+    if (const auto* number = std::get_if<double*>(&field)) text += shortest(**number);
+    if (const auto* numbers = std::get_if<Vector3*>(&field)) text += vector(**numbers);
+    if (const auto* name = std::get_if<std::string*>(&field)) {
+      text += '"';
+      for (const char c : **name) text.append(c == '"' || c == '\\' ? "\\" : "").append(1, c);
+      text += '"';
+    }
+    if (!row.key.unit.empty()) text.append("  # ").append(row.key.unit);
+    text += '\n';
+  }
+  return text;
+}
+
+/// Closes what it holds.
+class File {
+ public:
+  File(const std::string& path, int flags) : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0644)) {
+    if (descriptor_ < 0) fail();
+  }
+  ~File() { close(descriptor_); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  void write_all(const std::string& text) const {
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
+      if (count < 0 && errno != EINTR) fail();
+      if (count > 0) done += static_cast<std::size_t>(count);
+    }
+  }
+  void sync() const {
+    if (fsync(descriptor_) != 0) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw std::system_error(errno, std::generic_category(), path_); }
+
+  std::string path_;
+  int descriptor_;
+};
+
+double grown(double learned, double added, double most) {
+  return std::min(most, std::hypot(learned, added));
+}
+
+bool estimated(const Vector3& deviation) {
+  return std::ranges::all_of(deviation, [](double axis) { return axis > 0; });
+}
+
+/// True where a value with its deviation says more than a saved one.
+bool better(double value, double deviation, double saved, double saved_deviation) {
+  constexpr double kShrunk = 0.9;
+  constexpr double kMoved = 0.2;
+  if (!(deviation > 0)) return false;
+  return !(saved_deviation > 0) || deviation < kShrunk * saved_deviation ||
+         std::abs(value - saved) > kMoved * deviation;
+}
+
+}  // namespace
+
+LearnedCalibration learned(const StateFrame& state) {
+  return {state.calibration, state.gyro_bias, state.gyro_bias_deviation};
+}
+
+bool may_be_kept(const LearnedCalibration& calibration) {
+  const WheelCalibration& wheels = calibration.wheels;
+  const auto within = [](double value, double min, double max) { return value >= min && value <= max; };
+  const bool sound = within(wheels.radius_ratio, kRadiusRatioMin, kRadiusRatioMax) &&
+                     within(wheels.wheel_base_factor, kWheelBaseFactorMin, kWheelBaseFactorMax) &&
+                     within(wheels.radius_ratio_deviation, 0, 1) && within(wheels.wheel_base_deviation, 0, 1) &&
+                     std::ranges::all_of(calibration.gyro_bias,
+                                         [&](double bias) { return within(bias, -kGyroBiasMax, kGyroBiasMax); }) &&
+                     std::ranges::all_of(calibration.gyro_bias_deviation, [&](double d) { return within(d, 0, 10); });
+  return sound && (wheels.radius_ratio_deviation > 0 || wheels.wheel_base_deviation > 0 ||
+                   estimated(calibration.gyro_bias_deviation));
+}
+
+bool worth_saving(const LearnedCalibration& saved, const LearnedCalibration& now) {
+  const WheelCalibration& was = saved.wheels;
+  const WheelCalibration& is = now.wheels;
+  bool any = better(is.radius_ratio, is.radius_ratio_deviation, was.radius_ratio, was.radius_ratio_deviation) ||
+             better(is.wheel_base_factor, is.wheel_base_deviation, was.wheel_base_factor, was.wheel_base_deviation);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    any = any || better(now.gyro_bias[axis], now.gyro_bias_deviation[axis], saved.gyro_bias[axis],
+                        saved.gyro_bias_deviation[axis]);
+  }
+  return any;
+}
+
+std::optional<LearnedCalibration> read_calibration(const std::string& path, const RobotModel& robot,
+                                                   const EstimatorParameters& parameters) {
+  const std::string subject = "state_estimator.calibration_file refused (" + path + ")";
+  ProblemList problems;
+  if (parameters.self_calibration && access(folder_of(path).c_str(), W_OK | X_OK) != 0) {
+    problems.add({folder_of(path).string(), "", std::string("cannot be written to: ") + std::strerror(errno), "",
+                  "make the folder, give it to this user, or name a file elsewhere"});
+    problems.throw_if_any(subject);
+  }
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) return {};
+  const ParameterTree tree = read_tree(path, {}, problems);
+  if (tree.blocks.empty()) problems.add({path, "", "holds no calibration", "", kRemedy});
+  problems.throw_if_any(subject);
+  const Content found = content_of(tree, path, problems);
+  problems.throw_if_any(subject);
+  check_owner(found, content_of(LearnedCalibration{}, robot, parameters), path, problems);
+  problems.throw_if_any(subject);
+  return found.learned;
+}
+
+void write_calibration(const std::string& path, const LearnedCalibration& calibration, const RobotModel& robot,
+                       const EstimatorParameters& parameters) {
+  const std::string fresh = path + ".new";
+  {
+    const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
+    file.write_all(text_of(content_of(calibration, robot, parameters)));
+    file.sync();
+  }
+  std::filesystem::rename(fresh, path);
+  File(folder_of(path), O_RDONLY | O_DIRECTORY).sync();
+}
+
+EstimatorParameters continued(const EstimatorParameters& parameters, const LearnedCalibration& calibration) {
+  EstimatorParameters result = parameters;
+  WheelCalibration& wheels = result.calibration;
+  const WheelCalibration& was = calibration.wheels;
+  if (wheels.radius_ratio_deviation > 0 && was.radius_ratio_deviation > 0) {
+    wheels.radius_ratio = was.radius_ratio;
+    wheels.radius_ratio_deviation = grown(was.radius_ratio_deviation, kRatioWear, wheels.radius_ratio_deviation);
+  }
+  if (wheels.wheel_base_deviation > 0 && was.wheel_base_deviation > 0) {
+    wheels.wheel_base_factor = was.wheel_base_factor;
+    wheels.wheel_base_deviation = grown(was.wheel_base_deviation, kBaseWear, wheels.wheel_base_deviation);
+  }
+  if (estimated(calibration.gyro_bias_deviation)) {
+    result.gyro_bias = calibration.gyro_bias;
+    result.gyro_bias_initial =
+        grown(std::ranges::max(calibration.gyro_bias_deviation), kBiasSwitchOn, parameters.gyro_bias_initial);
+  }
+  return result;
+}
+
+}  // namespace robot_control
