@@ -1,32 +1,37 @@
 #pragma once
-/// state_estimator's law: sensors of one cycle → state of that cycle. Planar: x, y, yaw; REP 103, REP 105.
+/// state_estimator's law: sensors of one cycle → state of that cycle. REP 103, REP 105.
 ///
-///   encoders ─► travel ──┬────────────────► distance ─┐
-///                        └─► turn of the wheels ─┐    ├─► exact arc ─► pose, covariance
-///   gyro ─► trapezoid over [k−1, k] − bias ──────┴► fusion ─► turn
-///   all quiet ─► standstill: the bias is learned; otherwise it is frozen and its variance grows
+///   encoders ─► travel of either side ─┐
+///   gyro, accelerometer ─► base axes ──┼─► error-state filter ─► pose, twist, covariances, biases, calibration
+///   contact, standstill ───────────────┘        ▲     │
+///                                          slip watch ◄┘
 ///
-/// Distance comes from the wheels, yaw from both (yaw_fusion.h). z, roll and pitch are not estimated: they are
-/// zero, with kPlanarVariance (1 cm, 0.6°, an even floor) as an assumption on the diagonal.
+/// At rest (standstill_window.h) nothing is integrated: pose and covariance stay, the biases and the tilt are learned.
+/// What happens in a window that turns out not to be quiet is made good at once. Every run begins so.
 ///
-/// A sample that is missing, not finite or impossible is not used (kStateBadSample). Without encoders the pose
-/// is held, and the next good reading brings the whole travel; held for more than kMaxHeld cycles, the state is
-/// no longer kStateValid. Without gyro yaw comes from the wheels (kStateNoGyro). A frame of a cycle that is not
-/// newer gives the last state again.
+/// Samples may come at any rate; one that is missing, not finite or impossible is not used (kStateBadSample), and the
+/// last one holds: for three times the gap between the last two, within kShortHold … kLongHold. Beyond that the sensor
+/// is lost, and says so by its flag:
+///   gyro            yaw comes from the wheels, by the calibration learned so far
+///   accelerometer   tilt and slip of all wheels together are not noticed
+///   one encoder     gyro and the other side carry on
+///   both encoders, or one and the gyro: no longer kStateValid. The next good reading brings the whole travel.
+/// A frame of a cycle that is not newer gives the last state again.
 ///
-/// Confidence: both encoders and gyro have that of the yaw fusion when both were used; encoders alone 1 (nothing
-/// contradicts them); accelerometer exp(−((|a| − g) / 1 m/s²)² / 2), |a| smoothed: it is used at standstill only.
+/// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kSmoothing.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
+#include "estimation/error_state_filter.h"
 #include "estimation/estimator_parameters.h"
-#include "estimation/pose_covariance.h"
+#include "estimation/imu_samples.h"
+#include "estimation/side_encoder.h"
+#include "estimation/slip_watch.h"
 #include "estimation/speed_tracker.h"
 #include "estimation/standstill_window.h"
-#include "estimation/wheel_encoders.h"
 #include "estimation/wheel_geometry.h"
-#include "estimation/yaw_fusion.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -35,11 +40,14 @@ namespace robot_control {
 
 class Estimator {
  public:
-  static constexpr std::uint64_t kMaxHeld = 4;       ///< cycles, as many as a command lives (hal/gate.h)
-  static constexpr double kPlanarVariance = 1.0e-4;  ///< m², rad²
-  static constexpr double kGyroRange = 100;          ///< rad/s; beyond what any MEMS gyro measures
+  static constexpr std::uint64_t kMaxHeld = 4;  ///< cycles without encoders, as many as a command lives (hal/gate.h)
+  static constexpr double kPlanarVariance = 1.0e-4;  ///< m², rad²: 1 cm, 0.6°, an even floor
   static constexpr double kRestartPosition = 0.05;   ///< m, standard deviation added by a restart
   static constexpr double kRestartYaw = 0.05;        ///< rad
+  static constexpr double kSmoothing = 1.0;          ///< s
+  static constexpr double kRestSpeed = 0.01;         ///< m/s, standard deviation of the velocity when rest ends
+  static constexpr std::uint64_t kMaxRefused =
+      50;  ///< samples in a row behind the chi-square gate, then it begins anew
 
   /// `period`: s, > 0. Throws std::invalid_argument: a parameter or a measure of the robot out of range, a
   /// side without a wheel.
@@ -64,60 +72,69 @@ class Estimator {
   /// Fills everything but `out.head`. dt = (sensors.head.cycle − the last one's) · period.
   void step(const SensorFrame& sensors, StateFrame& out) noexcept;
 
-  /// The same with samples that come at any time: `dt` [s] after the last one, > 0; the head's cycle only counts.
+  /// The same with samples that come at any time: `dt` [s] after the last one, > 0; the head's cycle does not count.
   void step(const SensorFrame& sensors, double dt, StateFrame& out) noexcept;
 
  private:
-  struct GyroSample {
-    bool good = false;
-    Vector3 rate{};  ///< rad/s, IMU axes
-    double yaw = 0;  ///< rad/s, base z, bias included
+  struct Side {
+    SideEncoder encoder;
+    SpeedTracker speed;
+    double total = 0;  ///< m, all travel of this run
+    std::uint64_t refused = 0;
+    bool believed = true;
   };
 
-  void count_cycles(std::uint64_t cycle) noexcept;
-  void read_gyro(const SensorFrame& sensors) noexcept;
-  void read_accelerometer(const SensorFrame& sensors) noexcept;
-  void travel(const SensorFrame& sensors) noexcept;
-  void learn(const SensorFrame& sensors) noexcept;
-  void lose_travel(double time) noexcept;
-  void clear_gap() noexcept;
-  double bias_yaw() const noexcept;
-  void fill_twist(StateFrame& out) const noexcept;
+  /// Of a window at rest that is not over yet.
+  struct Held {
+    double time = 0;                                 ///< s
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< rad, base axes, bias included
+    double forward = 0;                              ///< m
+    double wheel_turn = 0;                           ///< rad
+    bool gyro = true;
+  };
+
+  void advance(const SensorFrame& sensors, double dt) noexcept;
+  void read(const SensorFrame& sensors, double dt) noexcept;
+  void follow_wheels() noexcept;
+  void rest(double dt) noexcept;
+  void end_rest() noexcept;
+  void learn_at_rest() noexcept;
+  bool quiet() const noexcept;
+  void move(double dt) noexcept;
+  void correct(double dt) noexcept;
+  void correct_side(int side, double dt) noexcept;
+  void note(SensorIndex sensor, double nis, double dt) noexcept;
+  void place(const Vector3& pose) noexcept;
   void fill(StateFrame& out) const noexcept;
+  void fill_pose(StateFrame& out) const noexcept;
+  void fill_twist(StateFrame& out) const noexcept;
+  void fill_health(StateFrame& out) const noexcept;
 
   EstimatorParameters parameters_;
   double period_;
   WheelGeometry geometry_;
-  Vector3 up_in_imu_;  ///< base z in IMU axes: yaw rate = up_in_imu · rate
-
-  WheelEncoders encoders_;
-  SpeedTracker left_speed_;
-  SpeedTracker right_speed_;
-  YawFusion fusion_;
-  PoseCovariance covariance_;
+  Eigen::Matrix3d base_from_imu_;
+  ErrorStateFilter filter_;
+  SlipWatch slip_;
   StandstillWindow standstill_;
+  ImuSamples imu_;
+  std::array<Side, 2> sides_;
 
-  double x_ = 0, y_ = 0, yaw_ = 0;
+  bool resting_ = true;  ///< nothing is integrated until the window breaks
+  Held held_;
+  std::uint64_t doubtful_windows_ = 0;  ///< quiet ones in a row that contradict the velocity
+  WheelOdometry wheels_;
   double distance_ = 0;
-  Vector3 bias_{};
-  GyroSample gyro_;
-  bool accelerometer_good_ = false;
-  double gravity_;  ///< m/s², smoothed |a|
+  std::array<double, kMaxConfidences> nis_{};
+  std::array<std::uint64_t, kMaxConfidences> rejected_{};
 
-  bool began_ = false;     ///< a cycle of this run was seen
-  bool anchored_ = false;  ///< the encoders' offset is known
+  bool began_ = false;  ///< a cycle of this run was seen
   std::optional<Vector3> pose_pending_;
   bool restart_pending_ = false;
   std::uint64_t cycle_ = 0;
-  std::uint64_t cycles_ = 0;  ///< from the last frame to this one
   std::uint64_t skipped_ = 0;
   std::uint64_t flags_ = 0;  ///< of this cycle
   std::uint64_t lasting_flags_ = 0;
-
-  std::uint64_t gap_cycles_ = 0;  ///< since the encoders were last believed
-  double gap_turn_ = 0;           ///< rad, gyro with bias, over the gap
-  double gap_variance_ = 0;       ///< rad²
-  bool gap_gyro_ = true;          ///< no gyro sample is missing in the gap
 };
 
 }  // namespace robot_control

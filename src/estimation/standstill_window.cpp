@@ -4,58 +4,52 @@
 
 namespace robot_control {
 
+void StandstillWindow::Sum::add(const Eigen::Vector3d& sample) noexcept {
+  if (count == 0) origin = sample;
+  ++count;
+  const Eigen::Vector3d deviation = sample - origin;
+  deviations += deviation;
+  squares += deviation.squaredNorm();
+}
+
+double StandstillWindow::Sum::variance() const noexcept {
+  if (count == 0) return 0;
+  const auto n = static_cast<double>(count);
+  return squares / n - (deviations / n).squaredNorm();
+}
+
+std::optional<Eigen::Vector3d> StandstillWindow::Sum::mean() const noexcept {
+  if (count == 0) return std::nullopt;
+  return Eigen::Vector3d(origin + deviations / static_cast<double>(count));
+}
+
 void StandstillWindow::reset() noexcept {
-  standing_ = false;
-  begin();
+  time_ = left_ = right_ = 0;
+  gyro_ = {};
+  accelerometer_ = {};
 }
 
-void StandstillWindow::begin() noexcept {
-  cycles_ = 0;
-  samples_ = 0;
-  left_ = 0;
-  right_ = 0;
-  rate_sum_ = {};
-  accelerations_ = 0;
-  acceleration_sum_ = {};
-  acceleration_squares_ = 0;
-}
-
-bool StandstillWindow::step(const StandstillSample& sample) noexcept {
+WindowEnd StandstillWindow::step(const StandstillSample& sample) noexcept {
+  constexpr double kRounding = 1e-9;  // s, of a sum of many dt
   left_ += sample.left;
   right_ += sample.right;
   if (std::abs(left_) > limits_.tolerance || std::abs(right_) > limits_.tolerance) {
     reset();
-    return false;
+    return WindowEnd::kBroken;
   }
-  cycles_ += sample.cycles;
-  ++samples_;
-  for (std::size_t i = 0; i < 3; ++i) rate_sum_[i] += sample.angular_velocity[i];
-  if (sample.accelerometer) {
-    if (accelerations_ == 0) acceleration_origin_ = sample.linear_acceleration;
-    ++accelerations_;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double deviation = sample.linear_acceleration[i] - acceleration_origin_[i];
-      acceleration_sum_[i] += deviation;
-      acceleration_squares_ += deviation * deviation;
-    }
-  }
-  if (cycles_ < limits_.cycles) return false;
+  time_ += sample.dt;
+  if (sample.gyro) gyro_.add(*sample.gyro);
+  if (sample.accelerometer) accelerometer_.add(*sample.accelerometer);
+  if (time_ < limits_.time - kRounding) return WindowEnd::kOpen;
 
-  const auto samples = static_cast<double>(samples_);
-  for (std::size_t i = 0; i < 3; ++i) mean_[i] = rate_sum_[i] / samples;
-  bool quiet = true;
-  if (accelerations_ > 0) {
-    const auto count = static_cast<double>(accelerations_);
-    double variance = acceleration_squares_ / count;
-    for (const double sum : acceleration_sum_) variance -= sum / count * (sum / count);
-    quiet = variance <= limits_.acceleration * limits_.acceleration;
-  }
-  cycles_done_ = cycles_;
+  const bool quiet = accelerometer_.variance() <= limits_.acceleration * limits_.acceleration;
+  gyro_mean_ = gyro_.mean();
+  accelerometer_mean_ = accelerometer_.mean();
+  time_done_ = time_;
   left_done_ = left_;
   right_done_ = right_;
-  standing_ = standing_ && quiet;
-  begin();
-  return quiet;
+  reset();
+  return quiet ? WindowEnd::kQuiet : WindowEnd::kShaken;
 }
 
 }  // namespace robot_control

@@ -1,69 +1,76 @@
 #pragma once
-/// Does the robot stand, and what does the gyro read then? Looks at windows of fixed length, one after another.
+/// Does the robot stand, and what do gyro and accelerometer read then? Looks at windows of fixed length, one after
+/// another.
 ///
 /// A window is quiet when, over its whole length T,
 ///   wheels          stayed within ± tolerance of where they were at its beginning (a window ends at once otherwise)
-///   gyro            |mean yaw rate − bias| ≤ yaw_rate
 ///   accelerometer   RMS deviation from its mean ≤ acceleration; not asked where there is none
-/// `standing` holds from the end of a quiet window to the end of one that is not. The mean rate of a quiet
-/// window, less what the wheels turned in it, is a measurement of the gyro's bias.
+/// Whether the means are those of a robot at rest, the caller judges.
 
+#include <Eigen/Core>
 #include <cstdint>
-
-#include "signals/geometry.h"
+#include <optional>
 
 namespace robot_control {
 
 struct StandstillLimits {
-  std::uint64_t cycles = 250;  ///< T in cycles
+  double time = 0.25;          ///< s, T
   double tolerance = 0.00025;  ///< m, of a wheel's travel
   double acceleration = 0.3;   ///< m/s²
 };
 
 struct StandstillSample {
-  double left = 0, right = 0;  ///< m, travel since the last sample
-  std::uint64_t cycles = 0;    ///< since the last sample
-  Vector3 angular_velocity{};  ///< rad/s, IMU axes
-  bool accelerometer = false;
-  Vector3 linear_acceleration{};  ///< m/s², IMU axes
+  double dt = 0;                                 ///< s since the last sample
+  double left = 0, right = 0;                    ///< m, travel over dt
+  std::optional<Eigen::Vector3d> gyro;           ///< rad/s
+  std::optional<Eigen::Vector3d> accelerometer;  ///< m/s²
+};
+
+enum class WindowEnd : std::uint8_t {
+  kOpen,    ///< the window is not over
+  kBroken,  ///< a wheel moved: a new window begins
+  kShaken,  ///< the window is over, the accelerometer was not quiet
+  kQuiet,   ///< the window is over: the means are valid until the next step
 };
 
 class StandstillWindow {
  public:
   explicit StandstillWindow(const StandstillLimits& limits) noexcept : limits_(limits) {}
 
-  /// A sample was missing: nothing is known.
+  /// A new window begins.
   void reset() noexcept;
 
-  /// True when a window is complete and its wheels and accelerometer were quiet: the gyro's mean is to be judged
-  /// with `judge`, in the same cycle.
-  bool step(const StandstillSample& sample) noexcept;
+  WindowEnd step(const StandstillSample& sample) noexcept;
 
-  /// The gyro was quiet in the window that ended.
-  void judge(bool gyro_quiet) noexcept { standing_ = gyro_quiet; }
-
-  bool standing() const noexcept { return standing_; }
-  const Vector3& mean_angular_velocity() const noexcept { return mean_; }  ///< of the last complete window
-  std::uint64_t cycles() const noexcept { return cycles_done_; }           ///< length of the last complete window
-  double left() const noexcept { return left_done_; }                      ///< m, travel in the last complete window
-  double right() const noexcept { return right_done_; }                    ///< m
+  /// Of the last window that was over; empty where a sample of the kind never came in it.
+  const std::optional<Eigen::Vector3d>& gyro() const noexcept { return gyro_mean_; }                    ///< rad/s
+  const std::optional<Eigen::Vector3d>& accelerometer() const noexcept { return accelerometer_mean_; }  ///< m/s²
+  double time() const noexcept { return time_done_; }                                                   ///< s
+  double left() const noexcept { return left_done_; }    ///< m, travel in the last complete window
+  double right() const noexcept { return right_done_; }  ///< m
 
  private:
-  void begin() noexcept;
+  /// Sums of deviations from the window's first sample: small numbers keep their digits.
+  struct Sum {
+    std::uint64_t count = 0;
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+    Eigen::Vector3d deviations = Eigen::Vector3d::Zero();
+    double squares = 0;
+
+    void add(const Eigen::Vector3d& sample) noexcept;
+    double variance() const noexcept;
+    std::optional<Eigen::Vector3d> mean() const noexcept;
+  };
 
   StandstillLimits limits_;
-  bool standing_ = false;
-  std::uint64_t cycles_ = 0;
-  std::uint64_t cycles_done_ = 0;
-  std::uint64_t samples_ = 0;
+  double time_ = 0;
   double left_ = 0, right_ = 0;
+  Sum gyro_;
+  Sum accelerometer_;
+  double time_done_ = 0;
   double left_done_ = 0, right_done_ = 0;
-  Vector3 rate_sum_{};
-  std::uint64_t accelerations_ = 0;
-  Vector3 acceleration_origin_{};  ///< first sample of the window: sums of small numbers keep their digits
-  Vector3 acceleration_sum_{};
-  double acceleration_squares_ = 0;
-  Vector3 mean_{};
+  std::optional<Eigen::Vector3d> gyro_mean_;
+  std::optional<Eigen::Vector3d> accelerometer_mean_;
 };
 
 }  // namespace robot_control

@@ -5,7 +5,7 @@
 ///   forward  = distance + turn · axle_y  left = −turn · axle_x
 ///
 /// wheel_base is the effective one (RobotModel); left and right are the means of a side. (axle_x, axle_y) is the middle
-/// of the wheels in base axes: rigid-body motion of a point beside it.
+/// of the wheels in base axes: rigid-body motion of a point beside it. `ground` is the height of the contacts.
 
 #include "estimation/arc.h"
 #include "robot/robot_model.h"
@@ -16,11 +16,14 @@ struct WheelGeometry {
   double wheel_base = 1;  ///< m, effective
   double axle_x = 0;      ///< m
   double axle_y = 0;      ///< m
+  double ground = 0;      ///< m
 
   explicit WheelGeometry(const RobotModel& robot) noexcept : wheel_base(robot.effective_wheel_base()) {
+    const auto count = static_cast<double>(robot.wheels.size());
     for (const WheelModel& wheel : robot.wheels) {
-      axle_x += wheel.centre_base[0] / static_cast<double>(robot.wheels.size());
-      axle_y += wheel.centre_base[1] / static_cast<double>(robot.wheels.size());
+      axle_x += wheel.centre_base[0] / count;
+      axle_y += wheel.centre_base[1] / count;
+      ground += (wheel.centre_base[2] - wheel.radius) / count;
     }
   }
 

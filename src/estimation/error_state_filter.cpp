@@ -1,0 +1,325 @@
+#include "estimation/error_state_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Matrix3d cross_matrix(const Vector3d& v) noexcept {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// Rodrigues' formula, by its series where the angle is small.
+Matrix3d exponential(const Vector3d& angle) noexcept {
+  const double square = angle.squaredNorm();
+  const double norm = std::sqrt(square);
+  const double a = square < 1e-6 ? 1 - square / 6 : std::sin(norm) / norm;
+  const double b = square < 1e-6 ? 0.5 - square / 24 : (1 - std::cos(norm)) / square;
+  const Matrix3d x = cross_matrix(angle);
+  return Matrix3d::Identity() + a * x + b * (x * x);
+}
+
+/// One step of Newton's iteration for the polar decomposition keeps a rotation a rotation.
+void orthonormalise(Matrix3d& r) noexcept {
+  const Matrix3d excess = r.transpose() * r - Matrix3d::Identity();
+  r -= 0.5 * r * excess;
+}
+
+double square(double value) noexcept {
+  return value * value;
+}
+
+constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
+constexpr double kMaxBase = 0.3;    // of a skid-steer on another floor
+constexpr double kGate = 16.0;      // 4 σ of one degree of freedom: one good sample in 16 000 is refused
+
+}  // namespace
+
+ErrorStateFilter::ErrorStateFilter(const ContactGeometry& geometry, const FilterNoise& noise, const FilterPrior& prior)
+    : geometry_(geometry), noise_(noise), prior_(prior) {
+  reset();
+}
+
+void ErrorStateFilter::reset() noexcept {
+  position = geometry_.imu_in_base;
+  rotation.setIdentity();
+  velocity.setZero();
+  travel.setZero();
+  gyro_bias.setZero();
+  accelerometer_bias.setZero();
+  rate.setZero();
+  radius_ratio = wheel_base = gyro_scale = 0;
+  corrections_.setZero();
+  covariance.setZero();
+  const auto prior = [&](int index, double deviation) { covariance(index, index) = square(deviation); };
+  for (const int i : {0, 1}) prior(kOrientation + i, prior_.tilt);
+  for (const int i : {0, 1, 2}) prior(kGyroBias + i, prior_.gyro_bias);
+  for (const int i : {0, 1, 2}) prior(kAccelerometerBias + i, prior_.accelerometer_bias);
+  for (const int i : {0, 1}) prior(kTravel + i, noise_.encoder);
+  prior(kRadiusRatio, prior_.radius_ratio);
+  prior(kWheelBase, prior_.wheel_base);
+  prior(kGyroScale, prior_.gyro_scale);
+}
+
+double ErrorStateFilter::lever(int side) const noexcept {
+  return geometry_.middle_y + (side == 0 ? 0.5 : -0.5) * geometry_.wheel_base * (1 + wheel_base);
+}
+
+void ErrorStateFilter::predict(const Motion& motion) noexcept {
+  const double dt = motion.dt;
+  Vector3d omega{0, 0, 0};
+  if (motion.gyro) {
+    omega = (1 + gyro_scale) * (*motion.gyro - gyro_bias);
+  } else {
+    const double turn = (1 + radius_ratio / 2) * motion.right_travel - (1 - radius_ratio / 2) * motion.left_travel;
+    omega.z() = turn / (geometry_.wheel_base * (1 + wheel_base)) / dt;
+  }
+  const Matrix3d middle = rotation * exponential(omega * (dt / 2));
+  const Vector3d gravity{0, 0, -kGravity};
+  Vector3d u = velocity;
+  if (motion.accelerometer) {
+    const Vector3d steady = *motion.accelerometer - accelerometer_bias + middle.transpose() * gravity;
+    u += dt / 2 * (steady - omega.cross(velocity));
+    velocity += dt * (steady - omega.cross(u));
+  }
+  transport(motion, middle, u, omega);
+
+  position += dt * (middle * u);
+  const double scale[2] = {1 / (1 - radius_ratio / 2), 1 / (1 + radius_ratio / 2)};
+  for (const int side : {0, 1}) {
+    const double contact = u.x() + omega.y() * geometry_.height - omega.z() * lever(side);
+    travel[side] += dt * scale[side] * contact;
+  }
+  rotation = rotation * exponential(omega * dt);
+  orthonormalise(rotation);
+  rate = omega;
+  corrections_.setZero();
+}
+
+/// P ← F P Fᵀ + Q. F = I + dt·A is sparse: F P Fᵀ is two passes of column operations with a transposition between.
+void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, const Vector3d& u,
+                                 const Vector3d& omega) noexcept {
+  const double dt = motion.dt;
+  const bool gyro = motion.gyro.has_value();
+  const Vector3d speed = middle * u;
+  const Matrix3d by_tilt = dt * middle.transpose() * cross_matrix({0, 0, -kGravity});
+  const Vector3d turning = dt * omega.cross(u);
+  const Vector3d axes[3] = {dt * middle.col(0), dt * middle.col(1), dt * middle.col(2)};
+  const double scale[2] = {dt / (1 - radius_ratio / 2), dt / (1 + radius_ratio / 2)};
+  const double height = geometry_.height;
+  const double base = geometry_.wheel_base * (1 + wheel_base);
+  double contact[2];
+  for (const int side : {0, 1}) contact[side] = u.x() + omega.y() * height - omega.z() * lever(side);
+
+  const auto pass = [&](Covariance& p) {
+    for (const int i : {0, 1, 2}) {  // position
+      p.col(kPosition + i) +=
+          axes[0][i] * p.col(kVelocity) + axes[1][i] * p.col(kVelocity + 1) + axes[2][i] * p.col(kVelocity + 2);
+    }
+    p.col(kPosition) += dt * (speed.z() * p.col(kOrientation + 1) - speed.y() * p.col(kOrientation + 2));
+    p.col(kPosition + 1) += dt * (speed.x() * p.col(kOrientation + 2) - speed.z() * p.col(kOrientation));
+    p.col(kPosition + 2) += dt * (speed.y() * p.col(kOrientation) - speed.x() * p.col(kOrientation + 1));
+    for (const int side : {0, 1}) {  // travel
+      auto column = p.col(kTravel + side);
+      const double sign = side == 0 ? 0.5 : -0.5;
+      column += scale[side] * p.col(kVelocity) + scale[side] * sign * contact[side] * p.col(kRadiusRatio);
+      if (!gyro) continue;
+      column += scale[side] * (lever(side) * p.col(kGyroBias + 2) - height * p.col(kGyroBias + 1));
+      column -= scale[side] * motion.wheel_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
+      column -= scale[side] * motion.wheel_rate * lever(side) * p.col(kGyroScale);
+    }
+    if (motion.accelerometer) {  // velocity
+      const Column x = p.col(kVelocity);
+      const Column y = p.col(kVelocity + 1);
+      const Column z = p.col(kVelocity + 2);
+      const auto g = [&](int i) { return p.col(kGyroBias + i); };
+      p.col(kVelocity) += dt * (omega.z() * y - omega.y() * z) - dt * p.col(kAccelerometerBias);
+      p.col(kVelocity + 1) += dt * (omega.x() * z - omega.z() * x) - dt * p.col(kAccelerometerBias + 1);
+      p.col(kVelocity + 2) += dt * (omega.y() * x - omega.x() * y) - dt * p.col(kAccelerometerBias + 2);
+      for (const int i : {0, 1, 2}) {
+        p.col(kVelocity + i) += by_tilt(i, 0) * p.col(kOrientation) + by_tilt(i, 1) * p.col(kOrientation + 1);
+      }
+      if (gyro) {
+        p.col(kVelocity) += dt * (u.z() * g(1) - u.y() * g(2)) - turning.x() * p.col(kGyroScale);
+        p.col(kVelocity + 1) += dt * (u.x() * g(2) - u.z() * g(0)) - turning.y() * p.col(kGyroScale);
+        p.col(kVelocity + 2) += dt * (u.y() * g(0) - u.x() * g(1)) - turning.z() * p.col(kGyroScale);
+      }
+    }
+    const Vector3d turned = dt * (middle * omega);
+    for (const int i : {0, 1, 2}) {  // orientation
+      auto column = p.col(kOrientation + i);
+      if (gyro) {
+        column -= axes[0][i] * p.col(kGyroBias) + axes[1][i] * p.col(kGyroBias + 1) + axes[2][i] * p.col(kGyroBias + 2);
+        column += turned[i] * p.col(kGyroScale);
+      } else {
+        const double mean = (motion.left_travel + motion.right_travel) / 2;
+        column += middle(i, 2) * (mean / base * p.col(kRadiusRatio)) - turned[i] * p.col(kWheelBase);
+      }
+    }
+  };
+  pass(covariance);
+  covariance.transposeInPlace();
+  pass(covariance);
+
+  Covariance& p = covariance;
+  if (gyro) {  // noise of the gyro moves orientation, velocity and travel together, as its bias does
+    const double variance = square(noise_.gyro) / dt;
+    for (const int axis : {0, 1, 2}) {
+      Eigen::Matrix<double, 8, 1> g = Eigen::Matrix<double, 8, 1>::Zero();
+      g.head<3>() = -axes[axis];
+      g.segment<3>(3) = -dt * u.cross(Vector3d::Unit(axis));
+      if (axis == 2) g.tail<2>() << scale[0] * lever(0), scale[1] * lever(1);
+      if (axis == 1) g.tail<2>() << -scale[0] * height, -scale[1] * height;
+      p.block<8, 8>(kOrientation, kOrientation) += variance * g * g.transpose();
+    }
+  } else {
+    constexpr double kLevel = 0.02;  // rad/√s: how a floor that is about even tilts the robot
+    const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) * dt;
+    const double yaw = square(noise_.wheel_slip / base) * path;
+    p(kOrientation, kOrientation) += square(kLevel) * dt;
+    p(kOrientation + 1, kOrientation + 1) += square(kLevel) * dt;
+    p(kOrientation + 2, kOrientation + 2) += yaw;
+  }
+  const double shake = square(motion.accelerometer ? noise_.accelerometer : kUnknownAcceleration) * dt;
+  for (const int i : {0, 1, 2}) {
+    p(kVelocity + i, kVelocity + i) += shake;
+    p(kGyroBias + i, kGyroBias + i) += square(noise_.gyro_bias_walk) * dt;
+    p(kAccelerometerBias + i, kAccelerometerBias + i) += square(noise_.accelerometer_bias_walk) * dt;
+  }
+  p(kTravel, kTravel) += square(noise_.wheel_slip) * std::abs(motion.left_speed) * dt;
+  p(kTravel + 1, kTravel + 1) += square(noise_.wheel_slip) * std::abs(motion.right_speed) * dt;
+}
+
+ErrorStateFilter::Innovation ErrorStateFilter::correct(const Column& ph, double innovation, double variance,
+                                                       double gate) noexcept {
+  const double nis = innovation * innovation / variance;
+  if (!(nis <= gate)) return {nis, false};
+  const Column gain = ph / variance;
+  const Column root = ph / std::sqrt(variance);
+  covariance.noalias() -= root * root.transpose();
+  const Column error = gain * innovation;
+  inject(error);
+  corrections_ += error;
+  return {nis, true};
+}
+
+void ErrorStateFilter::inject(const Column& error) noexcept {
+  position += error.segment<3>(kPosition);
+  rotation = exponential(error.segment<3>(kOrientation)) * rotation;
+  velocity += error.segment<3>(kVelocity);
+  travel += error.segment<2>(kTravel);
+  gyro_bias += error.segment<3>(kGyroBias);
+  accelerometer_bias += error.segment<3>(kAccelerometerBias);
+  radius_ratio = std::clamp(radius_ratio + error[kRadiusRatio], -kMaxRatio, kMaxRatio);
+  wheel_base = std::clamp(wheel_base + error[kWheelBase], -kMaxBase, kMaxBase);
+  gyro_scale = std::clamp(gyro_scale + error[kGyroScale], -kMaxRatio, kMaxRatio);
+}
+
+void ErrorStateFilter::doubt_velocity(int axis, double deviation, double time) noexcept {
+  Column error = Column::Zero();
+  error[kVelocity + axis] = deviation;
+  error.segment<3>(kPosition) = rotation.col(axis) * (deviation * time / 2);
+  covariance.noalias() += error * error.transpose();
+  const int bias = kAccelerometerBias + axis;
+  covariance(bias, bias) += square(kPulledBias);
+}
+
+ErrorStateFilter::Innovation ErrorStateFilter::correct_travel(int side, double measured) noexcept {
+  const Column ph = covariance.col(kTravel + side);
+  return correct(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder), kGate);
+}
+
+ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexcept {
+  const double x = geometry_.middle_x;
+  const double z = geometry_.height;
+  const double speed = velocity.y() + rate.z() * x - rate.x() * z;
+  const Column ph = covariance.col(kVelocity + 1) - x * covariance.col(kGyroBias + 2) + z * covariance.col(kGyroBias);
+  const double own = ph[kVelocity + 1] - x * ph[kGyroBias + 2] + z * ph[kGyroBias];
+  const double noise = square(noise_.lateral) / dt + square(noise_.gyro) / dt * (x * x + z * z) +
+                       square(noise_.lateral_per_force * velocity.x() * rate.z()) / dt;
+  return correct(ph, -speed, own + noise, kGate);
+}
+
+ErrorStateFilter::Innovation ErrorStateFilter::correct_vertical(double dt) noexcept {
+  const double x = geometry_.middle_x;
+  const double y = geometry_.middle_y;
+  const double speed = velocity.z() + rate.x() * y - rate.y() * x;
+  const Column ph = covariance.col(kVelocity + 2) - y * covariance.col(kGyroBias) + x * covariance.col(kGyroBias + 1);
+  const double own = ph[kVelocity + 2] - y * ph[kGyroBias] + x * ph[kGyroBias + 1];
+  const double noise = square(noise_.vertical) / dt + square(noise_.gyro) / dt * (x * x + y * y);
+  return correct(ph, -speed, own + noise, kGate);
+}
+
+ErrorStateFilter::Innovation ErrorStateFilter::correct_gyro_at_rest(int axis, double mean, double variance) noexcept {
+  const Column ph = covariance.col(kGyroBias + axis);
+  return correct(ph, mean - gyro_bias[axis], ph[kGyroBias + axis] + variance, HUGE_VAL);
+}
+
+ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int axis, double mean,
+                                                                             double variance) noexcept {
+  const Vector3d up = rotation.transpose() * Vector3d{0, 0, kGravity};
+  const Matrix3d by_tilt = -rotation.transpose() * cross_matrix({0, 0, -kGravity});
+  const int own = kAccelerometerBias + axis;
+  const double bx = by_tilt(axis, 0);
+  const double by = by_tilt(axis, 1);
+  const Column ph = covariance.col(own) + bx * covariance.col(kOrientation) + by * covariance.col(kOrientation + 1);
+  const double expected = ph[own] + bx * ph[kOrientation] + by * ph[kOrientation + 1];
+  return correct(ph, mean - up[axis] - accelerometer_bias[axis], expected + variance, HUGE_VAL);
+}
+
+void ErrorStateFilter::stand(double deviation) noexcept {
+  velocity.setZero();
+  rate.setZero();
+  covariance.middleCols<3>(kVelocity).setZero();
+  covariance.middleRows<3>(kVelocity).setZero();
+  for (const int i : {0, 1, 2}) covariance(kVelocity + i, kVelocity + i) = square(deviation);
+}
+
+void ErrorStateFilter::halt(double deviation) noexcept {
+  for (const int i : {0, 1, 2}) {
+    const Column ph = covariance.col(kVelocity + i);
+    correct(ph, -velocity[i], ph[kVelocity + i] + square(deviation), HUGE_VAL);
+  }
+  stand(deviation);
+}
+
+void ErrorStateFilter::age(double dt) noexcept {
+  for (const int i : {0, 1, 2}) {
+    covariance(kGyroBias + i, kGyroBias + i) += square(noise_.gyro_bias_walk) * dt;
+    covariance(kAccelerometerBias + i, kAccelerometerBias + i) += square(noise_.accelerometer_bias_walk) * dt;
+  }
+}
+
+Vector3d ErrorStateFilter::acceleration_deviation() const noexcept {
+  const Covariance& p = covariance;
+  constexpr int t = kOrientation;
+  Vector3d deviation;
+  for (const int i : {0, 1, 2}) {
+    const double bx = -kGravity * rotation(1, i);
+    const double by = kGravity * rotation(0, i);
+    const int a = kAccelerometerBias + i;
+    deviation[i] = std::sqrt(std::max(0.0, p(a, a) + bx * bx * p(t, t) + by * by * p(t + 1, t + 1) +
+                                               2 * (bx * by * p(t, t + 1) - bx * p(a, t) - by * p(a, t + 1))));
+  }
+  return deviation;
+}
+
+void ErrorStateFilter::anchor_travel(int side, double measured) noexcept {
+  const int index = kTravel + side;
+  travel[side] = measured;
+  covariance.col(index).setZero();
+  covariance.row(index).setZero();
+  covariance(index, index) = square(noise_.encoder);
+}
+
+void ErrorStateFilter::turn_by(const Vector3d& angle) noexcept {
+  rotation = rotation * exponential(angle);
+}
+
+}  // namespace robot_control

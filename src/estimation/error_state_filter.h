@@ -1,0 +1,175 @@
+#pragma once
+/// Error-state Kalman filter of a wheeled robot with an IMU, in three dimensions.
+///
+/// The nominal state is integrated through the full equations; the covariance is that of its small error, and every
+/// correction is folded into the nominal state at once (J. Solà, Quaternion kinematics for the error-state Kalman
+/// filter, arXiv:1711.02508, chapters 5 and 6; the orientation's error is in world axes, ibid. chapter 7).
+///
+///   nominal state                                            error (index)
+///   p    m      IMU in odom                                  kPosition      3
+///   R           base axes to odom axes, z against gravity    kOrientation   3   R_true = Exp(θ) R
+///   u    m/s    velocity of the IMU, base axes               kVelocity      3
+///   s    m      travel of the left and the right wheels      kTravel        2   as the model's radii measure it
+///   bg   rad/s  gyro bias, base axes                         kGyroBias      3
+///   ba   m/s²   accelerometer bias, base axes                kAccelerometerBias 3
+///   ε           radius_ratio − 1                             kRadiusRatio   1
+///   β           wheel_base_factor − 1                        kWheelBase     1
+///   κ           gyro scale error, not published              kGyroScale     1
+///
+/// Prediction, with ω = (1 + κ)(gyro − bg) and f = accelerometer − ba, gravity g:
+///   ṗ = R u      Ṙ = R [ω]×      u̇ = f + Rᵀ g − ω × u
+///   ṡ_left = c_left / (1 − ε/2)     ṡ_right = c_right / (1 + ε/2)     c_i = (u + ω × r_i)_x
+/// r_i from the IMU to where wheel i touches the ground: the encoder measures the wheel against the body, so that a
+/// pitching body enters with the height of the contact. Its lateral component is ±(1 + β)/2 of the effective wheel
+/// base. Where gyro and wheels both say how the robot turns, β's column takes the rate of the wheels, smoothed: the
+/// gyro's own noise in it would bias β (errors-in-variables; W. Fuller, Measurement Error Models, 1987, section 1.1).
+///
+/// Measurements, one scalar after another, each behind a chi-square gate (Y. Bar-Shalom, X. R. Li, T. Kirubarajan,
+/// Estimation with Applications to Tracking and Navigation, 2001, sections 5.4 and 10.2):
+///   encoder angles         s_i = travel measured: angles, so that a count is an error once, not once per cycle
+///   contact                (u + ω × r_c)_y = 0, (u + ω × r_c)_z = 0 at the middle c of the contacts (non-holonomic
+///                          constraint; G. Dissanayake et al., The aiding of a low-cost strapdown inertial measurement
+///                          unit using vehicle model constraints, IEEE T-RA 17(5), 2001, section III)
+///   standstill             gyro = bg; accelerometer = ba − Rᵀ g (zero rotation and zero velocity; P. D. Groves,
+///                          Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2013, 15.3)
+///
+/// Without a gyro sample the robot turns as the calibrated wheels do, and level; without an accelerometer sample its
+/// velocity is carried on, with an acceleration of kUnknownAcceleration as noise.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+
+namespace robot_control {
+
+/// Lever arms from the IMU, base axes.
+struct ContactGeometry {
+  double wheel_base = 1;                 ///< m, effective, of the model
+  double middle_y = 0;                   ///< m, middle between left and right contacts
+  double middle_x = 0;                   ///< m, middle of the axles
+  double height = 0;                     ///< m, of the contacts; below the IMU negative
+  Eigen::Vector3d imu_in_base{0, 0, 0};  ///< m
+};
+
+/// White noises are densities, walks per √s; deviations are standard deviations.
+struct FilterNoise {
+  double gyro = 2.5e-4;                   ///< rad/s/√Hz
+  double gyro_bias_walk = 1e-5;           ///< rad/s/√s
+  double accelerometer = 2e-3;            ///< m/s²/√Hz
+  double accelerometer_bias_walk = 1e-4;  ///< m/s²/√s
+  double wheel_slip = 1e-3;               ///< m/√m of each side's travel
+  double encoder = 4.4e-5;                ///< m, of one reading
+  double lateral = 1e-3;                  ///< m/s/√Hz, sideways at the contact
+  double lateral_per_force = 0;           ///< s: sideways per centripetal acceleration, as a constant error would be
+  double vertical = 2e-3;                 ///< m/s/√Hz
+};
+
+/// Of the start.
+struct FilterPrior {
+  double tilt = 0.1;                ///< rad
+  double gyro_bias = 0.05;          ///< rad/s
+  double accelerometer_bias = 0.2;  ///< m/s²
+  double radius_ratio = 0.01;
+  double wheel_base = 0.03;
+  double gyro_scale = 1e-3;
+};
+
+class ErrorStateFilter {
+ public:
+  enum Index : int {
+    kPosition = 0,
+    kOrientation = 3,
+    kVelocity = 6,
+    kTravel = 9,
+    kGyroBias = 11,
+    kAccelerometerBias = 14,
+    kRadiusRatio = 17,
+    kWheelBase = 18,
+    kGyroScale = 19,
+    kSize = 20,
+  };
+  using Covariance = Eigen::Matrix<double, kSize, kSize>;
+  using Column = Eigen::Matrix<double, kSize, 1>;
+
+  static constexpr double kGravity = 9.80665;          ///< m/s², standard gravity
+  static constexpr double kPulledBias = 0.02;          ///< m/s²
+  static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
+
+  /// What moved the robot over `dt`. Base axes.
+  struct Motion {
+    double dt = 0;                                 ///< s
+    std::optional<Eigen::Vector3d> gyro;           ///< rad/s, mean over dt, bias included
+    std::optional<Eigen::Vector3d> accelerometer;  ///< m/s², mean over dt, bias included
+    double left_travel = 0, right_travel = 0;      ///< m over dt, as the model's radii measure it
+    double wheel_rate = 0;                         ///< rad/s, of the wheels, smoothed, as the model's base measures it
+    double left_speed = 0, right_speed = 0;        ///< m/s, smoothed
+  };
+
+  /// A scalar measurement's innovation over its deviation, squared.
+  struct Innovation {
+    double nis = 0;
+    bool used = false;
+  };
+
+  ErrorStateFilter(const ContactGeometry& geometry, const FilterNoise& noise, const FilterPrior& prior);
+
+  void reset() noexcept;
+  void predict(const Motion& motion) noexcept;
+
+  Innovation correct_travel(int side, double travel) noexcept;
+  Innovation correct_lateral(double dt) noexcept;
+  Innovation correct_vertical(double dt) noexcept;
+  /// `mean` over `time` s at rest. No gate: the caller judged them quiet.
+  Innovation correct_gyro_at_rest(int axis, double mean, double variance) noexcept;
+  Innovation correct_accelerometer_at_rest(int axis, double mean, double variance) noexcept;
+
+  /// The robot stands: the velocity is zero, known to `deviation` m/s.
+  void stand(double deviation) noexcept;
+  /// The robot has come to rest: the velocity is measured to be zero, which tells where it went wrong on the way.
+  void halt(double deviation) noexcept;
+  /// Biases walk for `dt` s while nothing is predicted.
+  void age(double dt) noexcept;
+  /// m/s², per base axis: of accelerometer − ba + Rᵀ g, through bias and tilt.
+  Eigen::Vector3d acceleration_deviation() const noexcept;
+  /// The wheels of that side begin anew at `travel`.
+  void anchor_travel(int side, double travel) noexcept;
+  void turn_by(const Eigen::Vector3d& angle) noexcept;  ///< base axes, rad
+
+  /// Adds an error to the nominal state; what a window of corrections did is taken back by its negative.
+  void inject(const Column& error) noexcept;
+  /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the accelerometer's
+  /// bias, which is from now on known to kPulledBias at best.
+  void doubt_velocity(int axis, double deviation, double time) noexcept;
+  /// Sum of all errors injected by measurements since the last prediction.
+  const Column& corrections() const noexcept { return corrections_; }
+
+  Eigen::Vector3d position{0, 0, 0};
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d velocity{0, 0, 0};
+  Eigen::Vector2d travel{0, 0};
+  Eigen::Vector3d gyro_bias{0, 0, 0};
+  Eigen::Vector3d accelerometer_bias{0, 0, 0};
+  double radius_ratio = 0;
+  double wheel_base = 0;
+  double gyro_scale = 0;
+  Covariance covariance;
+
+  Eigen::Vector3d rate{0, 0, 0};  ///< rad/s, bias-free, of the last prediction
+
+  const ContactGeometry& geometry() const noexcept { return geometry_; }
+  const FilterNoise& noise() const noexcept { return noise_; }
+  const FilterPrior& prior() const noexcept { return prior_; }
+  double lever(int side) const noexcept;  ///< m, lateral, of the contact from the IMU
+
+ private:
+  Innovation correct(const Column& ph, double innovation, double variance, double gate) noexcept;
+  void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Vector3d& u,
+                 const Eigen::Vector3d& omega) noexcept;
+
+  ContactGeometry geometry_;
+  FilterNoise noise_;
+  FilterPrior prior_;
+  Column corrections_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,43 @@
+#include "estimation/imu_samples.h"
+
+#include <algorithm>
+
+namespace robot_control {
+
+void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
+                      bool trapezoid) noexcept {
+  channel.age += dt;
+  channel.fresh = sample.has_value();
+  if (sample) {
+    const bool continued = channel.known && channel.age <= channel.hold && dt > 0;
+    const double steps = continued ? channel.age / dt : 1;
+    channel.mean = *sample;
+    if (continued && trapezoid) channel.mean = channel.last + (*sample - channel.last) * (steps / 2);
+    if (channel.known && channel.age > 0) channel.hold = std::clamp(3 * channel.age, kShortHold, kLongHold);
+    channel.last = *sample;
+    channel.known = true;
+    channel.age = 0;
+  } else if (channel.known && channel.age <= channel.hold) {
+    channel.mean = channel.last;
+  } else {
+    channel.mean.reset();
+    channel.known = false;
+  }
+}
+
+void ImuSamples::step(const SensorFrame& sensors, const Eigen::Matrix3d& base_from_imu, double dt) noexcept {
+  refused_ = false;
+  const auto sample = [&](std::uint64_t bit, const Vector3& values, double range) -> std::optional<Eigen::Vector3d> {
+    if ((sensors.valid & bit) == 0) return std::nullopt;
+    const Eigen::Vector3d vector(values[0], values[1], values[2]);
+    if (!(vector.squaredNorm() <= range * range)) {
+      refused_ = true;
+      return std::nullopt;
+    }
+    return Eigen::Vector3d(base_from_imu * vector);
+  };
+  take(gyro_, sample(kValidGyro, sensors.imu.angular_velocity, kGyroRange), dt, true);
+  take(accelerometer_, sample(kValidAccelerometer, sensors.imu.linear_acceleration, kAccelerometerRange), dt, false);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,56 @@
+#pragma once
+/// Gyro and accelerometer samples as they come → their means over each step, in base axes.
+///
+///   gyro            (ω_k−1 + ω_k)/2 over the time between two samples. Steps without a sample take the last one; the
+///   step
+///                   that brings the next one makes the trapezoid whole.
+///   accelerometer   the last sample: it is a mean over the time before it (signals/sensor_frame.h)
+/// A sample holds for three times the gap between the last two good ones, within kShortHold … kLongHold; then the
+/// sensor is lost. Not finite, or beyond kGyroRange or kAccelerometerRange, is no sample.
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+class ImuSamples {
+ public:
+  static constexpr double kShortHold = 0.02;           ///< s
+  static constexpr double kLongHold = 0.2;             ///< s
+  static constexpr double kGyroRange = 100;            ///< rad/s; beyond what any MEMS gyro measures
+  static constexpr double kAccelerometerRange = 1000;  ///< m/s²; likewise
+
+  void reset() noexcept { *this = {}; }
+
+  /// `base_from_imu`: rotation. `dt`: s since the last call, 0 at the first.
+  void step(const SensorFrame& sensors, const Eigen::Matrix3d& base_from_imu, double dt) noexcept;
+
+  /// Mean over the last step; empty: lost.
+  const std::optional<Eigen::Vector3d>& gyro() const noexcept { return gyro_.mean; }
+  const std::optional<Eigen::Vector3d>& accelerometer() const noexcept { return accelerometer_.mean; }
+  bool new_gyro() const noexcept { return gyro_.fresh; }                    ///< the last step brought a sample
+  bool new_accelerometer() const noexcept { return accelerometer_.fresh; }  ///< likewise
+  const Eigen::Vector3d& last_gyro() const noexcept { return gyro_.last; }
+  const Eigen::Vector3d& last_accelerometer() const noexcept { return accelerometer_.last; }
+  bool refused() const noexcept { return refused_; }  ///< the last step brought a sample that is none
+
+ private:
+  struct Channel {
+    std::optional<Eigen::Vector3d> mean;
+    Eigen::Vector3d last = Eigen::Vector3d::Zero();
+    bool known = false;
+    bool fresh = false;
+    double age = 0;  ///< s since the last sample
+    double hold = kShortHold;
+  };
+
+  static void take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt, bool trapezoid) noexcept;
+
+  Channel gyro_;
+  Channel accelerometer_;
+  bool refused_ = false;
+};
+
+}  // namespace robot_control

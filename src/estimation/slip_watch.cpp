@@ -1,0 +1,222 @@
+#include "estimation/slip_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "signals/state_frame.h"
+
+namespace robot_control {
+namespace {
+
+using Filter = ErrorStateFilter;
+constexpr std::size_t kLeft = 0;
+constexpr std::size_t kRight = 1;
+constexpr std::size_t kLateral = 2;
+constexpr std::size_t kVertical = 3;
+constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
+constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
+constexpr double kSigmas = 4;
+constexpr double kShaken = 0.4;
+
+double square(double value) noexcept {
+  return value * value;
+}
+
+}  // namespace
+
+void SlipWatch::reset() noexcept {
+  states_ = {};
+  windows_ = {};
+  since_judged_ = 0;
+  reasons_ = 0;
+  turn_nis_ = travel_nis_ = 0;
+  turn_slips_ = false;
+}
+
+void SlipWatch::begin(const Filter& filter) noexcept {
+  reset();
+  for (Window& window : windows_) open(window, filter);
+}
+
+void SlipWatch::open(Window& window, const Filter& filter) const noexcept {
+  window = {};
+  const auto& p = filter.covariance;
+  window.velocity_variance = p.diagonal().segment<3>(Filter::kVelocity);
+  window.acceleration_variance = filter.acceleration_deviation().cwiseAbs2();
+  window.ratio_variance = p(Filter::kRadiusRatio, Filter::kRadiusRatio);
+  window.base_variance = p(Filter::kWheelBase, Filter::kWheelBase);
+}
+
+void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
+  const auto& g = filter.geometry();
+  const Eigen::Vector3d& u = filter.velocity;
+  const Eigen::Vector3d& w = filter.rate;
+  const double scale[2] = {1 / (1 - filter.radius_ratio / 2), 1 / (1 + filter.radius_ratio / 2)};
+  const Vector4 measured{sample.left, sample.right, 0, 0};
+  Vector4 predicted;
+  for (const int side : {0, 1}) {
+    predicted[static_cast<std::size_t>(side)] =
+        sample.dt * scale[side] * (u.x() + w.y() * g.height - w.z() * filter.lever(side));
+  }
+  predicted[kLateral] = sample.dt * (u.y() + w.z() * g.middle_x - w.x() * g.height);
+  predicted[kVertical] = sample.dt * (u.z() + w.x() * g.middle_y - w.y() * g.middle_x);
+  const double forward = sample.dt * std::abs(u.x());
+
+  for (std::size_t i = 0; i < kWindows; ++i) {
+    Window& window = windows_[i];
+    window.inertial = window.inertial && sample.inertial;
+    auto d = window.corrections.segment<3>(Filter::kVelocity);
+    d += filter.corrections().segment<3>(Filter::kVelocity) - sample.dt * w.cross(d);
+    window.corrections.head<6>() += filter.corrections().head<6>();
+    window.corrections.tail<9>() += filter.corrections().tail<9>();
+    window.corrections.segment<3>(Filter::kPosition) += sample.dt * (filter.rotation * d);
+    window.way += sample.dt * d;
+    for (const std::size_t c : {kLeft, kRight}) {
+      window.measured[c] += measured[c];
+      window.predicted[c] += predicted[c];
+      window.path[c] += std::max(std::abs(measured[c]), std::abs(predicted[c]));
+    }
+    for (const std::size_t c : {kLateral, kVertical}) {
+      window.predicted[c] += predicted[c];
+      window.path[c] += forward;
+    }
+    window.age += sample.dt;
+  }
+  for (State& state : states_) state.doubted += state.believed ? 0 : sample.dt;
+
+  since_judged_ += sample.dt;
+  if (since_judged_ >= kJudgeEvery) {
+    since_judged_ = 0;
+    judge(filter);
+  }
+}
+
+double SlipWatch::residual(const Window& window, std::size_t contact, const Filter& filter) noexcept {
+  static_cast<void>(filter);
+  return window.measured[contact] - window.predicted[contact] + window.way[kAxis[contact]];
+}
+
+double SlipWatch::variance(const Window& window, std::size_t contact, const Filter& filter) noexcept {
+  const int axis = kAxis[contact];
+  const double t = window.age;
+  const auto& noise = filter.noise();
+  double sum = window.velocity_variance[axis] * t * t + window.acceleration_variance[axis] * square(t * t) / 4 +
+               square(noise.accelerometer) * t * t * t / 3;
+  if (contact <= kRight) {
+    const double turn = window.predicted[kRight] - window.predicted[kLeft];
+    sum += 2 * square(noise.encoder) + square(noise.wheel_slip) * window.path[contact] +
+           window.ratio_variance / 4 * square(window.predicted[contact]) + window.base_variance / 4 * square(turn);
+  }
+  return sum;
+}
+
+bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
+  std::array<double, kContacts> excess{};  // residual beyond what is expected
+  std::array<double, kContacts> sigma{};
+  std::array<double, kContacts> limit{};
+  bool found = false;
+  for (std::size_t c = 0; c < kContacts; ++c) {
+    sigma[c] = std::sqrt(variance(window, c, filter));
+    excess[c] = residual(window, c, filter);
+    limit[c] = kSigmas * sigma[c] + kCreep * window.path[c] + (c == kVertical ? kVerticalSlack : kSlack);
+    found = found || (states_[c].believed && std::abs(excess[c]) > limit[c]);
+  }
+  if (!found) return false;
+  std::array<double, 3> doubt{};
+  for (std::size_t c = 0; c < kContacts; ++c) {
+    // What shakes the belief in one contact shakes that in the others: two wheels on ice rarely begin together.
+    if (!states_[c].believed || !(std::abs(excess[c]) > kShaken * limit[c])) continue;
+    states_[c] = {.believed = false, .excess = excess[c] / window.age};
+    doubt[static_cast<std::size_t>(kAxis[c])] = sigma[c] / window.age;
+  }
+  const double age = window.age;
+  take_back(window, filter);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double deviation = doubt[static_cast<std::size_t>(axis)];
+    if (deviation > 0) filter.doubt_velocity(axis, deviation, age);
+  }
+  return true;
+}
+
+/// What was believed of a sliding contact since the window began. Older windows keep the rest of their corrections;
+/// younger ones began with what was wrong, and begin anew.
+void SlipWatch::take_back(const Window& window, Filter& filter) noexcept {
+  const Filter::Column corrections = window.corrections;
+  const double age = window.age;
+  filter.inject(-corrections);
+  for (Window& other : windows_) {
+    if (other.age > age) {
+      other.corrections -= corrections;
+    } else {
+      open(other, filter);
+    }
+  }
+}
+
+void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
+  for (std::size_t c = 0; c < kContacts; ++c) {
+    State& state = states_[c];
+    if (state.believed) continue;
+    const int axis = kAxis[c];
+    const double excess = residual(window, c, filter) / window.age;
+    const double known = 3 * std::sqrt(filter.covariance(Filter::kVelocity + axis, Filter::kVelocity + axis));
+    const double speed = window.path[c] / window.age;
+    const double cap = std::max(0.05, 0.3 * speed);
+    const bool agrees = std::abs(excess) <= kAgreeSpeed + kCreep * speed + std::min(known, cap);
+    const bool steady = std::abs(excess - state.excess) <= kAgreeSpeed;
+    state.excess = excess;
+    state.agreed = agrees && steady ? state.agreed + 1 : 0;
+    if (state.agreed >= kAgree || state.doubted > kDeadlock) state = {};
+  }
+}
+
+void SlipWatch::judge(Filter& filter) noexcept {
+  bool found = false;
+  for (std::size_t i = 0; i < kWindows && !found; ++i) {
+    if (windows_[i].inertial && windows_[i].age >= 0.4 * kLengths[i]) found = judge(windows_[i], filter);
+  }
+  if (windows_[0].inertial) {
+    const Window& older = windows_[0].age > windows_[1].age ? windows_[0] : windows_[1];
+    if (older.age >= 0.4 * kLengths[0]) heal(older, filter);
+  }
+  if (!windows_[0].inertial) {
+    for (State& state : states_) state = {};
+  }
+  // The newer window of the two looks over the shorter time; the turn needs no accelerometer.
+  const Window& longest = windows_[4].age > windows_[5].age ? windows_[4] : windows_[5];
+  if (longest.age > 0) {
+    const double left = residual(longest, kLeft, filter);
+    const double right = residual(longest, kRight, filter);
+    const auto& noise = filter.noise();
+    const double turn = longest.predicted[kRight] - longest.predicted[kLeft];
+    const double path = longest.path[kLeft] + longest.path[kRight];
+    const double var = 4 * square(noise.encoder) + square(noise.wheel_slip) * path +
+                       longest.ratio_variance / 4 * square(path) / 4 + longest.base_variance * square(turn) / 4 +
+                       square(noise.gyro) * longest.age * square(filter.geometry().wheel_base);
+    turn_nis_ = square(right - left) / var;
+    turn_slips_ = std::abs(right - left) > kSigmas * std::sqrt(var) + kCreep * path + kSlack;
+    travel_nis_ = square((left + right) / 2) / variance(longest, kLeft, filter);
+  }
+  for (std::size_t i = 0; i < kWindows; ++i) {  // the two of a length stay half a length apart
+    Window& window = windows_[i];
+    const bool twin = i % 2 == 1 && window.age == windows_[i - 1].age && window.age >= kLengths[i] / 2 - 1e-9;
+    if (twin || window.age >= kLengths[i] - 1e-9) open(window, filter);
+  }
+  tell(filter);
+}
+
+void SlipWatch::tell(const Filter& filter) noexcept {
+  reasons_ = 0;
+  for (const std::size_t c : {kLeft, kRight}) {
+    if (states_[c].believed) continue;
+    reasons_ |= c == kLeft ? kSlipLeft : kSlipRight;
+    const double forward = filter.velocity.x();
+    const bool faster = states_[c].excess * (forward + states_[c].excess) > 0;
+    reasons_ |= faster ? kSlipSpinning : kSlipStalled;
+  }
+  if (turn_slips_) reasons_ |= kSlipTurn;
+  if (!states_[kLateral].believed) reasons_ |= kSlipSideways;
+  if (!states_[kVertical].believed) reasons_ |= kSlipLifted;
+}
+
+}  // namespace robot_control

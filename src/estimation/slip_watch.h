@@ -1,0 +1,99 @@
+#pragma once
+/// Do the wheels roll? What encoders and contact say is compared, over short windows, with what the inertial sensors
+/// alone say since the window began.
+///
+/// A window keeps, from its beginning, every correction that the measurements have made since; taking them back leaves
+/// the inertial prediction. Its residuals over its age τ, in metres:
+///   left, right   travel measured − travel of the contact, inertial
+///   lateral       −(sideways way of the contact, inertial);  vertical likewise
+/// Expected deviation, with the velocity's variance at the beginning V, that of the acceleration A (bias and tilt), the
+/// accelerometer's noise n and the path m:
+///   σ² = 2 encoder² + V τ² + A τ⁴/4 + n² τ³/3 + slip_noise² |m|
+/// Beyond 4 σ + creep·|m| + slack the contact is not believed: windows of 0.1 s find what happens suddenly, windows of
+/// 1 s what happens slowly; two of each, half a length apart. It is believed again when its speed agrees with the
+/// filter's for kAgree judgements in a row, or after kDeadlock seconds.
+///
+/// Rolling rubber creeps by up to some percent under force (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3):
+/// kCreep = 3 % is not called slip.
+
+#include <array>
+#include <cstdint>
+
+#include "estimation/error_state_filter.h"
+
+namespace robot_control {
+
+enum class Contact : std::size_t { kLeft, kRight, kLateral, kVertical };
+inline constexpr std::size_t kContacts = 4;
+
+class SlipWatch {
+ public:
+  static constexpr double kCreep = 0.03;
+  static constexpr double kSlack = 0.0005;     ///< m
+  static constexpr double kJudgeEvery = 0.01;  ///< s
+  static constexpr std::uint64_t kAgree = 8;   ///< judgements
+  static constexpr double kAgreeSpeed = 0.01;  ///< m/s
+  static constexpr double kDeadlock = 30.0;    ///< s
+
+  struct Sample {
+    double dt = 0;
+    double left = 0, right = 0;  ///< m, travel measured over dt; NaN: not heard
+    bool inertial = false;       ///< gyro and accelerometer were there
+  };
+
+  void reset() noexcept;                                ///< all contacts are believed
+  void begin(const ErrorStateFilter& filter) noexcept;  ///< windows begin anew
+
+  /// After the filter's prediction and corrections of this cycle. Takes back corrections from the filter where a
+  /// contact is found to slip.
+  void step(const Sample& sample, ErrorStateFilter& filter) noexcept;
+
+  bool believed(Contact contact) const noexcept { return states_[static_cast<std::size_t>(contact)].believed; }
+  std::uint64_t reasons() const noexcept { return reasons_; }  ///< SlipReason bits
+  /// Residuals of the last judgement over their deviation, squared: of the turn (gyro), of the travel (accelerometer).
+  double turn_nis() const noexcept { return turn_nis_; }
+  double travel_nis() const noexcept { return travel_nis_; }
+
+ private:
+  static constexpr std::size_t kWindows = 6;
+  static constexpr std::array<double, kWindows> kLengths{0.1, 0.1, 0.3, 0.3, 1.0, 1.0};
+  using Vector4 = std::array<double, kContacts>;
+
+  struct Window {
+    double age = 0;
+    bool inertial = true;
+    ErrorStateFilter::Column corrections = ErrorStateFilter::Column::Zero();
+    Eigen::Vector3d way = Eigen::Vector3d::Zero();  ///< m, base axes: of the corrected velocity beyond the inertial one
+    Vector4 measured{};                             ///< m
+    Vector4 predicted{};                            ///< m, with the filter's velocity
+    Vector4 path{};                                 ///< m, measured or predicted, whichever is longer, sum of sizes
+    Eigen::Vector3d velocity_variance = Eigen::Vector3d::Zero();
+    Eigen::Vector3d acceleration_variance = Eigen::Vector3d::Zero();
+    double ratio_variance = 0, base_variance = 0;
+  };
+  struct State {
+    bool believed = true;
+    std::uint64_t agreed = 0;
+    double doubted = 0;  ///< s
+    double excess = 0;   ///< m/s, wheel faster than the ground
+  };
+
+  void open(Window& window, const ErrorStateFilter& filter) const noexcept;
+  void judge(ErrorStateFilter& filter) noexcept;
+  bool judge(const Window& window, ErrorStateFilter& filter) noexcept;
+  void take_back(const Window& window, ErrorStateFilter& filter) noexcept;
+  void heal(const Window& window, const ErrorStateFilter& filter) noexcept;
+  static double residual(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
+  static double variance(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
+  void tell(const ErrorStateFilter& filter) noexcept;
+
+  std::array<Window, kWindows> windows_;
+  std::array<State, kContacts> states_;
+  double since_judged_ = 0;
+  std::uint64_t reasons_ = 0;
+  double turn_nis_ = 0;
+  double travel_nis_ = 0;
+  bool turn_slips_ = false;
+};
+
+}  // namespace robot_control
