@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "estimation/estimator.h"
-#include "estimation/planar_robot.h"
+#include "estimation/rolling_robot.h"
 
 namespace robot_control {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "estimation/estimator.h"
-#include "estimation/planar_robot.h"
+#include "estimation/rolling_robot.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {

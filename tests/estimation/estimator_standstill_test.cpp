@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "estimation/estimator.h"
-#include "estimation/planar_robot.h"
+#include "estimation/rolling_robot.h"
 
 namespace robot_control {
 namespace {

@@ -1,0 +1,177 @@
+#include "estimation/imu_samples.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <random>
+
+namespace robot_control {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPeriod = 1e-3;
+
+/// A gyro and an accelerometer that brought their first samples: 0.1 rad/s and 1 m/s² along z.
+class ImuSamplesTest : public testing::Test {
+ protected:
+  ImuSamplesTest() { both(0.1, 1.0, 0); }
+
+  void none(double dt = kPeriod) { step(0, {}, {}, dt); }
+  void gyro(double z, double dt = kPeriod) { step(kValidGyro, {0, 0, z}, {}, dt); }
+  void accelerometer(double z, double dt = kPeriod) { step(kValidAccelerometer, {}, {0, 0, z}, dt); }
+  void both(double rate, double force, double dt = kPeriod) {
+    step(kValidGyro | kValidAccelerometer, {0, 0, rate}, {0, 0, force}, dt);
+  }
+  void step(std::uint64_t valid, const Vector3& rate, const Vector3& force, double dt) {
+    SensorFrame frame;
+    frame.valid = valid;
+    frame.imu.angular_velocity = rate;
+    frame.imu.linear_acceleration = force;
+    imu_.step(frame, base_from_imu_, dt);
+  }
+  double rate() const { return imu_.gyro().value().z(); }
+
+  Eigen::Matrix3d base_from_imu_ = Eigen::Matrix3d::Identity();
+  ImuSamples imu_;
+};
+
+TEST_F(ImuSamplesTest, TheFirstSampleIsItsOwnMean) {
+  EXPECT_EQ(rate(), 0.1);
+  EXPECT_EQ(imu_.accelerometer()->z(), 1.0);
+  EXPECT_TRUE(imu_.new_gyro());
+  EXPECT_TRUE(imu_.new_accelerometer());
+}
+
+TEST_F(ImuSamplesTest, TheGyroIsTheMeanOfBothEndsOfTheStep) {
+  gyro(0.3);
+  EXPECT_DOUBLE_EQ(rate(), 0.2);
+}
+
+TEST_F(ImuSamplesTest, TheAccelerometerIsTheSampleItself) {
+  accelerometer(3.0);
+  EXPECT_EQ(imu_.accelerometer()->z(), 3.0);
+}
+
+// Steps without a sample take the last one; the step that brings the next one makes the trapezoid whole.
+TEST_F(ImuSamplesTest, TheIntegralOverIrregularGapsIsTheTrapezoidOfTheSamples) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> value(-2, 2);
+  std::uniform_real_distribution<double> duration(0.5e-3, 1.5e-3);
+  double expected = 0;
+  double integral = 0;
+  double last = 0.1;
+  for (int sample = 0; sample < 1000; ++sample) {
+    double gap = 0;
+    for (unsigned silent = random() % 4; silent > 0; --silent) {
+      const double dt = duration(random);
+      none(dt);
+      integral += rate() * dt;
+      gap += dt;
+    }
+    const double dt = duration(random);
+    const double next = value(random);
+    gyro(next, dt);
+    integral += rate() * dt;
+    expected += (last + next) / 2 * (gap + dt);
+    last = next;
+    ASSERT_NEAR(integral, expected, 1e-12) << "sample " << sample;  // 4000 additions of numbers below 1e-2
+  }
+}
+
+TEST_F(ImuSamplesTest, AGapLongerThanTheHoldIsNotBridged) {
+  gyro(0.1);
+  gyro(0.5, 2 * ImuSamples::kLongHold);
+  EXPECT_EQ(rate(), 0.5);
+}
+
+TEST_F(ImuSamplesTest, ASampleHoldsForTheShortHoldAtLeast) {
+  gyro(0.2);  // a gap of 1 ms: three of them are less
+  none(0.99 * ImuSamples::kShortHold);
+  EXPECT_EQ(rate(), 0.2);
+  EXPECT_FALSE(imu_.new_gyro());
+  none(0.02 * ImuSamples::kShortHold);
+  EXPECT_FALSE(imu_.gyro().has_value());
+}
+
+TEST_F(ImuSamplesTest, ASampleHoldsForThreeTimesTheLastGap) {
+  const double gap = 0.7 * ImuSamples::kShortHold;
+  gyro(0.2, gap);
+  none(2.9 * gap);
+  EXPECT_TRUE(imu_.gyro().has_value());
+  none(0.2 * gap);
+  EXPECT_FALSE(imu_.gyro().has_value());
+}
+
+TEST_F(ImuSamplesTest, ASampleHoldsForTheLongHoldAtMost) {
+  gyro(0.2, 0.9 * ImuSamples::kLongHold);
+  none(0.99 * ImuSamples::kLongHold);
+  EXPECT_TRUE(imu_.gyro().has_value());
+  none(0.02 * ImuSamples::kLongHold);
+  EXPECT_FALSE(imu_.gyro().has_value());
+}
+
+TEST_F(ImuSamplesTest, TheHoldsOfBothSensorsAreTheirOwn) {
+  for (int i = 0; i < 30; ++i) gyro(0.1);  // 30 ms
+  EXPECT_TRUE(imu_.gyro().has_value());
+  EXPECT_FALSE(imu_.accelerometer().has_value());
+}
+
+TEST_F(ImuSamplesTest, ALostSensorComesBackWithItsNextSample) {
+  none(1);
+  ASSERT_FALSE(imu_.gyro().has_value());
+  both(0.7, 2.0);
+  EXPECT_EQ(rate(), 0.7);
+  EXPECT_EQ(imu_.accelerometer()->z(), 2.0);
+}
+
+TEST_F(ImuSamplesTest, WhatIsNotFiniteIsNoSample) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300}) {
+    imu_.reset();
+    both(0.1, 1.0, 0);
+    step(kValidGyro | kValidAccelerometer, {0, bad, 0}, {bad, 0, 0}, kPeriod);
+    EXPECT_TRUE(imu_.refused());
+    EXPECT_FALSE(imu_.new_gyro());
+    EXPECT_FALSE(imu_.new_accelerometer());
+    EXPECT_EQ(rate(), 0.1) << "the last one holds";
+    EXPECT_EQ(imu_.accelerometer()->z(), 1.0);
+    gyro(0.1);
+    EXPECT_FALSE(imu_.refused());
+  }
+}
+
+TEST_F(ImuSamplesTest, WhatIsBeyondItsRangeIsNoSample) {
+  gyro(0.999 * ImuSamples::kGyroRange);
+  EXPECT_FALSE(imu_.refused());
+  gyro(1.001 * ImuSamples::kGyroRange);
+  EXPECT_TRUE(imu_.refused());
+  accelerometer(0.999 * ImuSamples::kAccelerometerRange);
+  EXPECT_FALSE(imu_.refused());
+  accelerometer(1.001 * ImuSamples::kAccelerometerRange);
+  EXPECT_TRUE(imu_.refused());
+}
+
+TEST_F(ImuSamplesTest, WhatIsNotOfferedIsNotRefused) {
+  step(0, {kNaN, 0, 0}, {kNaN, 0, 0}, kPeriod);
+  EXPECT_FALSE(imu_.refused());
+}
+
+// A quarter turn about z: the IMU's x looks to the left.
+TEST_F(ImuSamplesTest, SamplesAreInBaseAxes) {
+  base_from_imu_ = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  imu_.reset();
+  step(kValidGyro | kValidAccelerometer, {1, 2, 3}, {4, 5, 6}, 0);
+  EXPECT_TRUE(imu_.gyro()->isApprox(Eigen::Vector3d(-2, 1, 3)));
+  EXPECT_TRUE(imu_.accelerometer()->isApprox(Eigen::Vector3d(-5, 4, 6)));
+}
+
+TEST_F(ImuSamplesTest, AResetForgets) {
+  imu_.reset();
+  none();
+  EXPECT_FALSE(imu_.gyro().has_value());
+  EXPECT_FALSE(imu_.accelerometer().has_value());
+}
+
+}  // namespace
+}  // namespace robot_control

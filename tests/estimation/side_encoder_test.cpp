@@ -1,0 +1,153 @@
+#include "estimation/side_encoder.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "estimation/rolling_robot.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kPeriod = 1e-3;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The left wheel of a robot that stands at 12.5 rad.
+class SideEncoderTest : public testing::Test {
+ protected:
+  SideEncoderTest() {
+    sensors_.valid = kValidJoints;
+    sensors_.joint_count = 2;
+    EXPECT_EQ(read(12.5, 0), EncoderReading::kOffset);
+  }
+  EncoderReading read(double angle, double dt = kPeriod) {
+    sensors_.joints[0].position = angle;
+    return encoder_.step(sensors_, dt);
+  }
+  RobotModel robot_ = two_wheeler();
+  SideEncoder encoder_{robot_, Side::kLeft};
+  SensorFrame sensors_;
+};
+
+TEST_F(SideEncoderTest, TakesTheFirstReadingAsOffset) {
+  EXPECT_EQ(encoder_.travel(), 0);
+  EXPECT_TRUE(encoder_.known());
+  EXPECT_TRUE(encoder_.heard());
+}
+
+TEST_F(SideEncoderTest, TurnsAnglesIntoTravel) {
+  EXPECT_EQ(read(12.51), EncoderReading::kTravel);
+  EXPECT_NEAR(encoder_.travel(), 0.001, 1e-15);
+  EXPECT_EQ(encoder_.time(), kPeriod);
+}
+
+TEST_F(SideEncoderTest, TurnsAMirroredWheelsAnglesAround) {
+  robot_.wheels[0].sign = -1;
+  SideEncoder mirrored(robot_, Side::kLeft);
+  mirrored.step(sensors_, 0);
+  sensors_.joints[0].position = 12.51;
+  mirrored.step(sensors_, kPeriod);
+  EXPECT_NEAR(mirrored.travel(), -0.001, 1e-15);
+}
+
+TEST_F(SideEncoderTest, DoesNotLookAtTheOtherSide) {
+  sensors_.joints[1].position = kNaN;
+  EXPECT_EQ(read(12.51), EncoderReading::kTravel);
+}
+
+/// 0.1 m radius; left joints are mirrored.
+class SideEncoderOfFourWheels : public testing::Test {
+ protected:
+  SideEncoderOfFourWheels() {
+    sensors_.valid = kValidJoints;
+    sensors_.joint_count = 4;
+    EXPECT_EQ(left_.step(sensors_, 0), EncoderReading::kOffset);
+    EXPECT_EQ(right_.step(sensors_, 0), EncoderReading::kOffset);
+  }
+  SideEncoder left_{four_wheeler(), Side::kLeft};
+  SideEncoder right_{four_wheeler(), Side::kRight};
+  SensorFrame sensors_;
+};
+
+// Left joints turn by −0.01 and −0.03 rad, right ones by 0.02 and 0.06 rad.
+TEST_F(SideEncoderOfFourWheels, IsTheMeanOfItsSide) {
+  constexpr double kAngles[] = {-0.01, -0.03, 0.02, 0.06};
+  for (std::size_t i = 0; i < 4; ++i) sensors_.joints[i].position = kAngles[i];
+  ASSERT_EQ(left_.step(sensors_, kPeriod), EncoderReading::kTravel);
+  ASSERT_EQ(right_.step(sensors_, kPeriod), EncoderReading::kTravel);
+  EXPECT_NEAR(left_.travel(), 0.002, 1e-15);
+  EXPECT_NEAR(right_.travel(), 0.004, 1e-15);
+}
+
+TEST_F(SideEncoderOfFourWheels, OneWheelThatIsNotUsedRejectsTheReading) {
+  sensors_.joints[1].position = kNaN;
+  EXPECT_EQ(left_.step(sensors_, kPeriod), EncoderReading::kRejected);
+  EXPECT_EQ(right_.step(sensors_, kPeriod), EncoderReading::kTravel);
+}
+
+// Without a limit a wheel is believed up to 1000 rad/s.
+TEST_F(SideEncoderOfFourWheels, NeedsNoVelocityLimit) {
+  const double possible = 1000 * kPeriod + SideEncoder::kSlack;
+  sensors_.joints[0].position = possible - 0.01;
+  EXPECT_EQ(left_.step(sensors_, kPeriod), EncoderReading::kTravel);
+  sensors_.joints[0].position += possible + 0.01;
+  EXPECT_EQ(left_.step(sensors_, kPeriod), EncoderReading::kRejected);
+}
+
+TEST_F(SideEncoderTest, BringsTheTravelOfAGapWithTheNextGoodReading) {
+  EXPECT_EQ(read(kNaN), EncoderReading::kRejected);
+  EXPECT_EQ(encoder_.travel(), 0);
+  EXPECT_FALSE(encoder_.heard());
+  EXPECT_EQ(encoder_.waiting(), kPeriod);
+  EXPECT_EQ(read(12.52), EncoderReading::kTravel);
+  EXPECT_NEAR(encoder_.travel(), 0.002, 1e-15);
+  EXPECT_EQ(encoder_.time(), 2 * kPeriod);
+  EXPECT_EQ(encoder_.gap(), 2 * kPeriod);
+  EXPECT_TRUE(encoder_.heard());
+}
+
+TEST_F(SideEncoderTest, RemembersNoGapBeyondItsBound) {
+  EXPECT_EQ(read(12.52, 10 * SideEncoder::kLongGap), EncoderReading::kTravel);
+  EXPECT_EQ(encoder_.gap(), SideEncoder::kLongGap);
+}
+
+TEST_F(SideEncoderTest, RejectsSamplesThatAreNotValid) {
+  sensors_.valid = 0;
+  EXPECT_EQ(read(12.51), EncoderReading::kRejected);
+}
+
+TEST_F(SideEncoderTest, RejectsAFrameWithoutTheWheel) {
+  sensors_.joint_count = 0;
+  EXPECT_EQ(read(12.51), EncoderReading::kRejected);
+}
+
+// velocity_limit is 30 rad/s; twice that is possible.
+TEST_F(SideEncoderTest, BelievesExactlyWhatIsPossible) {
+  const double possible = 2 * 30 * kPeriod + SideEncoder::kSlack;
+  EXPECT_EQ(read(12.5 + possible - 1e-3), EncoderReading::kTravel);
+  EXPECT_EQ(read(12.5 + 2 * possible), EncoderReading::kRejected);
+}
+
+TEST_F(SideEncoderTest, TakesALastingJumpAsANewOffset) {
+  for (std::uint64_t i = 0; i < SideEncoder::kMaxRejected; ++i) EXPECT_EQ(read(1000), EncoderReading::kRejected);
+  EXPECT_EQ(read(1000), EncoderReading::kLost);
+  EXPECT_EQ(encoder_.travel(), 0);
+  EXPECT_EQ(read(1000.01), EncoderReading::kTravel);
+  EXPECT_NEAR(encoder_.travel(), 0.001, 1e-13);
+}
+
+TEST_F(SideEncoderTest, AJumpThatDoesNotLastCostsNothing) {
+  for (std::uint64_t i = 0; i < SideEncoder::kMaxRejected; ++i) read(1000);
+  EXPECT_EQ(read(12.53), EncoderReading::kTravel);
+  EXPECT_NEAR(encoder_.travel(), 0.003, 1e-15);
+}
+
+TEST_F(SideEncoderTest, BeginsAnewAfterAReset) {
+  encoder_.reset();
+  EXPECT_FALSE(encoder_.known());
+  EXPECT_EQ(read(-700), EncoderReading::kOffset);
+  EXPECT_EQ(encoder_.travel(), 0);
+}
+
+}  // namespace
+}  // namespace robot_control
