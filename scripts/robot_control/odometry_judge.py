@@ -46,6 +46,7 @@ class Run:
     twist_nees: Array
     notice: Notice
     pitch: float  # rad, RMS while it drives
+    jump: float  # m, most that ours moved from one truth row to the next beyond what the robot did: REP 105 wants none
     invalid: float  # part of the run in which ours says that it is not valid
     returns: dict[str, Array] = field(default_factory=dict)
     killed: dict[str, float] = field(default_factory=dict)
@@ -92,6 +93,7 @@ def judge(recording: Recording, *, picture: bool = False) -> Run:
         twist_nees=nees(twist_error(ours, truth)[rows], ours.twist_covariance[rows]),
         notice=notice(ours, truth),
         pitch=_pitch(truth),
+        jump=_jump(ours.path, truth.odom),
         invalid=float(np.mean(~ours.valid)),
         returns=returns,
         killed=_without_gyro(recording, truth) if recording.scenario == "random" else {},
@@ -139,6 +141,11 @@ def _sampled_rows(recording: Recording) -> NDArray[np.int64]:
 def _pitch(truth: Truth) -> float:
     moving = np.abs(truth.linear) > 0.05
     return float(np.std(truth.pitch[moving])) if moving.any() else 0.0
+
+
+def _jump(path: Track, true: Track) -> float:
+    estimated, really = (np.hypot(np.diff(track.x), np.diff(track.y)) for track in (path, true))
+    return float(np.max(estimated - really))
 
 
 def _without_gyro(recording: Recording, truth: Truth) -> dict[str, float]:

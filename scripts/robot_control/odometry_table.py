@@ -34,7 +34,17 @@ def _errors(runs: Sequence[Run]) -> list[str]:
 
 
 def _by_scenario(runs: Sequence[Run]) -> list[str]:
-    titles = ("runs", "way [m]", "NEES pose", "NEES twist", "flagged [%]", "alarms [%]", "slip [%]", "pitch RMS [°]")
+    titles = (
+        "runs",
+        "way [m]",
+        "NEES pose",
+        "NEES twist",
+        "flagged [%]",
+        "alarms [%]",
+        "slip [%]",
+        "pitch [°]",
+        "jump [mm]",
+    )
     lines = [f"{'mean':<26}" + "".join(f"{title:>14}" for title in titles)]
     for scenario in (name for name in SCENARIOS if of(runs, name)):
         some = of(runs, scenario)
@@ -46,6 +56,7 @@ def _by_scenario(runs: Sequence[Run]) -> list[str]:
             sum(run.twist_nees.sum() for run in some) / rows,
             *_noticed(some),
             np.rad2deg(np.mean([run.pitch for run in some])),
+            1e3 * np.mean([run.jump for run in some]),
         ]
         lines.append(f"{scenario:<26}" + "".join(f"{cell:14.4g}" for cell in cells))
     return lines

@@ -166,6 +166,7 @@ def run_of(scenario="slip", ours=0.1, wheels=1.0, seed=0, **more):
         "twist_nees": np.full(3, 2.0),
         "notice": Notice(100, 95, 1000, 10, 2000),
         "pitch": 0.0,
+        "jump": 0.0,
         "invalid": 0.0,
     }
     return Run(scenario=scenario, seed=seed, **fields | more)
