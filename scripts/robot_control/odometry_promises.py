@@ -137,16 +137,12 @@ def false_alarms(runs: Sequence[Run]) -> list[Promise]:
 
 def never_worse(runs: Sequence[Run]) -> list[Promise]:
     """Than 1.1 × its simple part, in the median of every scenario."""
-    return [
-        Promise(
-            f"{scenario}, median over simple part's",
-            float(np.median(positions(runs, scenario)) / np.median(positions(runs, scenario, SIMPLE))),
-            1.1,
-            "",
-        )
-        for scenario in SCENARIOS
-        if of(runs, scenario)
-    ]
+    promises = []
+    for scenario in (name for name in SCENARIOS if of(runs, name)):
+        for what, errors in (("position", positions), ("yaw", yaws)):
+            ratio = np.median(errors(runs, scenario)) / np.median(errors(runs, scenario, SIMPLE))
+            promises.append(Promise(f"{scenario}, {what} over simple part's", float(ratio), 1.1, ""))
+    return promises
 
 
 def in_band(runs: Sequence[Run], what: str) -> float:
