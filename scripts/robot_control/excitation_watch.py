@@ -79,7 +79,19 @@ def interruption(look: Look, start: Pose, reach: float, unanswered: float) -> st
         reach: m, the plan's.
         unanswered: s of motion asked for since it moved last.
     """
-    return _unwatched(look) or _stopped(look) or _astray(look, start, reach, unanswered)
+    return unattended(look) or _astray(look, start, reach, unanswered)
+
+
+def unattended(look: Look) -> str:
+    """Why no robot may drive on, wherever it is; empty: it may."""
+    return _unwatched(look) or _stopped(look)
+
+
+def ignored(unanswered: float) -> str:
+    """Why it must end after `unanswered` s of motion asked for without any; empty: go on."""
+    if unanswered <= ANSWER:
+        return ""
+    return f"the robot was asked to move for {unanswered:.0f} s and stands; rosrun robot_control why.py says why"
 
 
 def _unwatched(look: Look) -> str:
@@ -99,9 +111,7 @@ def _astray(look: Look, start: Pose, reach: float, unanswered: float) -> str:
             f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, beyond the plan's "
             f"{reach:.2f} m ± {MARGIN:g} m"
         )
-    if unanswered > ANSWER:
-        return f"the robot was asked to move for {unanswered:.0f} s and stands; rosrun robot_control why.py says why"
-    return ""
+    return ignored(unanswered)
 
 
 def _stopped(look: Look) -> str:

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from pathlib import Path
 
-import rosgraph
 import rospy
 
 from robot_control import ParameterError, RobotError
-from robot_control.closed_loop import leaves
+from robot_control.beside_a_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.excitation import Excitation, NoRoomError
 from robot_control.excitation_watch import Pose, hindrance, interruption, moves
 from robot_control.identification_rows import UnfitError
@@ -24,18 +19,13 @@ from robot_control.run_log import FloatArray, LogError, read_log
 from robot_control.share import share_file
 from robot_control.topic_sender import Signals, ended_by_signals
 from robot_control.tuning_proposal import NoGainsError
-from robot_control.why_facts import COMMAND_TOPICS, nodes_of, senders_of
-from robot_control.why_node import Master
+from robot_control.why_facts import nodes_of
 
 PERIOD = 0.05
 """s between two commands: 25 are lost before the default cmd_vel_timeout"""
-PATIENCE = 5.0
-"""s to hear everybody; each node reports once per second"""
 CONTROLLER = "diff_drive_controller"
-
-
-class RefusedError(RuntimeError):
-    """It cannot be begun, or had to end; the message says why."""
+NO_MASTER = "or fit a log with --log"
+SIMULATED_TIME = "or fit the log of a command_script with --log"
 
 
 REFUSALS = (
@@ -59,7 +49,7 @@ def main() -> None:
         if options.log is not None:
             _fit(dict(read_log(options.log)), _settings_of_files(options), options, f"log {options.log.name}")
         else:
-            with _running() as settings:
+            with running_settings("identify", CONTROLLER, NO_MASTER, SIMULATED_TIME) as settings:
                 with ended_by_signals() as signals:
                     log = _drive(settings, options, signals)
                 _fit(log, settings, options, "driven")
@@ -81,31 +71,6 @@ def _settings_of_files(options: Options) -> Settings:
     return Settings(path, () if options.urdf is None else (("robot.urdf", str(options.urdf.absolute())),))
 
 
-@contextmanager
-def _running() -> Iterator[Settings]:
-    """The running controller's parameters: file, server, robot_description, as the nodes read them."""
-    if not rosgraph.is_master_online():
-        raise RefusedError(
-            f"no ROS master at {rosgraph.get_master_uri()}: start the robot (roslaunch robot_control sim.launch), "
-            "or fit a log with --log"
-        )
-    rospy.init_node("identify", anonymous=True)
-    if rospy.get_param("/use_sim_time", default=False):
-        raise RefusedError(
-            "the robot runs in simulated time, where a wall-clock second is many: use clock wall, or fit the log of a "
-            "command_script with --log"
-        )
-    path = rospy.get_param(f"{CONTROLLER}/config", share_file("config/robot_params.yaml"))
-    own = {key: value for key, value in rospy.get_param(CONTROLLER, {}).items() if key not in ("config", "urdf")}
-    values = [*leaves({"robot": rospy.get_param("robot", {})}), *leaves({CONTROLLER: own})]
-    described = rospy.get_param("robot_description", "")
-    with tempfile.TemporaryDirectory(prefix="identify-") as folder:
-        if described and "robot.urdf" not in dict(values):
-            (Path(folder) / "robot.urdf").write_text(described)
-            values.append(("robot.urdf", str(Path(folder) / "robot.urdf")))
-        yield Settings(path, tuple(values))
-
-
 def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, FloatArray]:
     excitation = plan(settings, options)
     robot = RunningRobot()
@@ -116,7 +81,7 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
         raise RefusedError(f"{reason}. Nothing was driven")
     running = ""
     if telemetry:
-        _wait(lambda: any(name in robot.logs for name in telemetry), signals)
+        await_all(lambda: any(name in robot.logs for name in telemetry), signals)
         running = next((robot.logs[name] for name in telemetry if name in robot.logs), "")
         if not running:
             raise RefusedError(f"{telemetry[0]} runs, but does not say where it writes; end it. Nothing was driven")
@@ -132,21 +97,11 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
 
 def _others(robot: RunningRobot, signals: Signals) -> tuple[tuple[str, ...], list[str]]:
     """Who else may send commands, and which telemetry runs; waits until the robot was heard."""
-    _wait(lambda: robot.listened_to() and robot.look().pose is not None and bool(robot.look().state), signals)
-    state = Master(rospy.get_name()).state()
-    if state is None:
-        raise RefusedError("the ROS master does not answer. Nothing was driven")
+    await_all(lambda: robot.listened_to() and robot.look().pose is not None and bool(robot.look().state), signals)
+    state = master_state()
     if not robot.listened_to():
         raise RefusedError(f"nobody listens on {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
-    senders = senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name())
-    return senders, sorted(nodes_of(state) & {rospy.resolve_name("telemetry")})
-
-
-def _wait(condition: Callable[[], bool], signals: Signals) -> None:
-    """Until it holds, at most PATIENCE."""
-    end = time.monotonic() + PATIENCE
-    while not condition() and time.monotonic() < end and signals.going_on():
-        time.sleep(0.02)
+    return other_senders(state), sorted(nodes_of(state) & {rospy.resolve_name("telemetry")})
 
 
 def _follow(robot: RunningRobot, excitation: Excitation, signals: Signals) -> None:

@@ -20,14 +20,15 @@ NEVER = -math.inf
 class RunningRobot:
     """Listens to one robot; speaks to it on cmd_vel, a zero when the node is shut down."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, speaks: bool = True) -> None:
+        """False: it only listens, and is no sender on cmd_vel."""
         self.logs: dict[str, str] = {}  # telemetry node → path of its log
         self._odometry: Odometry | None = None
         self._odometry_at = NEVER
         self._status: SafetyStatus | None = None
         self._status_at = NEVER
-        self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
-        self._sender = Sender(self._publisher, Twist())
+        self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if speaks else None
+        self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
         self._subscribers = [
             rospy.Subscriber("odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
             rospy.Subscriber("safety_status", SafetyStatus, self._hear_status),
@@ -36,13 +37,15 @@ class RunningRobot:
 
     def send(self, linear: float, angular: float) -> None:
         """m/s, rad/s."""
+        if self._sender is None:
+            return
         message = Twist()
         message.linear.x, message.angular.z = linear, angular
         self._sender.send(message)
 
     def listened_to(self) -> bool:
         """A controller is there for what is sent."""
-        return int(self._publisher.get_num_connections()) > 0
+        return self._publisher is not None and int(self._publisher.get_num_connections()) > 0
 
     def look(self, senders: tuple[str, ...] = ()) -> Look:
         """As of now; `senders`: others on cmd_vel."""

@@ -1,0 +1,234 @@
+"""What driven distances and squares say of the wheels: common radius, ratio of the radii, wheel base. numpy alone.
+
+Wheel odometry believes radius R and wheel base b of both sides; truly left and right roll s·c_l·R and s·c_r·R over a
+base of E_b·b. With E_d = right over left radius and the mean radius in s (Borenstein & Feng, "Measurement and
+Correction of Systematic Odometry Errors in Mobile Robots", IEEE Trans. Robotics and Automation 12(6), 1996):
+
+    c_l = 2/(E_d + 1)      c_r = 2/(1/E_d + 1)
+
+Each step of the path that wheel odometry believes, Δs and Δθ, is then truly
+
+    left = Δs − Δθ·b/2     right = Δs + Δθ·b/2
+    Δs'  = s·(c_l·left + c_r·right)/2      Δθ' = s·(c_r·right − c_l·left)/(E_b·b)
+
+and integrating that says where the robot really is (`replay`). s, E_d and E_b are those for which this agrees with the
+tape: the length of straight drives, the place to which squares driven both ways return. Least squares by Gauss-Newton
+on the exact arcs, so large errors, round corners and a square that did not close by odometry do no harm.
+
+Common radius and wheel base are told apart by the straight drives alone: squares see E_b/s. Without them s is 1.
+
+The authors' own formulas for small errors are `umbmark`. On a square of side L, α is what every quarter turn lacks, β
+what every side turns to the left. Adding the four sides' displacements to first order, a return of
+
+    clockwise          x =  y = −2L(α + β)
+    counter-clockwise  x = −y = −2L(α − β)
+
+for side k points k·(β ∓ α) + β/2 beside its direction. So α and β are means of four numbers; then, from the arc of a
+side, of radius ρ, and from the quarter turn:
+
+    ρ = (L/2)/sin(β/2)      E_d = (ρ + b/2)/(ρ − b/2)      E_b = 90°/(90° − α)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+TAPE = 0.003
+"""m, standard deviation of one reading: half a finger's width, on marks on a floor"""
+ITERATIONS = 30
+TOLERANCE = 1e-10
+LONGEST_STEP = 0.02
+"""Of Gauss-Newton, of each factor: on a side of 4 m even so much makes another path of a square"""
+
+
+class NotCalibratedError(ValueError):
+    """The measurements do not say it; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Wheels:
+    """What wheel odometry believes."""
+
+    wheel_base: float  # m, effective
+    axle: tuple[float, float] = (0.0, 0.0)  # m, middle of the wheels in the axes of the frame that odometry is of
+
+
+@dataclass(frozen=True)
+class Straight:
+    """One driven distance."""
+
+    path: FloatArray  # (n, 3): x m, y m, yaw rad by wheel odometry
+    measured: float  # m between the middles of the wheels at its ends, by tape
+
+
+@dataclass(frozen=True)
+class Square:
+    """One closed path."""
+
+    path: FloatArray  # (n, 3)
+    measured: tuple[float, float]  # m, where the middle of the wheels came to: ahead of and to the left of the start
+    clockwise: bool
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What the wheels are, relative to what is believed; and standard deviations, 0: not measured, so held."""
+
+    scale: float = 1.0  # mean radius
+    ratio: float = 1.0  # E_d, right over left radius
+    base: float = 1.0  # E_b, wheel base
+    scale_deviation: float = 0.0
+    ratio_deviation: float = 0.0
+    base_deviation: float = 0.0
+
+
+def sides(ratio: float) -> tuple[float, float]:
+    """c_l, c_r."""
+    return 2 / (ratio + 1), 2 / (1 / ratio + 1)
+
+
+def of_axle(path: FloatArray, axle: tuple[float, float]) -> FloatArray:
+    """The path of the middle of the wheels, where `path` is that of a frame in whose axes it lies at `axle`."""
+    x, y, yaw = np.asarray(path, float).T
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    return np.column_stack([x + cosine * axle[0] - sine * axle[1], y + sine * axle[0] + cosine * axle[1], yaw])
+
+
+def steps(path: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Δs [m] and Δθ [rad] of the arcs between the poses of the middle of the wheels."""
+    x, y, yaw = np.asarray(path, float).T
+    turn = np.remainder(np.diff(yaw) + np.pi, 2 * np.pi) - np.pi
+    middle = yaw[:-1] + turn / 2
+    chord = np.diff(x) * np.cos(middle) + np.diff(y) * np.sin(middle)
+    return chord / np.sinc(turn / (2 * np.pi)), turn  # numpy's sinc(x) is sin(πx)/(πx)
+
+
+def replay(path: FloatArray, wheels: Wheels, truth: Truth) -> FloatArray:
+    """(n, 3): where the middle of the wheels truly was, seen from where it began."""
+    advance, turn = steps(of_axle(path, wheels.axle))
+    left, right = sides(truth.ratio)
+    left *= truth.scale
+    right *= truth.scale
+    half = turn * wheels.wheel_base / 2
+    true_left, true_right = left * (advance - half), right * (advance + half)
+    true_turn = (true_right - true_left) / (truth.base * wheels.wheel_base)
+    chord = (true_left + true_right) / 2 * np.sinc(true_turn / (2 * np.pi))
+    heading = np.concatenate([[0.0], np.cumsum(true_turn)])
+    middle = heading[:-1] + true_turn / 2
+    x = np.concatenate([[0.0], np.cumsum(chord * np.cos(middle))])
+    y = np.concatenate([[0.0], np.cumsum(chord * np.sin(middle))])
+    return np.column_stack([x, y, heading])
+
+
+def return_errors(squares: Sequence[Square], wheels: Wheels, truth: Truth) -> FloatArray:
+    """(n, 2) m: measured minus calculated, what UMBmark calls ε."""
+    return np.array([np.array(square.measured) - replay(square.path, wheels, truth)[-1, :2] for square in squares])
+
+
+def largest_mean_return_error(squares: Sequence[Square], wheels: Wheels, truth: Truth) -> float:
+    """m, E_max,syst: the longer of the two directions' mean ε."""
+    errors = return_errors(squares, wheels, truth)
+    clockwise = np.array([square.clockwise for square in squares])
+    return max(float(np.linalg.norm(errors[way].mean(axis=0))) for way in (clockwise, ~clockwise) if way.any())
+
+
+def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels) -> Truth:
+    """Scale from straight drives, ratio and base from squares both ways, each where there are any.
+
+    Raises:
+        NotCalibratedError: nothing was measured, squares go one way only, or the numbers fit no robot.
+    """
+    free = [len(straights) > 0, len(squares) > 0, len(squares) > 0]
+    ways = {square.clockwise for square in squares}
+    if not any(free):
+        raise NotCalibratedError("nothing was measured: drive a distance, or squares both ways")
+    if len(ways) == 1:
+        raise NotCalibratedError(
+            "squares of one direction cannot tell unequal wheels from a wrong base (Borenstein & Feng 1996): drive "
+            "them both ways"
+        )
+    index = np.flatnonzero(free)
+    values = np.ones(3)
+
+    def residual(at: FloatArray) -> FloatArray:
+        truth = Truth(*at)
+        driven = [float(np.linalg.norm(replay(drive.path, wheels, truth)[-1, :2])) for drive in straights]
+        straight = np.array([drive.measured for drive in straights]) - np.array(driven)
+        returned = return_errors(squares, wheels, truth).ravel() if squares else np.empty(0)
+        return np.concatenate([straight, returned])
+
+    for _ in range(ITERATIONS):
+        at = residual(values)
+        jacobian = _jacobian(residual, values, index)
+        step = np.clip(np.linalg.lstsq(jacobian, -at, rcond=None)[0], -LONGEST_STEP, LONGEST_STEP)
+        values[index] += step
+        if np.abs(step).max() < TOLERANCE:
+            break
+    else:
+        raise NotCalibratedError(
+            "no wheels explain these numbers: look at units (m), signs (x ahead, y left) and directions"
+        )
+    deviations = np.zeros(3)
+    deviations[index] = _deviations(_jacobian(residual, values, index), residual(values))
+    return Truth(*values, *deviations)
+
+
+def _jacobian(residual: Callable[[FloatArray], FloatArray], values: FloatArray, index: NDArray[np.intp]) -> FloatArray:
+    """By central differences of 1e-6: the law is smooth, and its second derivatives are of order one."""
+    columns = []
+    for one in index:
+        up, down = values.copy(), values.copy()
+        up[one] += 1e-6
+        down[one] -= 1e-6
+        columns.append((residual(up) - residual(down)) / 2e-6)
+    return np.column_stack(columns)
+
+
+def _deviations(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
+    """Standard deviations by the residuals' spread, which is never taken for less than that of a tape."""
+    freedom = len(residual) - jacobian.shape[1]
+    variance = max(TAPE**2, float(residual @ residual) / freedom if freedom > 0 else 0.0)
+    return np.asarray(np.sqrt(variance * np.diag(np.linalg.inv(jacobian.T @ jacobian))))
+
+
+@dataclass(frozen=True)
+class Umbmark:
+    """The authors' two errors, of a robot that drove squares by its wheels."""
+
+    alpha: float  # rad that a quarter turn lacks
+    beta: float  # rad that a side turns to the left
+    ratio: float  # E_d
+    base: float  # E_b
+
+
+def umbmark(clockwise: FloatArray, counter_clockwise: FloatArray, side: float, wheel_base: float) -> Umbmark:
+    """From return errors ε, (n, 2) m each way, of squares of `side` m."""
+    x_cw, y_cw = np.mean(clockwise, axis=0)
+    x_ccw, y_ccw = np.mean(counter_clockwise, axis=0)
+    together = -(x_cw + y_cw) / (4 * side)  # α + β
+    apart = -(x_ccw - y_ccw) / (4 * side)  # α − β
+    alpha, beta = (together + apart) / 2, (together - apart) / 2
+    radius = math.inf if beta == 0 else side / 2 / math.sin(beta / 2)
+    ratio = 1.0 if math.isinf(radius) else (radius + wheel_base / 2) / (radius - wheel_base / 2)
+    return Umbmark(alpha, beta, ratio, (math.pi / 2) / (math.pi / 2 - alpha))
+
+
+def square_path(side: float, *, clockwise: bool, per_metre: int = 100) -> FloatArray:
+    """(n, 3): the ideal path, corners turned on the spot, first side along x."""
+    sign = -1 if clockwise else 1
+    poses = [(0.0, 0.0, 0.0)]
+    for leg in range(4):
+        heading = sign * leg * math.pi / 2
+        x, y, _ = poses[-1]
+        parts = np.linspace(0, side, max(2, round(side * per_metre)))[1:]
+        poses += [(x + part * math.cos(heading), y + part * math.sin(heading), heading) for part in parts]
+        x, y, _ = poses[-1]
+        poses += [(x, y, heading + part) for part in np.linspace(0, sign * math.pi / 2, 50)[1:]]
+    return np.array(poses)

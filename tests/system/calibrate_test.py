@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""calibrate.py beside a running robot: it measures, writes, and stops when it is told to."""
+
+import contextlib
+import signal
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import rospy
+import rostest
+import yaml
+from geometry_msgs.msg import Twist
+from robot_control.msg import SafetyStatus
+from system_support import ESTIMATOR, PLANT, STALL_CAUSES, Program, RobotTestCase, init_test_node, wait_for
+
+HIDDEN = {"left_radius_error": 0.012, "right_radius_error": 0.004, "wheel_base_error": 0.02}
+SHORT = ("--truth", "--yes", "--distance=1", "--repeats=1", "--side=1", "--runs=1", "--speed=0.5", "--turn-speed=1.2")
+ATTEMPTS = 3  # a stalling machine may stop the robot in the middle of the minute that this takes
+
+
+class CalibrateTest(RobotTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node(cls.__name__)
+        for name, value in HIDDEN.items():
+            rospy.set_param(f"{PLANT}/{name}", value)
+        super().setUpClass()
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        super().tearDownClass()
+        for name in HIDDEN:
+            rospy.delete_param(f"{PLANT}/{name}")
+
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.await_rest()
+        folder = tempfile.TemporaryDirectory(prefix="calibrate-test-")
+        self.addCleanup(folder.cleanup)
+        self.out = Path(folder.name) / "calibrated.yaml"
+
+    @contextlib.contextmanager
+    def started(self, *arguments: str) -> Iterator[Program]:
+        """This test is no sender on cmd_vel meanwhile."""
+        self.robot._cmd_vel.unregister()
+        program = Program("calibrate.py", f"--out={self.out}", *arguments)
+        try:
+            yield program
+        finally:
+            program.end()
+            self.robot._cmd_vel = rospy.Publisher(self.robot.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
+
+    def refused(self, *arguments: str) -> str:
+        start = self.robot.distance
+        with self.started(*arguments) as program:
+            self.assertEqual(program.wait(60.0), 1, program.output)
+            self.assertLess(abs(self.robot.distance - start), 0.005, "no motion")
+            self.assertFalse(self.out.exists())
+            return program.output
+
+    def measured(self) -> str:
+        for _ in range(ATTEMPTS):
+            with self.started(*SHORT) as program:
+                if program.wait(150.0) == 0:
+                    return program.output
+            stalled = self.robot.state == SafetyStatus.STOPPED and self.robot.causes <= STALL_CAUSES
+            self.assertTrue(stalled, program.output)
+            self.robot.release()
+        raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times: {program.output}")
+
+    def test_measures_the_hidden_wheels_and_writes_what_the_nodes_take(self) -> None:
+        words = self.measured()
+        for part in ("It needs 1.5 m ahead", "square 1 of 1, clockwise", "largest mean return error", "wrote"):
+            self.assertIn(part, words)
+        overlay = yaml.safe_load(self.out.read_text())
+        # The fit itself is judged in virtual time, on 4 m.
+        self.assertAlmostEqual(overlay["robot"]["wheel_radius"], 0.1008, delta=0.0003)
+        self.assertAlmostEqual(overlay["robot"]["wheel_base"], 0.51, delta=0.004)
+        self.assertAlmostEqual(overlay["state_estimator"]["radius_ratio"], 1.004 / 1.012, delta=0.002)
+
+        subprocess.run(["rosparam", "load", str(self.out)], check=True)
+        self.addCleanup(rospy.delete_param, "robot/wheel_radius")
+        self.addCleanup(rospy.delete_param, "robot/wheel_base")
+        self.addCleanup(rospy.delete_param, ESTIMATOR)
+        self.robot.end()
+        self.robot.start()
+        self.robot.await_ready()
+        self.assertIn("robot/wheel_radius", self.robot.nodes[ESTIMATOR].output)
+        self.assertIn("radius_ratio", self.robot.nodes[ESTIMATOR].output)
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+
+    def test_ctrl_c_stops_the_robot(self) -> None:
+        with self.started(*SHORT) as program:
+            wait_for("motion", lambda: abs(self.robot.speed) > 0.1)
+            program.send_signal(signal.SIGINT)
+            self.assertEqual(program.wait(), 1, program.output)
+            self.assertIn("interrupted", program.output)
+            wait_for("rest", lambda: abs(self.robot.speed) < 0.01)
+        self.assertFalse(self.out.exists())
+
+    def test_asks_first_and_does_nothing_without_an_answer(self) -> None:
+        words = self.refused("--truth")
+        self.assertIn("It drives by itself and sees nothing", words)
+        self.assertIn("there is no terminal", words)
+
+    def test_refuses_a_stopped_robot_and_says_why(self) -> None:
+        self.assertTrue(self.robot.call("e_stop_trigger").success)
+        wait_for("the stop", lambda: self.robot.state == SafetyStatus.STOPPED)
+        self.assertIn("the robot is STOPPED", self.refused(*SHORT))
+        self.robot.release()
+
+    def test_refuses_beside_another_sender(self) -> None:
+        sender = Program("send_cmd.py", "--linear=0", "--angular=0")
+        self.addCleanup(sender.end)
+        wait_for("the sender", lambda: "cmd_vel 1" in sender.output)
+        self.assertIn("/send_cmd may send on cmd_vel", self.refused(*SHORT))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "calibrate", CalibrateTest)

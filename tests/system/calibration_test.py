@@ -1,0 +1,96 @@
+#!/usr/bin/python3
+"""What state_estimator learns while it drives survives its end, and nothing else takes its place."""
+
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from system_support import ESTIMATOR, PLANT, RobotTestCase, init_test_node, refusal, wait_for
+
+LEFT = 0.01
+"""Of the left radius, hidden in the plant: the ratio is 1/1.01"""
+
+
+class CalibrationTest(RobotTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node(cls.__name__)
+        cls.folder = Path(tempfile.mkdtemp(prefix="calibration-test-"))
+        cls.file = cls.folder / "learned.yaml"
+        cls.estimator: dict[str, str] = {}
+        rospy.set_param(f"{PLANT}/left_radius_error", LEFT)
+        rospy.set_param(f"{ESTIMATOR}/calibration_file", str(cls.file))
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.hear_diagnostics)
+        super().setUpClass()
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        super().tearDownClass()
+        rospy.delete_param(f"{PLANT}/left_radius_error")
+        rospy.delete_param(f"{ESTIMATOR}/calibration_file")
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def hear_diagnostics(cls, message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.name == ESTIMATOR:
+                cls.estimator = {pair.key: pair.value for pair in status.values}
+
+    def told(self, name: str) -> float:
+        return float(self.estimator.get(name, "nan"))
+
+    def kept(self) -> dict[str, float]:
+        return dict(yaml.safe_load(self.file.read_text())["calibration"])
+
+    def wander(self, known: Callable[[], bool]) -> None:
+        """Straight on and in curves, by turns: one curve alone tells unequal wheels from a wrong base badly."""
+        for angular in (0.0, 0.8, 0.0, -0.8) * 10:
+            end = time.monotonic() + 2.0
+            self.robot.drive_until("two seconds", lambda end=end: time.monotonic() > end, angular=angular)
+            if known():
+                return
+        raise AssertionError(f"learned too little: {self.estimator}")
+
+    def start_estimator(self) -> None:
+        self.estimator.clear()
+        self.robot.start(ESTIMATOR)
+        wait_for("its diagnostics", lambda: "radius_ratio" in self.estimator)
+
+    def test_what_was_learned_goes_on_after_a_restart_and_a_broken_file_refuses_it(self) -> None:
+        self.robot.await_ready()
+        self.assertFalse(self.file.exists())
+        self.wander(lambda: self.told("radius_ratio_deviation") < 0.001)
+        self.robot.await_rest()
+        self.assertEqual(self.robot.nodes[ESTIMATOR].end(), 0)
+        kept = self.kept()
+        self.assertAlmostEqual(kept["radius_ratio"], 1 / (1 + LEFT), delta=0.003)
+        self.assertEqual(list(self.folder.iterdir()), [self.file], "no temporary file is left")
+
+        self.robot.end()  # all of it: the shared memory with the last state is gone, the file alone remembers
+        self.robot.start()
+        self.robot.await_ready()
+        self.assertIn("calibration of", self.robot.nodes[ESTIMATOR].output)
+        wait_for("its diagnostics", lambda: abs(self.told("radius_ratio") - kept["radius_ratio"]) < 0.001)
+        self.assertLess(self.told("radius_ratio_deviation"), 0.0015)
+
+        self.assertEqual(self.robot.nodes[ESTIMATOR].end(), 0)
+        whole = self.file.read_text()
+        self.file.write_text(whole.replace("wheel_base: 0.5", "wheel_base: 0.6"))
+        words = refusal(ESTIMATOR)
+        for part in (str(self.file), "calibration.wheel_base = 0.6", "0.5 holds here", "delete it to begin anew"):
+            self.assertIn(part, words)
+        self.file.write_text(whole[: len(whole) // 2])
+        self.assertIn("missing", refusal(ESTIMATOR))
+        self.file.unlink()
+        self.start_estimator()
+        self.robot.release()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "calibration", CalibrationTest)

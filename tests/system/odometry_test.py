@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+"""What state_estimator publishes, and where it may be told to be."""
+
+import math
+
+import numpy as np
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from robot_control.srv import InjectFault, SetOdometry, SetOdometryResponse
+from sensor_msgs.msg import Imu
+from system_support import ESTIMATOR, LIMIT, PLANT, RobotTestCase, wait_for
+
+
+def rotation(q) -> np.ndarray:
+    """Matrix of a message's quaternion."""
+    x, y, z, w = q.x, q.y, q.z, q.w
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def yaw_of(q) -> float:
+    return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+
+
+class OdometryTest(RobotTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        super().setUpClass()
+        cls.wheels: Odometry | None = None
+        cls.imu: Imu | None = None
+        cls.imu_count = 0
+        cls.estimator: dict[str, str] = {}
+        cls.estimator_message = ""
+        rospy.Subscriber("wheel_odom", Odometry, cls.hear_wheels)
+        rospy.Subscriber("imu/data", Imu, cls.hear_imu)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.hear_diagnostics)
+        rospy.wait_for_service("set_odometry", LIMIT)
+
+    @classmethod
+    def hear_wheels(cls, message: Odometry) -> None:
+        cls.wheels = message
+
+    @classmethod
+    def hear_imu(cls, message: Imu) -> None:
+        cls.imu = message
+        cls.imu_count += 1
+
+    @classmethod
+    def hear_diagnostics(cls, message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.name == ESTIMATOR:
+                cls.estimator_message = status.message
+                cls.estimator = {pair.key: pair.value for pair in status.values}
+
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.await_rest()
+        self.estimator.clear()
+        wait_for("a standing robot", lambda: "standstill" in self.estimator.get("flags", ""))
+
+    def inject(self, component: str, kind: str) -> None:
+        answer = rospy.ServiceProxy(f"{PLANT}/inject_fault", InjectFault)(component, kind)
+        self.assertTrue(answer.success, answer.message)
+
+    def set_odometry(self, x: float, y: float, yaw: float) -> SetOdometryResponse:
+        return rospy.ServiceProxy("set_odometry", SetOdometry)(x, y, yaw)
+
+    def at(self, x: float, y: float, yaw: float) -> bool:
+        """The newest odometry, within 1 mm and 0.06°: what a standing robot may learn of its last centimetre."""
+        pose = self.robot.odom.pose.pose
+        near = math.hypot(pose.position.x - x, pose.position.y - y) < 0.001
+        return near and abs(math.remainder(yaw_of(pose.orientation) - yaw, 2 * math.pi)) < 0.001
+
+    def test_the_pose_is_what_it_is_told_to_be(self) -> None:
+        answer = self.set_odometry(1.5, -2.5, 0.5 + 4 * math.pi)
+        self.assertTrue(answer.success, answer.message)
+        self.assertIn("1.5 m, -2.5 m, 0.5", answer.message)
+        wait_for("that pose", lambda: self.at(1.5, -2.5, 0.5))
+        self.assertLess(self.robot.odom.pose.covariance[0], 1e-6)
+        self.robot.drive_until("motion from there", self.robot.driving, angular=0.0)
+        self.robot.await_rest()
+        pose = self.robot.odom.pose.pose
+        heading = math.atan2(pose.position.y + 2.5, pose.position.x - 1.5)
+        self.assertAlmostEqual(heading, 0.5, delta=0.05)
+        self.assertTrue(self.robot.call("reset_odometry").success)
+        wait_for("the origin", lambda: self.at(0, 0, 0))
+
+    def test_an_absurd_pose_is_refused_and_changes_nothing(self) -> None:
+        self.assertTrue(self.robot.call("reset_odometry").success)
+        wait_for("the origin", lambda: self.at(0, 0, 0))
+        for pose, part in (
+            ((math.nan, 0, 0), "x = nan m"),
+            ((0, 2e6, 0), "y = 2"),
+            ((0, 0, math.inf), "yaw = inf rad"),
+        ):
+            answer = self.set_odometry(*pose)
+            self.assertFalse(answer.success)
+            self.assertIn(part, answer.message)
+            self.assertIn("must be a number of", answer.message)
+        count = self.robot.odom_count
+        wait_for("odometry", lambda: self.robot.odom_count > count + 5)
+        self.assertTrue(self.at(0, 0, 0), self.robot.odom.pose.pose)
+
+    def test_odometry_has_both_covariances_complete(self) -> None:
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+        for covariance in (self.robot.odom.pose.covariance, self.robot.odom.twist.covariance):
+            matrix = np.reshape(covariance, (6, 6))
+            np.testing.assert_allclose(matrix, matrix.T, atol=1e-12)
+            self.assertTrue((np.diag(matrix) > 0).all(), np.diag(matrix))
+            self.assertGreater(np.linalg.eigvalsh(matrix).min(), -1e-12)
+
+    def test_the_wheels_alone_say_nearly_the_same(self) -> None:
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+        wait_for("the wheels' speed", lambda: self.wheels is not None and self.wheels.twist.twist.linear.x > 0.3)
+        self.assertEqual(self.wheels.header.frame_id, "odom")
+        self.assertEqual(self.wheels.child_frame_id, "base_link")
+        self.assertEqual(set(self.wheels.pose.covariance), {0.0}, "unknown")
+
+    def test_the_imu_knows_up_and_north_is_that_of_the_odometry(self) -> None:
+        self.assertTrue(self.set_odometry(0, 0, 1.0).success)
+        wait_for("that heading", lambda: self.at(0, 0, 1.0))
+        wait_for("the IMU's", lambda: self.imu is not None and abs(yaw_of(self.imu.orientation) - 1.0) < 0.02)
+        self.assertEqual(self.imu.header.frame_id, "imu_link")
+        acceleration = self.imu.linear_acceleration
+        felt = rotation(self.imu.orientation) @ [acceleration.x, acceleration.y, acceleration.z]
+        # The plant's bias of 0.2 m/s² and a sample's noise of 0.05 m/s².
+        np.testing.assert_allclose(felt, [0, 0, 9.81], atol=0.8)
+        orientation = np.diag(np.reshape(self.imu.orientation_covariance, (3, 3)))
+        self.assertTrue((orientation[:2] > 0).all(), orientation)
+        self.assertLess(orientation[2], 1e-6, "the heading was told")
+        for covariance in (self.imu.angular_velocity_covariance, self.imu.linear_acceleration_covariance):
+            self.assertTrue((np.diag(np.reshape(covariance, (3, 3))) > 0).all(), covariance)
+
+    def test_without_a_gyro_no_orientation_is_made_up_and_diagnostics_says_so(self) -> None:
+        wait_for("imu/data", lambda: self.imu_count > 0)
+        self.inject("gyro", "off")
+        try:
+            wait_for("the warning", lambda: "yaw comes from the wheels alone" in self.estimator_message)
+            count = self.imu_count
+            odom = self.robot.odom_count
+            wait_for("odometry all the same", lambda: self.robot.odom_count > odom + 20)
+            self.assertEqual(self.imu_count, count)
+        finally:
+            self.inject("gyro", "ok")
+        wait_for("imu/data again", lambda: self.imu_count > count)
+        wait_for("no warning", lambda: "wheels alone" not in self.estimator_message)
+
+    def test_diagnostics_says_how_far_each_sensor_agrees(self) -> None:
+        wait_for("diagnostics", lambda: "nis_gyro" in self.estimator)
+        for sensor in ("left_encoder", "right_encoder", "gyro", "accelerometer", "lateral_contact", "vertical_contact"):
+            for figure in ("confidence", "nis", "rejected"):
+                self.assertTrue(math.isfinite(float(self.estimator[f"{figure}_{sensor}"])))
+        # The plant's bias is drawn with 1 °/s on each axis; who stands knows it to a hundredth.
+        self.assertLess(float(self.estimator["gyro_bias_z_deviation_deg_s"]), 0.1)
+        self.assertAlmostEqual(float(self.estimator["wheel_base_factor"]), 1.0, delta=0.1)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "odometry", OdometryTest)
