@@ -209,6 +209,29 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct(const Column& ph, double 
   return {nis, true};
 }
 
+/// Tilt and accelerometer bias are considered, not corrected (S. F. Schmidt, 1966): their part of the gain is zero,
+/// which leaves the block of their own covariance as it was.
+ErrorStateFilter::Innovation ErrorStateFilter::correct_rolling(const Column& ph, double innovation,
+                                                               double variance) noexcept {
+  const auto tilt = covariance.block<2, 2>(kOrientation, kOrientation).eval();
+  const auto bias = covariance.block<3, 3>(kAccelerometerBias, kAccelerometerBias).eval();
+  const auto both = covariance.block<2, 3>(kOrientation, kAccelerometerBias).eval();
+  const Innovation result{innovation * innovation / variance, innovation * innovation / variance <= kGate};
+  if (!result.used) return result;
+  const Column root = ph / std::sqrt(variance);
+  covariance.noalias() -= root * root.transpose();
+  covariance.block<2, 2>(kOrientation, kOrientation) = tilt;
+  covariance.block<3, 3>(kAccelerometerBias, kAccelerometerBias) = bias;
+  covariance.block<2, 3>(kOrientation, kAccelerometerBias) = both;
+  covariance.block<3, 2>(kAccelerometerBias, kOrientation) = both.transpose();
+  Column error = ph * (innovation / variance);
+  error.segment<2>(kOrientation).setZero();
+  error.segment<3>(kAccelerometerBias).setZero();
+  inject(error);
+  corrections_ += error;
+  return result;
+}
+
 void ErrorStateFilter::inject(const Column& error) noexcept {
   position += error.segment<3>(kPosition);
   rotation = exponential(error.segment<3>(kOrientation)) * rotation;
@@ -232,7 +255,7 @@ void ErrorStateFilter::doubt_velocity(int axis, double deviation, double time) n
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_travel(int side, double measured) noexcept {
   const Column ph = covariance.col(kTravel + side);
-  return correct(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder), kGate);
+  return correct_rolling(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder));
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexcept {
@@ -243,7 +266,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexce
   const double own = ph[kVelocity + 1] - x * ph[kGyroBias + 2] + z * ph[kGyroBias];
   const double noise = square(noise_.lateral) / dt + square(noise_.gyro) / dt * (x * x + z * z) +
                        square(noise_.lateral_per_force * velocity.x() * rate.z()) / dt;
-  return correct(ph, -speed, own + noise, kGate);
+  return correct_rolling(ph, -speed, own + noise);
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_vertical(double dt) noexcept {
@@ -253,7 +276,16 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_vertical(double dt) noexc
   const Column ph = covariance.col(kVelocity + 2) - y * covariance.col(kGyroBias) + x * covariance.col(kGyroBias + 1);
   const double own = ph[kVelocity + 2] - y * ph[kGyroBias] + x * ph[kGyroBias + 1];
   const double noise = square(noise_.vertical) / dt + square(noise_.gyro) / dt * (x * x + y * y);
-  return correct(ph, -speed, own + noise, kGate);
+  return correct_rolling(ph, -speed, own + noise);
+}
+
+ErrorStateFilter::Innovation ErrorStateFilter::correct_acceleration(int axis, double excess, double variance) noexcept {
+  const double bx = -kGravity * rotation(1, axis);
+  const double by = kGravity * rotation(0, axis);
+  const int a = kAccelerometerBias + axis;
+  const Column ph = bx * covariance.col(kOrientation) + by * covariance.col(kOrientation + 1) - covariance.col(a);
+  const double own = bx * ph[kOrientation] + by * ph[kOrientation + 1] - ph[a];
+  return correct(ph, excess, own + variance, kGate);
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_gyro_at_rest(int axis, double mean, double variance) noexcept {
@@ -294,6 +326,12 @@ void ErrorStateFilter::age(double dt) noexcept {
     covariance(kGyroBias + i, kGyroBias + i) += square(noise_.gyro_bias_walk) * dt;
     covariance(kAccelerometerBias + i, kAccelerometerBias + i) += square(noise_.accelerometer_bias_walk) * dt;
   }
+}
+
+Vector3d ErrorStateFilter::acceleration_by(const Column& error) const noexcept {
+  const Vector3d gravity{0, 0, -kGravity};
+  const Vector3d tilt = error.segment<3>(kOrientation);
+  return rotation.transpose() * gravity.cross(tilt) - error.segment<3>(kAccelerometerBias);
 }
 
 Vector3d ErrorStateFilter::acceleration_deviation() const noexcept {

@@ -92,7 +92,7 @@ class ErrorStateFilter {
   using Column = Eigen::Matrix<double, kSize, 1>;
 
   static constexpr double kGravity = 9.80665;          ///< m/s², standard gravity
-  static constexpr double kPulledBias = 0.02;          ///< m/s²
+  static constexpr double kPulledBias = 0.005;         ///< m/s²
   static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
 
   /// What moved the robot over `dt`. Base axes.
@@ -119,6 +119,8 @@ class ErrorStateFilter {
   Innovation correct_travel(int side, double travel) noexcept;
   Innovation correct_lateral(double dt) noexcept;
   Innovation correct_vertical(double dt) noexcept;
+  /// Measured: by how much the acceleration along a base axis is more than accelerometer − ba + Rᵀ g. m/s²
+  Innovation correct_acceleration(int axis, double excess, double variance) noexcept;
   /// `mean` over `time` s at rest. No gate: the caller judged them quiet.
   Innovation correct_gyro_at_rest(int axis, double mean, double variance) noexcept;
   Innovation correct_accelerometer_at_rest(int axis, double mean, double variance) noexcept;
@@ -129,6 +131,8 @@ class ErrorStateFilter {
   void halt(double deviation) noexcept;
   /// Biases walk for `dt` s while nothing is predicted.
   void age(double dt) noexcept;
+  /// m/s², base axes: what an error of bias and tilt makes of accelerometer − ba + Rᵀ g.
+  Eigen::Vector3d acceleration_by(const Column& error) const noexcept;
   /// m/s², per base axis: of accelerometer − ba + Rᵀ g, through bias and tilt.
   Eigen::Vector3d acceleration_deviation() const noexcept;
   /// The wheels of that side begin anew at `travel`.
@@ -137,8 +141,8 @@ class ErrorStateFilter {
 
   /// Adds an error to the nominal state; what a window of corrections did is taken back by its negative.
   void inject(const Column& error) noexcept;
-  /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the accelerometer's
-  /// bias, which is from now on known to kPulledBias at best.
+  /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the
+  /// accelerometer's bias, which is from now on known to kPulledBias at best.
   void doubt_velocity(int axis, double deviation, double time) noexcept;
   /// Sum of all errors injected by measurements since the last prediction.
   const Column& corrections() const noexcept { return corrections_; }
@@ -163,6 +167,7 @@ class ErrorStateFilter {
 
  private:
   Innovation correct(const Column& ph, double innovation, double variance, double gate) noexcept;
+  Innovation correct_rolling(const Column& ph, double innovation, double variance) noexcept;
   void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Vector3d& u,
                  const Eigen::Vector3d& omega) noexcept;
 

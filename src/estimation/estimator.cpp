@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace robot_control {
 namespace {
@@ -177,6 +178,7 @@ void Estimator::reset() noexcept {
     side.encoder.reset();
     side.speed.reset(0);
     side.total = 0;
+    side.ahead = 0;
     side.refused = 0;
     side.believed = true;
   }
@@ -302,6 +304,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
       side.speed.step(side.encoder.travel(), side.encoder.time());
     }
     if (reading == EncoderReading::kLost) {
+      side.ahead = 0;
       filter_.anchor_travel(i, side.total);
       filter_.doubt_velocity(0, kRestartPosition / std::max(side.encoder.time(), period_),
                              std::max(side.encoder.time(), period_));
@@ -408,25 +411,22 @@ void Estimator::move(double dt) noexcept {
   motion.dt = dt;
   motion.gyro = imu_.gyro();
   motion.accelerometer = imu_.accelerometer();
-  motion.left_travel = sides_[kLeft].encoder.heard() ? sides_[kLeft].encoder.travel() : left_speed * dt;
-  motion.right_travel = sides_[kRight].encoder.heard() ? sides_[kRight].encoder.travel() : right_speed * dt;
+  motion.left_travel = rolled(kLeft, dt);
+  motion.right_travel = rolled(kRight, dt);
   motion.left_speed = left_speed;
   motion.right_speed = right_speed;
   motion.wheel_rate = geometry_.turn(left_speed, right_speed);
   filter_.predict(motion);
+  if (imu_.gyro_catches_up()) filter_.rate = (1 + filter_.gyro_scale) * (imu_.last_gyro() - filter_.gyro_bias);
   correct(dt);
   distance_ += std::abs(filter_.velocity.x()) * dt;
 
   constexpr double kSilent = std::numeric_limits<double>::quiet_NaN();
   if (parameters_.slip_detection) {
-    const auto heard = [&](int i) {
-      const SideEncoder& encoder = sides_[static_cast<std::size_t>(i)].encoder;
-      return encoder.heard() ? encoder.travel() : kSilent;
-    };
     slip_.step({.dt = dt,
-                .left = heard(kLeft),
-                .right = heard(kRight),
-                .inertial = motion.gyro.has_value() && motion.accelerometer.has_value()},
+                .left = lost(kLeft) ? kSilent : motion.left_travel,
+                .right = lost(kRight) ? kSilent : motion.right_travel,
+                .inertial = motion.gyro.has_value() && motion.accelerometer.has_value() && !imu_.slow()},
                filter_);
   }
 
@@ -434,9 +434,8 @@ void Estimator::move(double dt) noexcept {
       .dt = dt, .left = motion.left_travel, .right = motion.right_travel, .gyro = {}, .accelerometer = {}};
   if (imu_.new_gyro()) sample.gyro = imu_.last_gyro();
   if (imu_.new_accelerometer()) sample.accelerometer = imu_.last_accelerometer();
-  const bool heard = sides_[kLeft].encoder.heard() && sides_[kRight].encoder.heard();
   const WindowEnd window = standstill_.step(sample);
-  if (!heard) standstill_.reset();
+  if (lost(kLeft) || lost(kRight)) standstill_.reset();
   if (window != WindowEnd::kQuiet || !quiet()) return;
   if (standstill_.accelerometer()) {
     const Vector3d rest = *standstill_.accelerometer() - filter_.accelerometer_bias +
@@ -451,7 +450,22 @@ void Estimator::move(double dt) noexcept {
   learn_at_rest();
   resting_ = true;
   held_ = {};
+  for (Side& side : sides_) side.ahead = 0;
   flags_ |= kStateStandstill;
+}
+
+double Estimator::rolled(int index, double dt) noexcept {
+  Side& side = sides_[static_cast<std::size_t>(index)];
+  if (side.encoder.heard()) return side.encoder.travel() - std::exchange(side.ahead, 0);
+  const double travel = (filter_.velocity.x() - filter_.rate.z() * filter_.lever(index)) * dt;
+  side.ahead += travel;
+  return travel;
+}
+
+bool Estimator::lost(int side) const noexcept {
+  const SideEncoder& encoder = sides_[static_cast<std::size_t>(side)].encoder;
+  const double longest = static_cast<double>(kMaxHeld) * period_ * (1 + 1e-9);
+  return !encoder.known() || encoder.waiting() > std::max(longest, 2 * encoder.gap());
 }
 
 void Estimator::correct(double dt) noexcept {
@@ -489,6 +503,7 @@ void Estimator::correct_side(int index, double dt) noexcept {
 
 void Estimator::note(SensorIndex sensor, double nis, double dt) noexcept {
   constexpr double kLargest = 1e6;
+  if (std::isnan(nis)) return;  // a sensor it compares is lost
   double& smoothed = nis_[sensor];
   smoothed += dt / (kSmoothing + dt) * (std::min(nis, kLargest) - smoothed);
 }
@@ -629,13 +644,8 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   confidence(kVerticalContact, slip_.believed(Contact::kVertical));
 
   out.flags = flags_;
-  const double longest = static_cast<double>(kMaxHeld) * period_ * (1 + 1e-9);
-  const auto missing = [&](int side) {
-    const SideEncoder& encoder = sides_[static_cast<std::size_t>(side)].encoder;
-    return !encoder.known() || encoder.waiting() > std::max(longest, 2 * encoder.gap());
-  };
-  const int lost = (missing(kLeft) ? 1 : 0) + (missing(kRight) ? 1 : 0);
-  if (lost == 0 || (lost == 1 && imu_.gyro())) out.flags |= kStateValid;
+  const int silent = (lost(kLeft) ? 1 : 0) + (lost(kRight) ? 1 : 0);
+  if (silent == 0 || (silent == 1 && imu_.gyro())) out.flags |= kStateValid;
   if (resting_) out.flags |= lasting_flags_ & kStateStandstill;
   if (out.slip != 0) out.flags |= kStateSlip;
   out.distance = distance_;

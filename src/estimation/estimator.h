@@ -80,6 +80,7 @@ class Estimator {
     SideEncoder encoder;
     SpeedTracker speed;
     double total = 0;  ///< m, all travel of this run
+    double ahead = 0;  ///< m, taken as travelled since it was last heard
     std::uint64_t refused = 0;
     bool believed = true;
   };
@@ -101,6 +102,8 @@ class Estimator {
   void learn_at_rest() noexcept;
   bool quiet() const noexcept;
   void move(double dt) noexcept;
+  double rolled(int side, double dt) noexcept;  ///< m in this step; between two readings as the filter moves
+  bool lost(int side) const noexcept;
   void correct(double dt) noexcept;
   void correct_side(int side, double dt) noexcept;
   void note(SensorIndex sensor, double nis, double dt) noexcept;

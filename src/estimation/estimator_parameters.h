@@ -7,10 +7,10 @@
 namespace robot_control {
 
 struct EstimatorParameters {
-  double wheel_slip_noise = 3.0e-4; ///< m/√m: standard deviation of travelled distance per √distance, per wheel
-  double gyro_noise = 2.44e-4;     ///< rad/s/√Hz, white noise density of the gyro
-  double standstill_speed = 0.01;  ///< rad/s, wheel and yaw rate below which the robot may be standing
-  double standstill_time = 0.25;   ///< s, for which all sensors must be quiet before the robot stands
+  double wheel_slip_noise = 3.0e-4;  ///< m/√m: standard deviation of travelled distance per √distance, per wheel
+  double gyro_noise = 2.44e-4;       ///< rad/s/√Hz, white noise density of the gyro
+  double standstill_speed = 0.01;    ///< rad/s, wheel and yaw rate below which the robot may be standing
+  double standstill_time = 0.25;     ///< s, for which all sensors must be quiet before the robot stands
   double standstill_acceleration = 0.3;  ///< m/s² RMS; MEMS noise is 0.05, a shaken robot above 0.5
   double encoder_noise = 4.4e-4;  ///< rad, standard deviation of an angle: 2π/4096/√12, counts of a wheel's turn
   double gyro_scale_deviation = 1.0e-3;     ///< of the gyro's scale; not published, but part of the covariance

@@ -8,14 +8,20 @@ void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sa
                       bool trapezoid) noexcept {
   channel.age += dt;
   channel.fresh = sample.has_value();
+  channel.catches_up = false;
   if (sample) {
     const bool continued = channel.known && channel.age <= channel.hold && dt > 0;
     const double steps = continued ? channel.age / dt : 1;
     channel.mean = *sample;
     if (continued && trapezoid) channel.mean = channel.last + (*sample - channel.last) * (steps / 2);
-    if (channel.known && channel.age > 0) channel.hold = std::clamp(3 * channel.age, kShortHold, kLongHold);
+    channel.catches_up = continued && trapezoid && channel.age > dt;
+    // Also from a sample that was lost in between: else who comes slower than the short hold would be lost for ever.
+    if (channel.heard && channel.age > 0) {
+      channel.gap = channel.age;
+      channel.hold = std::clamp(3 * channel.gap, kShortHold, kLongHold);
+    }
     channel.last = *sample;
-    channel.known = true;
+    channel.heard = channel.known = true;
     channel.age = 0;
   } else if (channel.known && channel.age <= channel.hold) {
     channel.mean = channel.last;

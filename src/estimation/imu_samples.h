@@ -19,6 +19,7 @@ class ImuSamples {
  public:
   static constexpr double kShortHold = 0.02;           ///< s
   static constexpr double kLongHold = 0.2;             ///< s
+  static constexpr double kSlow = 0.03;                ///< s
   static constexpr double kGyroRange = 100;            ///< rad/s; beyond what any MEMS gyro measures
   static constexpr double kAccelerometerRange = 1000;  ///< m/s²; likewise
 
@@ -32,17 +33,24 @@ class ImuSamples {
   const std::optional<Eigen::Vector3d>& accelerometer() const noexcept { return accelerometer_.mean; }
   bool new_gyro() const noexcept { return gyro_.fresh; }                    ///< the last step brought a sample
   bool new_accelerometer() const noexcept { return accelerometer_.fresh; }  ///< likewise
+  /// The gyro's mean also makes good for steps before the last one: as a rate it means nothing, `last_gyro` does.
+  bool gyro_catches_up() const noexcept { return gyro_.catches_up; }
   const Eigen::Vector3d& last_gyro() const noexcept { return gyro_.last; }
   const Eigen::Vector3d& last_accelerometer() const noexcept { return accelerometer_.last; }
+  /// Samples of the accelerometer come more than kSlow apart: what happens between them is not known.
+  bool slow() const noexcept { return accelerometer_.gap > kSlow; }
   bool refused() const noexcept { return refused_; }  ///< the last step brought a sample that is none
 
  private:
   struct Channel {
     std::optional<Eigen::Vector3d> mean;
     Eigen::Vector3d last = Eigen::Vector3d::Zero();
-    bool known = false;
+    bool heard = false;  ///< ever
+    bool known = false;  ///< and not lost
     bool fresh = false;
+    bool catches_up = false;
     double age = 0;  ///< s since the last sample
+    double gap = 0;  ///< s between the last two
     double hold = kShortHold;
   };
 

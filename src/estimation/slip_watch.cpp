@@ -42,7 +42,7 @@ void SlipWatch::open(Window& window, const Filter& filter) const noexcept {
   window = {};
   const auto& p = filter.covariance;
   window.velocity_variance = p.diagonal().segment<3>(Filter::kVelocity);
-  window.acceleration_variance = filter.acceleration_deviation().cwiseAbs2();
+  window.acceleration_variance = filter.acceleration_deviation().cwiseAbs2().array() + square(kLeastAcceleration);
   window.ratio_variance = p(Filter::kRadiusRatio, Filter::kRadiusRatio);
   window.base_variance = p(Filter::kWheelBase, Filter::kWheelBase);
 }
@@ -61,12 +61,14 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
   predicted[kLateral] = sample.dt * (u.y() + w.z() * g.middle_x - w.x() * g.height);
   predicted[kVertical] = sample.dt * (u.z() + w.x() * g.middle_y - w.y() * g.middle_x);
   const double forward = sample.dt * std::abs(u.x());
+  const Eigen::Vector3d pulled = filter.acceleration_by(filter.corrections());
 
   for (std::size_t i = 0; i < kWindows; ++i) {
     Window& window = windows_[i];
     window.inertial = window.inertial && sample.inertial;
     auto d = window.corrections.segment<3>(Filter::kVelocity);
-    d += filter.corrections().segment<3>(Filter::kVelocity) - sample.dt * w.cross(d);
+    window.acceleration += pulled;
+    d += filter.corrections().segment<3>(Filter::kVelocity) + sample.dt * (window.acceleration - w.cross(d));
     window.corrections.head<6>() += filter.corrections().head<6>();
     window.corrections.tail<9>() += filter.corrections().tail<9>();
     window.corrections.segment<3>(Filter::kPosition) += sample.dt * (filter.rotation * d);
@@ -110,27 +112,43 @@ double SlipWatch::variance(const Window& window, std::size_t contact, const Filt
   return sum;
 }
 
+double SlipWatch::excess(const Window& window, std::size_t contact, const Filter& filter) noexcept {
+  const double limit = kSigmas * std::sqrt(variance(window, contact, filter)) + kCreep * window.path[contact] +
+                       (contact == kVertical ? kVerticalSlack : kSlack);
+  return std::abs(residual(window, contact, filter)) / limit;
+}
+
+/// The oldest of the windows that sees any of `contacts` beyond a share of its limit: it began before the sliding did.
+const SlipWatch::Window& SlipWatch::oldest_that_sees(const std::array<bool, kContacts>& contacts, const Window& sure,
+                                                     const Filter& filter) const noexcept {
+  const Window* oldest = &sure;
+  for (const Window& window : windows_) {
+    if (!window.inertial || window.age <= oldest->age) continue;
+    for (std::size_t c = 0; c < kContacts; ++c) {
+      if (contacts[c] && excess(window, c, filter) > kShaken) oldest = &window;
+    }
+  }
+  return *oldest;
+}
+
 bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
-  std::array<double, kContacts> excess{};  // residual beyond what is expected
-  std::array<double, kContacts> sigma{};
-  std::array<double, kContacts> limit{};
+  std::array<bool, kContacts> slides{};
   bool found = false;
   for (std::size_t c = 0; c < kContacts; ++c) {
-    sigma[c] = std::sqrt(variance(window, c, filter));
-    excess[c] = residual(window, c, filter);
-    limit[c] = kSigmas * sigma[c] + kCreep * window.path[c] + (c == kVertical ? kVerticalSlack : kSlack);
-    found = found || (states_[c].believed && std::abs(excess[c]) > limit[c]);
+    slides[c] = states_[c].believed && excess(window, c, filter) > 1;
+    found = found || slides[c];
   }
   if (!found) return false;
+  const Window& whole = oldest_that_sees(slides, window, filter);
+  const double age = whole.age;
   std::array<double, 3> doubt{};
   for (std::size_t c = 0; c < kContacts; ++c) {
     // What shakes the belief in one contact shakes that in the others: two wheels on ice rarely begin together.
-    if (!states_[c].believed || !(std::abs(excess[c]) > kShaken * limit[c])) continue;
-    states_[c] = {.believed = false, .excess = excess[c] / window.age};
-    doubt[static_cast<std::size_t>(kAxis[c])] = sigma[c] / window.age;
+    if (!states_[c].believed || !(slides[c] || excess(window, c, filter) > kShaken)) continue;
+    states_[c] = {.believed = false, .excess = residual(window, c, filter) / window.age};
+    doubt[static_cast<std::size_t>(kAxis[c])] = std::sqrt(variance(whole, c, filter)) / age;
   }
-  const double age = window.age;
-  take_back(window, filter);
+  take_back(whole, {doubt[0] > 0, doubt[1] > 0, doubt[2] > 0}, filter);
   for (int axis = 0; axis < 3; ++axis) {
     const double deviation = doubt[static_cast<std::size_t>(axis)];
     if (deviation > 0) filter.doubt_velocity(axis, deviation, age);
@@ -138,18 +156,48 @@ bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
   return true;
 }
 
-/// What was believed of a sliding contact since the window began. Older windows keep the rest of their corrections;
-/// younger ones began with what was wrong, and begin anew.
-void SlipWatch::take_back(const Window& window, Filter& filter) noexcept {
-  const Filter::Column corrections = window.corrections;
+/// What was believed of a sliding contact since the window began: way and velocity along its axis, and what that made
+/// of the acceleration. Bias and tilt keep what they have learned apart from each other. Of wheels also yaw, the gyro's
+/// bias about it, and calibration. Older windows keep the rest of their corrections; younger ones began with what was
+/// wrong, and begin anew.
+void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes, Filter& filter) noexcept {
   const double age = window.age;
-  filter.inject(-corrections);
+  const Filter::Column& made = window.corrections;
+  Filter::Column back = Filter::Column::Zero();
+  Eigen::Vector3d pulled = Eigen::Vector3d::Zero();
+  back.segment<3>(Filter::kPosition) = -made.segment<3>(Filter::kPosition);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!axes[static_cast<std::size_t>(axis)]) continue;
+    back[Filter::kVelocity + axis] = -made[Filter::kVelocity + axis];
+    back[Filter::kAccelerometerBias + axis] = window.acceleration[axis];
+    pulled[axis] = window.acceleration[axis];
+  }
+  if (axes[0]) {
+    constexpr int kOfWheels[] = {Filter::kOrientation + 2, Filter::kGyroBias + 2, Filter::kRadiusRatio,
+                                 Filter::kWheelBase, Filter::kGyroScale};
+    for (const int index : kOfWheels) back[index] = -made[index];
+  }
+  filter.inject(back);
   for (Window& other : windows_) {
     if (other.age > age) {
-      other.corrections -= corrections;
+      other.corrections += back;
+      other.acceleration -= pulled;
     } else {
       open(other, filter);
     }
+  }
+}
+
+/// A long window in which everything rolled tells what the accelerometer's bias and the tilt are together.
+void SlipWatch::learn_acceleration(const Window& window, Filter& filter) noexcept {
+  const auto believed = [](const State& state) { return state.believed; };
+  if (!window.inertial || !std::ranges::all_of(states_, believed)) return;
+  const double per_way = 2 / square(window.age);
+  const double ways[3] = {(residual(window, kLeft, filter) + residual(window, kRight, filter)) / 2,
+                          residual(window, kLateral, filter), residual(window, kVertical, filter)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double start = 4 * window.velocity_variance[axis] / square(window.age);
+    filter.correct_acceleration(axis, ways[axis] * per_way, start + square(kLeastAcceleration));
   }
 }
 
@@ -199,6 +247,7 @@ void SlipWatch::judge(Filter& filter) noexcept {
   }
   for (std::size_t i = 0; i < kWindows; ++i) {  // the two of a length stay half a length apart
     Window& window = windows_[i];
+    if (i == kWindows - 2 && window.age >= kLengths[i] - 1e-9) learn_acceleration(window, filter);
     const bool twin = i % 2 == 1 && window.age == windows_[i - 1].age && window.age >= kLengths[i] / 2 - 1e-9;
     if (twin || window.age >= kLengths[i] - 1e-9) open(window, filter);
   }

@@ -29,11 +29,12 @@ inline constexpr std::size_t kContacts = 4;
 class SlipWatch {
  public:
   static constexpr double kCreep = 0.03;
-  static constexpr double kSlack = 0.0005;     ///< m
-  static constexpr double kJudgeEvery = 0.01;  ///< s
-  static constexpr std::uint64_t kAgree = 8;   ///< judgements
-  static constexpr double kAgreeSpeed = 0.01;  ///< m/s
-  static constexpr double kDeadlock = 30.0;    ///< s
+  static constexpr double kLeastAcceleration = 0.02;  ///< m/s², what no inertial sensor on a moving robot knows better
+  static constexpr double kSlack = 0.0005;            ///< m
+  static constexpr double kJudgeEvery = 0.01;         ///< s
+  static constexpr std::uint64_t kAgree = 8;          ///< judgements
+  static constexpr double kAgreeSpeed = 0.02;         ///< m/s
+  static constexpr double kDeadlock = 10.0;           ///< s
 
   struct Sample {
     double dt = 0;
@@ -63,6 +64,8 @@ class SlipWatch {
     double age = 0;
     bool inertial = true;
     ErrorStateFilter::Column corrections = ErrorStateFilter::Column::Zero();
+    Eigen::Vector3d acceleration =
+        Eigen::Vector3d::Zero();                    ///< m/s², base axes: what corrections of bias and tilt made of it
     Eigen::Vector3d way = Eigen::Vector3d::Zero();  ///< m, base axes: of the corrected velocity beyond the inertial one
     Vector4 measured{};                             ///< m
     Vector4 predicted{};                            ///< m, with the filter's velocity
@@ -81,7 +84,11 @@ class SlipWatch {
   void open(Window& window, const ErrorStateFilter& filter) const noexcept;
   void judge(ErrorStateFilter& filter) noexcept;
   bool judge(const Window& window, ErrorStateFilter& filter) noexcept;
-  void take_back(const Window& window, ErrorStateFilter& filter) noexcept;
+  const Window& oldest_that_sees(const std::array<bool, kContacts>& contacts, const Window& sure,
+                                 const ErrorStateFilter& filter) const noexcept;
+  static double excess(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
+  void take_back(const Window& window, const std::array<bool, 3>& axes, ErrorStateFilter& filter) noexcept;
+  void learn_acceleration(const Window& window, ErrorStateFilter& filter) noexcept;
   void heal(const Window& window, const ErrorStateFilter& filter) noexcept;
   static double residual(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
   static double variance(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
