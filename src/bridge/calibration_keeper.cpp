@@ -15,10 +15,11 @@ void CalibrationKeeper::look(const StateFrame& state, std::int64_t now_ns) {
 
 void CalibrationKeeper::save(const StateFrame& state) {
   const LearnedCalibration now = learned(state);
-  if (path_.empty() || (state.flags & kStateValid) == 0 || !may_be_kept(now) || !worth_saving(saved_, now)) return;
+  LearnedCalibration next = saved_;
+  if (path_.empty() || (state.flags & kStateValid) == 0 || !may_be_kept(now) || !improve(next, now)) return;
   try {
-    write_calibration(path_, now, robot_, parameters_);
-    saved_ = now;
+    write_calibration(path_, next, robot_, parameters_);
+    saved_ = next;
     failed_ = false;
   } catch (const std::exception& error) {
     if (!failed_) ROS_WARN("the calibration is not kept: %s; tried again every 30 s and at the end", error.what());

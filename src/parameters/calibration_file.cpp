@@ -190,13 +190,16 @@ bool estimated(const Vector3& deviation) {
   return std::ranges::all_of(deviation, [](double axis) { return axis > 0; });
 }
 
-/// True where a value with its deviation says more than a saved one.
-bool better(double value, double deviation, double saved, double saved_deviation) {
+bool take_over(double& kept, double& kept_deviation, double now, double deviation) {
   constexpr double kShrunk = 0.9;
   constexpr double kMoved = 0.2;
+  constexpr double kComparable = 1.5;
   if (!(deviation > 0)) return false;
-  return !(saved_deviation > 0) || deviation < kShrunk * saved_deviation ||
-         std::abs(value - saved) > kMoved * deviation;
+  const bool moved = std::abs(now - kept) > kMoved * deviation && deviation <= kComparable * kept_deviation;
+  if (kept_deviation > 0 && deviation >= kShrunk * kept_deviation && !moved) return false;
+  kept = now;
+  kept_deviation = deviation;
+  return true;
 }
 
 }  // namespace
@@ -218,14 +221,15 @@ bool may_be_kept(const LearnedCalibration& calibration) {
                    estimated(calibration.gyro_bias_deviation));
 }
 
-bool worth_saving(const LearnedCalibration& saved, const LearnedCalibration& now) {
-  const WheelCalibration& was = saved.wheels;
-  const WheelCalibration& is = now.wheels;
-  bool any = better(is.radius_ratio, is.radius_ratio_deviation, was.radius_ratio, was.radius_ratio_deviation) ||
-             better(is.wheel_base_factor, is.wheel_base_deviation, was.wheel_base_factor, was.wheel_base_deviation);
+bool improve(LearnedCalibration& kept, const LearnedCalibration& now) {
+  WheelCalibration& wheels = kept.wheels;
+  bool any = take_over(wheels.radius_ratio, wheels.radius_ratio_deviation, now.wheels.radius_ratio,
+                       now.wheels.radius_ratio_deviation);
+  any |= take_over(wheels.wheel_base_factor, wheels.wheel_base_deviation, now.wheels.wheel_base_factor,
+                   now.wheels.wheel_base_deviation);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    any = any || better(now.gyro_bias[axis], now.gyro_bias_deviation[axis], saved.gyro_bias[axis],
-                        saved.gyro_bias_deviation[axis]);
+    any |= take_over(kept.gyro_bias[axis], kept.gyro_bias_deviation[axis], now.gyro_bias[axis],
+                     now.gyro_bias_deviation[axis]);
   }
   return any;
 }

@@ -35,8 +35,10 @@ LearnedCalibration learned(const StateFrame& state);
 /// Something of it was estimated, and all of it is within the bounds that the reader holds it to.
 bool may_be_kept(const LearnedCalibration& calibration);
 
-/// `now` says more than `saved`: a deviation shrank by a tenth, or a value moved by a fifth of its deviation.
-bool worth_saving(const LearnedCalibration& saved, const LearnedCalibration& now);
+/// Takes over, quantity by quantity, what `now` says better than `kept`: with a deviation smaller by a tenth, or moved
+/// by a fifth of one that is at most half as large again. The rest stays: a new run begins with the deviations of its
+/// parameters and must not wipe out what was known. False: nothing was taken over.
+bool improve(LearnedCalibration& kept, const LearnedCalibration& now);
 
 /// Nothing when there is no file yet. Throws ParameterError, see above; also where it could never be written.
 std::optional<LearnedCalibration> read_calibration(const std::string& path, const RobotModel& robot,

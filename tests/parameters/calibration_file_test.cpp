@@ -194,20 +194,37 @@ TEST_F(CalibrationFile, LeavesTheParametersWhereNothingWasLearned) {
   EXPECT_EQ(after.gyro_bias_initial, parameters_.gyro_bias_initial);
 }
 
-TEST_F(CalibrationFile, IsWorthWritingWhenItSaysMore) {
-  EXPECT_TRUE(worth_saving({}, learned_));
-  EXPECT_FALSE(worth_saving(learned_, learned_));
+TEST_F(CalibrationFile, TakesOverWhatSaysMore) {
+  LearnedCalibration kept;
+  EXPECT_TRUE(improve(kept, learned_));
+  EXPECT_EQ(kept.wheels.radius_ratio, learned_.wheels.radius_ratio);
+  EXPECT_EQ(kept.gyro_bias, learned_.gyro_bias);
+  EXPECT_FALSE(improve(kept, learned_));
   LearnedCalibration now = learned_;
   now.wheels.radius_ratio += 0.1 * now.wheels.radius_ratio_deviation;
-  EXPECT_FALSE(worth_saving(learned_, now));
+  EXPECT_FALSE(improve(kept, now));
   now.wheels.radius_ratio += 0.2 * now.wheels.radius_ratio_deviation;
-  EXPECT_TRUE(worth_saving(learned_, now));
-  now = learned_;
+  EXPECT_TRUE(improve(kept, now));
+  EXPECT_EQ(kept.wheels.radius_ratio, now.wheels.radius_ratio);
   now.gyro_bias_deviation[2] *= 0.8;
-  EXPECT_TRUE(worth_saving(learned_, now));
-  now = learned_;
-  now.wheels.wheel_base_deviation *= 1.5;
-  EXPECT_FALSE(worth_saving(learned_, now));
+  EXPECT_TRUE(improve(kept, now));
+  EXPECT_EQ(kept.gyro_bias_deviation[2], now.gyro_bias_deviation[2]);
+}
+
+// A new run begins with what the parameters say, of which the ratio alone has been learned again.
+TEST_F(CalibrationFile, KeepsWhatANewRunHasNotLearnedAgain) {
+  LearnedCalibration kept = learned_;
+  LearnedCalibration now{.wheels = {.radius_ratio = 1.0063,
+                                    .wheel_base_factor = 1,
+                                    .radius_ratio_deviation = 0.0001,
+                                    .wheel_base_deviation = 0.03},
+                         .gyro_bias = {},
+                         .gyro_bias_deviation = {0.05, 0.05, 0.05}};
+  EXPECT_TRUE(improve(kept, now));
+  EXPECT_EQ(kept.wheels.radius_ratio, 1.0063);
+  EXPECT_EQ(kept.wheels.wheel_base_factor, 0.987);
+  EXPECT_EQ(kept.wheels.wheel_base_deviation, 0.001);
+  EXPECT_EQ(kept.gyro_bias, learned_.gyro_bias);
 }
 
 TEST_F(CalibrationFile, KeepsNoNonsense) {
