@@ -194,6 +194,10 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   }
   p(kTravel, kTravel) += square(noise_.wheel_slip) * std::abs(motion.left_speed) * dt;
   p(kTravel + 1, kTravel + 1) += square(noise_.wheel_slip) * std::abs(motion.right_speed) * dt;
+  // No measurement shrinks an asymmetric part: of rounding alone it would outgrow the covariance within an hour's drive.
+  for (int i = 1; i < kSize; ++i) {
+    for (int j = 0; j < i; ++j) p(i, j) = p(j, i);
+  }
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct(const Column& ph, double innovation, double variance,
