@@ -151,8 +151,12 @@ def _circumstances(facts: Facts) -> Rows:
     faults = facts.value(PLANT, "injected")
     if faults not in {"", "none"}:
         yield "injected", faults, "33"
-    if "slip" in facts.value(ESTIMATOR, "flags").split():
-        yield "slip", "wheels and inertial sensors disagree", "33"
+    slip = facts.reasons(ESTIMATOR, "slip").values()
+    if slip or "slip" in facts.value(ESTIMATOR, "flags").split():
+        yield "slip", "; ".join(map(bare, slip)) or "wheels and inertial sensors disagree", "33"
+    lost = facts.reasons(ESTIMATOR, "estimate").values()
+    if lost:
+        yield "odometry", "; ".join(map(bare, lost)), "33"
     if not facts.master_answers and facts.heard() is not None:
         yield (
             "master",

@@ -89,6 +89,8 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
   report.value("skipped", state.skipped);
   report.value("slip", names_of(kSlipReasonNames, state.slip));
   report.value("slip_lately", names_of(kSlipReasonNames, slip_lately));
+  report.reasons("slip", kSlipReasonNames, slip_lately | state.slip);
+  report.reasons("estimate", kStateFlagNames, state.flags & kLost);
   for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
     const std::string sensor(kStateSensorNames[i]);
     report.value("confidence_" + sensor, state.confidence[i]);

@@ -79,6 +79,7 @@ TEST_F(StateReport, WarnsOfASensorThatIsLost) {
     state_.flags = kStateValid | flag;
     EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
     EXPECT_THAT(report().message().message, HasSubstr(sentences_of(kStateFlagNames, flag)));
+    EXPECT_EQ(value_of(report(), "estimate: " + names_of(kStateFlagNames, flag)), sentences_of(kStateFlagNames, flag));
   }
 }
 
@@ -93,6 +94,7 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
   EXPECT_THAT(report().message().message, HasSubstr("the left wheels do not roll; a wheel turns faster than the ground "
                                                     "passes (accelerate less)"));
   EXPECT_EQ(value_of(report(), "slip"), "left spinning");
+  EXPECT_EQ(value_of(report(), "slip: spinning"), "a wheel turns faster than the ground passes (accelerate less)");
   state_.slip = 0;
   EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
   EXPECT_THAT(report(kSlipSideways).message().message, HasSubstr("the robot slides sideways"));

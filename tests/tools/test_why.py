@@ -312,6 +312,21 @@ def test_injected_faults_and_slip_are_shown(driving):
     assert "wheels and inertial sensors disagree" in text(facts)
 
 
+def test_slip_is_shown_with_the_wheel_and_lost_sensors_by_what_is_left(driving):
+    facts = saying(
+        driving,
+        ESTIMATOR,
+        flags="valid slip no_gyro",
+        slip__left="the left wheels do not roll",
+        slip__spinning="a wheel turns faster than the ground passes (accelerate less)",
+        estimate__no_gyro="yaw comes from the wheels alone (look at the IMU)",
+    )
+    shown = text(facts)
+    assert "the left wheels do not roll; a wheel turns faster than the ground passes" in " ".join(shown.split())
+    assert "yaw comes from the wheels alone" in shown
+    assert "disagree" not in shown
+
+
 @pytest.mark.parametrize("width", [40, 80, 132])
 def test_no_line_is_wider_than_the_screen(driving, width):
     facts = stopped(replace(driving, senders=("/send_cmd", "/teleop")), E_STOP, FAST)
