@@ -518,11 +518,19 @@ void Estimator::place(const Vector3& pose) noexcept {
   auto& p = filter_.covariance;
   p.middleCols<3>(Filter::kOrientation) = (p.middleCols<3>(Filter::kOrientation) * turn.transpose()).eval();
   p.middleRows<3>(Filter::kOrientation) = (turn * p.middleRows<3>(Filter::kOrientation)).eval();
+  // base_link and yaw are exact; what the tilt is in doubt by then moves θ_z and, on its lever, the IMU.
+  const Vector3d h = filter_.rotation.col(0);
+  const double level = std::max(h.x() * h.x() + h.y() * h.y(), 1e-6);
+  const double a = h.z() * h.x() / level;
+  const double b = h.z() * h.y() / level;
   constexpr int kPlaced[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosition + 2, Filter::kOrientation + 2};
-  for (const int index : kPlaced) {
-    p.col(index).setZero();
-    p.row(index).setZero();
-  }
+  const double by_tilt[][2] = {{-a * lever.y(), lever.z() - b * lever.y()},
+                               {a * lever.x() - lever.z(), b * lever.x()},
+                               {lever.y(), -lever.x()},
+                               {a, b}};
+  constexpr int x = Filter::kOrientation;
+  for (int i = 0; i < 4; ++i) p.col(kPlaced[i]) = by_tilt[i][0] * p.col(x) + by_tilt[i][1] * p.col(x + 1);
+  for (int i = 0; i < 4; ++i) p.row(kPlaced[i]) = by_tilt[i][0] * p.row(x) + by_tilt[i][1] * p.row(x + 1);
 }
 
 void Estimator::fill(StateFrame& out) const noexcept {
