@@ -25,8 +25,6 @@ from robot_control.calibration_law import (
 )
 from robot_control.velocity_sender import number_of_sends, positive
 
-MARGIN = 0.5
-"""m beside the way: unequal wheels bend 4 m by 0.3 m at 2 %, and the robot has a width"""
 RATIO = (0.95, 1.05)
 BASE = (0.7, 1.3)
 SCALE = (0.8, 1.2)
@@ -111,17 +109,24 @@ def parse_options(arguments: Sequence[str]) -> Options:
     return Options(**given)
 
 
+def margin(length: float) -> float:
+    """m beside a way of `length` m: half a metre of robot, and what the wheels get wrong; FAR at a corner."""
+    return 0.5 + length / 8
+
+
 def space(options: Options) -> str:
     """What must be free, in words."""
     if options.manual:
         return "Somebody else drives; nothing is sent."
     needs = []
     if options.distance > 0:
-        needs.append(f"{options.distance + MARGIN:g} m ahead and {MARGIN:g} m to either side")
+        beside = margin(options.distance)
+        needs.append(f"{options.distance + beside:g} m ahead and {beside:g} m to either side")
     if options.side > 0:
+        beside = margin(options.side)
         needs.append(
-            f"a square of {options.side + 2 * MARGIN:g} m to the right of the start and one to the left: from "
-            f"{MARGIN:g} m behind it to {options.side + MARGIN:g} m ahead, {options.side + MARGIN:g} m to either side"
+            f"from {beside:g} m behind it to {options.side + beside:g} m ahead, and {options.side + beside:g} m to "
+            "either side, for squares to the right and to the left"
         )
     return "It drives by itself and sees nothing. It needs " + ", then ".join(needs) + "."
 

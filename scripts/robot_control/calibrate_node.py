@@ -15,11 +15,11 @@ from robot_control import ParameterError, RobotError
 from robot_control._robot_control import describe as describe_robot
 from robot_control.beside_a_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.calibrate import (
-    MARGIN,
     Options,
     evaluate,
     implausible_distance,
     implausible_return,
+    margin,
     parse_options,
     place,
     space,
@@ -48,12 +48,14 @@ SILENCE = 1.0
 """s without wheel_odom, which comes 50 times a second"""
 JUMP = 0.3
 """m between two messages of wheel_odom, at most one of a reset or another run: 15 m/s at its 50 Hz"""
+LEAST_WAY = 0.3
+"""m; half of the shortest drive, beyond what a robot creeps"""
 STANDSTILL = 0.5
 """s of standing before a pose is read: the body has stopped rocking"""
 ESTIMATOR = "state_estimator"
 MARKS = (
     "Mark on the floor where the middle between the wheels stands, and which way the robot points (a string along the "
-    "axle, and one ahead)."
+    "axle, and one ahead). Each run begins where the robot stands: set it back whenever the way is no longer free."
 )
 REFUSALS = (RefusedError, NotCalibratedError, NoAnswerError, ParameterError, RobotError, OSError, ValueError)
 
@@ -71,7 +73,8 @@ class Drive:
     def astray(self, start: Pose, here: Pose) -> str:
         """Why the robot may not be there; empty: it may."""
         ahead, left = here.seen_from(start)
-        if -MARGIN <= ahead <= self.ahead + MARGIN and -self.right - MARGIN <= left <= self.left + MARGIN:
+        beside = margin(self.ahead)
+        if -beside <= ahead <= self.ahead + beside and -self.right - beside <= left <= self.left + beside:
             return ""
         return f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, off its way"
 
@@ -156,7 +159,7 @@ class Wizard:
         self._rest()
         path = self.robot.path()
         hops = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
-        if hops.size == 0 or hops.sum() < MARGIN:
+        if hops.sum() < LEAST_WAY:
             raise RefusedError(f"{title}: the wheels have not turned")
         if hops.max() > JUMP:
             raise RefusedError(

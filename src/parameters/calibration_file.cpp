@@ -87,7 +87,9 @@ Content content_of(const ParameterTree& tree, const std::string& path, ProblemLi
   for (const BlockEntry& block : tree.blocks) {
     if (block.name != kBlock) problems.add({printable(block.name), "", "unknown block", block.origin, kRemedy});
   }
-  for (const auto& [name, entry] : tree.entries) {
+  for (const auto& found : tree.entries) {
+    const std::string& name = found.first;
+    const Entry& entry = found.second;
     const bool known = std::ranges::any_of(
         kRows, [&](const Row& row) { return name == std::string(kBlock) + "." + std::string(row.key.name); });
     if (!known && name.starts_with(std::string(kBlock) + ".")) {

@@ -42,7 +42,7 @@ Eigen::Vector3d rpy_of(const Eigen::Matrix3d& r) {
 
 Eigen::Vector3d finite(const RigidBodies& robot, const std::string& element, const std::string& unit,
                        const Vector3& given) {
-  const Eigen::Vector3d vector(given[0], given[1], given[2]);
+  Eigen::Vector3d vector(given[0], given[1], given[2]);
   if (!vector.allFinite()) {
     refuse(robot.source, element, words(vector) + " " + unit, "Give three finite numbers, or none");
   }

@@ -72,7 +72,7 @@ class CalibrateTest(RobotTestCase):
 
     def test_measures_the_hidden_wheels_and_writes_what_the_nodes_take(self) -> None:
         words = self.measured()
-        for part in ("It needs 1.5 m ahead", "square 1 of 1, clockwise", "largest mean return error", "wrote"):
+        for part in ("It needs 1.625 m ahead", "square 1 of 1, clockwise", "largest mean return error", "wrote"):
             self.assertIn(part, words)
         overlay = yaml.safe_load(self.out.read_text())
         # The fit itself is judged in virtual time, on 4 m.

@@ -115,8 +115,8 @@ def test_reads_a_place_and_refuses_what_is_none():
 
 
 def test_says_how_much_space_it_needs():
-    assert "3.5 m ahead" in space(parse_options([]))
-    assert "a square of 5 m" in space(parse_options([]))
+    assert "3.875 m ahead" in space(parse_options([]))
+    assert "from 1 m behind it to 5 m ahead, and 5 m to either side" in space(parse_options([]))
     assert "square" not in space(parse_options(["--side=0"]))
     assert "nothing is sent" in space(parse_options(["--manual"]))
 
