@@ -2,28 +2,45 @@
 
 #include <ros/console.h>
 
+#include <chrono>
 #include <exception>
 
 namespace robot_control {
 
+bool CalibrationKeeper::busy() const {
+  return writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
 void CalibrationKeeper::look(const StateFrame& state, std::int64_t now_ns) {
   if (next_ns_ == 0) next_ns_ = now_ns + kPeriod;
-  if (now_ns < next_ns_) return;
+  if (now_ns < next_ns_ || busy()) return;
   next_ns_ = now_ns + kPeriod;
+  wait();
   save(state);
+}
+
+void CalibrationKeeper::finish(const StateFrame& state) {
+  wait();
+  save(state);
+  wait();
 }
 
 void CalibrationKeeper::save(const StateFrame& state) {
   const LearnedCalibration now = learned(state);
-  LearnedCalibration next = saved_;
-  if (path_.empty() || (state.flags & kStateValid) == 0 || !may_be_kept(now) || !improve(next, now)) return;
+  if (path_.empty() || (state.flags & kStateValid) == 0 || !may_be_kept(now) || !improve(saved_, now)) return;
+  writing_ =
+      std::async(std::launch::async, [this, next = saved_] { write_calibration(path_, next, robot_, parameters_); });
+}
+
+void CalibrationKeeper::wait() {
+  if (!writing_.valid()) return;
   try {
-    write_calibration(path_, next, robot_, parameters_);
-    saved_ = next;
+    writing_.get();
     failed_ = false;
   } catch (const std::exception& error) {
     if (!failed_) ROS_WARN("the calibration is not kept: %s; tried again every 30 s and at the end", error.what());
     failed_ = true;
+    saved_ = {};
   }
 }
 

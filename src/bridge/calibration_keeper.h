@@ -1,8 +1,9 @@
 #pragma once
-/// Keeps what state_estimator learns in its file: every 30 s when there is more to say, and at the end. Ordinary
-/// thread.
+/// Keeps what state_estimator learns in its file: every 30 s when there is more to say, and at the end. Called from the
+/// ordinary thread, which also publishes: a disk may take a second, so a thread of its own waits for it.
 
 #include <cstdint>
+#include <future>
 #include <string>
 
 #include "parameters/calibration_file.h"
@@ -20,21 +21,26 @@ class CalibrationKeeper {
         robot_(robot),
         parameters_(parameters.estimator) {}
 
-  /// Any time; writes when it is due.
+  /// Any time; begins to write when it is due.
   void look(const StateFrame& state, std::int64_t now_ns);
 
-  /// At the end.
-  void finish(const StateFrame& state) { save(state); }
+  /// Until what was begun is written, or was not: that is told once.
+  void wait();
+
+  /// At the end: writes and waits.
+  void finish(const StateFrame& state);
 
  private:
   void save(const StateFrame& state);
+  bool busy() const;
 
   std::string path_;
   RobotModel robot_;
   EstimatorParameters parameters_;
-  LearnedCalibration saved_;
+  LearnedCalibration saved_;  ///< or about to be
   std::int64_t next_ns_ = 0;
   bool failed_ = false;
+  std::future<void> writing_;
 };
 
 /// `parameters` with what its calibration_file holds, if there is one. Throws ParameterError.

@@ -213,8 +213,9 @@ LearnedCalibration learned(const StateFrame& state) {
 bool may_be_kept(const LearnedCalibration& calibration) {
   const WheelCalibration& wheels = calibration.wheels;
   const auto within = [](double value, double min, double max) { return value >= min && value <= max; };
-  const bool sound = within(wheels.radius_ratio, kRadiusRatioMin, kRadiusRatioMax) &&
-                     within(wheels.wheel_base_factor, kWheelBaseFactorMin, kWheelBaseFactorMax) &&
+  constexpr double kStopped = 1.0e-3;
+  const bool sound = within(wheels.radius_ratio, kRadiusRatioMin + kStopped, kRadiusRatioMax - kStopped) &&
+                     within(wheels.wheel_base_factor, kWheelBaseFactorMin + kStopped, kWheelBaseFactorMax - kStopped) &&
                      within(wheels.radius_ratio_deviation, 0, 1) && within(wheels.wheel_base_deviation, 0, 1) &&
                      std::ranges::all_of(calibration.gyro_bias,
                                          [&](double bias) { return within(bias, -kGyroBiasMax, kGyroBiasMax); }) &&

@@ -27,8 +27,12 @@ TEST_F(TrueRobotTest, DoesNotHeedWhatTheUserBelieves) {
   parameters.wheel_radius = 0.2;
   parameters.wheel_base = 0.9;
   parameters.mass = 40;
+  parameters.imu_position = Vector3{1, 2, 3};
+  parameters.imu_orientation = Vector3{0, 0, 1};
   believed_ = read_robot(diffbot_urdf(), parameters);
   const RobotModel robot = real();
+  EXPECT_EQ(robot.imu_in_base.position, (Vector3{0.05, 0.02, 0.06}));
+  EXPECT_EQ(robot.imu_in_base.orientation, (Quaternion{0, 0, 0, 1}));
   EXPECT_EQ(robot.wheels[0].radius, 0.1);
   EXPECT_EQ(robot.wheel_base, 0.5);
   EXPECT_NEAR(robot.mass, 12, 1e-12);

@@ -236,7 +236,8 @@ TEST_F(CalibrationFile, KeepsNoNonsense) {
     change(changed);
     return may_be_kept(changed);
   };
-  EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.wheels.radius_ratio = 1.051; }));
+  EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.wheels.radius_ratio = 1.05; }));
+  EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.wheels.wheel_base_factor = 0.7; }));
   EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.wheels.wheel_base_factor = kNan; }));
   EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.wheels.radius_ratio_deviation = kNan; }));
   EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.gyro_bias[1] = kNan; }));
