@@ -423,10 +423,14 @@ void Estimator::move(double dt) noexcept {
 
   constexpr double kSilent = std::numeric_limits<double>::quiet_NaN();
   if (parameters_.slip_detection) {
+    const auto heard = [&](int side, double travel) {  // a reading that spans more than a window contradicts none
+      const bool slow = sides_[static_cast<std::size_t>(side)].encoder.gap() > ImuSamples::kSlow;
+      return slow || lost(side) ? kSilent : travel;
+    };
     slip_.step({.dt = dt,
-                .left = lost(kLeft) ? kSilent : motion.left_travel,
-                .right = lost(kRight) ? kSilent : motion.right_travel,
-                .inertial = motion.gyro.has_value() && motion.accelerometer.has_value() && !imu_.slow()},
+                .left = heard(kLeft, motion.left_travel),
+                .right = heard(kRight, motion.right_travel),
+                .inertial = motion.gyro.has_value() && motion.accelerometer.has_value()},
                filter_);
   }
 

@@ -1,6 +1,7 @@
 #include "estimation/imu_samples.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace robot_control {
 
@@ -17,8 +18,8 @@ void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sa
     channel.catches_up = continued && trapezoid && channel.age > dt;
     // Also from a sample that was lost in between: else who comes slower than the short hold would be lost for ever.
     if (channel.heard && channel.age > 0) {
-      channel.gap = channel.age;
-      channel.hold = std::clamp(3 * channel.gap, kShortHold, kLongHold);
+      channel.gap = std::min(channel.age, std::exchange(channel.last_gap, channel.age));
+      channel.hold = std::clamp(3 * channel.age, kShortHold, kLongHold);
     }
     channel.last = *sample;
     channel.heard = channel.known = true;

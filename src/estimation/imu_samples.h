@@ -30,15 +30,16 @@ class ImuSamples {
 
   /// Mean over the last step; empty: lost.
   const std::optional<Eigen::Vector3d>& gyro() const noexcept { return gyro_.mean; }
-  const std::optional<Eigen::Vector3d>& accelerometer() const noexcept { return accelerometer_.mean; }
+  /// Empty, too, where its samples keep coming more than kSlow apart: what happened between them is not known.
+  std::optional<Eigen::Vector3d> accelerometer() const noexcept {
+    return accelerometer_.gap > kSlow ? std::nullopt : accelerometer_.mean;
+  }
   bool new_gyro() const noexcept { return gyro_.fresh; }                    ///< the last step brought a sample
   bool new_accelerometer() const noexcept { return accelerometer_.fresh; }  ///< likewise
   /// The gyro's mean also makes good for steps before the last one: as a rate it means nothing, `last_gyro` does.
   bool gyro_catches_up() const noexcept { return gyro_.catches_up; }
   const Eigen::Vector3d& last_gyro() const noexcept { return gyro_.last; }
   const Eigen::Vector3d& last_accelerometer() const noexcept { return accelerometer_.last; }
-  /// Samples of the accelerometer come more than kSlow apart: what happens between them is not known.
-  bool slow() const noexcept { return accelerometer_.gap > kSlow; }
   bool refused() const noexcept { return refused_; }  ///< the last step brought a sample that is none
 
  private:
@@ -49,8 +50,9 @@ class ImuSamples {
     bool known = false;  ///< and not lost
     bool fresh = false;
     bool catches_up = false;
-    double age = 0;  ///< s since the last sample
-    double gap = 0;  ///< s between the last two
+    double age = 0;       ///< s since the last sample
+    double last_gap = 0;  ///< s between the last two
+    double gap = 0;       ///< s, the shorter of the last two gaps: one lost sample makes no slow sensor
     double hold = kShortHold;
   };
 

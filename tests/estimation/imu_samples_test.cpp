@@ -112,6 +112,42 @@ TEST_F(ImuSamplesTest, ASampleHoldsForTheLongHoldAtMost) {
   EXPECT_FALSE(imu_.gyro().has_value());
 }
 
+// The first gap ends beyond the short hold: it must be learned all the same.
+TEST_F(ImuSamplesTest, ASensorSlowerThanTheShortHoldIsHeldFromItsSecondSampleOn) {
+  constexpr int kRows = 5;
+  constexpr double kGap = 2 * ImuSamples::kShortHold;
+  for (int sample = 0; sample < 4; ++sample) {
+    for (int row = 1; row < kRows; ++row) {
+      none(kGap / kRows);
+      EXPECT_TRUE(sample == 0 || imu_.gyro().has_value()) << "sample " << sample << ", row " << row;
+    }
+    both(0.1, 1.0, kGap / kRows);
+  }
+}
+
+TEST_F(ImuSamplesTest, SaysWhenTheMeanIsNoRateBecauseItCatchesUp) {
+  gyro(0.2);
+  EXPECT_FALSE(imu_.gyro_catches_up());
+  none(0.01);
+  EXPECT_FALSE(imu_.gyro_catches_up());
+  gyro(0.3, 1e-5);
+  EXPECT_GT(rate(), 10);  // 0.05 rad/s over 10 ms, made good within 10 µs
+  EXPECT_TRUE(imu_.gyro_catches_up());
+  EXPECT_EQ(imu_.last_gyro().z(), 0.3);
+  gyro(0.3);
+  EXPECT_FALSE(imu_.gyro_catches_up());
+}
+
+TEST_F(ImuSamplesTest, AnAccelerometerWithLongGapsSaysNothingOfTheMotionBetween) {
+  accelerometer(1.0, 1.01 * ImuSamples::kSlow);
+  accelerometer(1.0, 1.01 * ImuSamples::kSlow);
+  EXPECT_FALSE(imu_.accelerometer().has_value());
+  EXPECT_TRUE(imu_.new_accelerometer());
+  EXPECT_EQ(imu_.last_accelerometer().z(), 1.0);
+  accelerometer(1.0);
+  EXPECT_TRUE(imu_.accelerometer().has_value());
+}
+
 TEST_F(ImuSamplesTest, TheHoldsOfBothSensorsAreTheirOwn) {
   for (int i = 0; i < 30; ++i) gyro(0.1);  // 30 ms
   EXPECT_TRUE(imu_.gyro().has_value());
@@ -123,7 +159,36 @@ TEST_F(ImuSamplesTest, ALostSensorComesBackWithItsNextSample) {
   ASSERT_FALSE(imu_.gyro().has_value());
   both(0.7, 2.0);
   EXPECT_EQ(rate(), 0.7);
-  EXPECT_EQ(imu_.accelerometer()->z(), 2.0);
+  both(0.7, 2.0);
+  EXPECT_EQ(imu_.accelerometer()->z(), 2.0) << "with two: one after a long gap may be a slow sensor's";
+}
+
+// What happens between its samples is not known.
+TEST_F(ImuSamplesTest, ASlowAccelerometerIsNone) {
+  for (int i = 0; i < 10; ++i) accelerometer(1.0, 0.9 * ImuSamples::kSlow);
+  EXPECT_TRUE(imu_.accelerometer().has_value());
+  for (int i = 0; i < 10; ++i) accelerometer(1.0, 1.1 * ImuSamples::kSlow);
+  EXPECT_FALSE(imu_.accelerometer().has_value());
+  EXPECT_TRUE(imu_.new_accelerometer()) << "at rest it is still good for a mean";
+}
+
+TEST_F(ImuSamplesTest, SaysWhenTheMeanMakesGoodForEarlierSteps) {
+  gyro(0.2);
+  EXPECT_FALSE(imu_.gyro_catches_up());
+  none();
+  EXPECT_FALSE(imu_.gyro_catches_up());
+  gyro(0.3);
+  EXPECT_TRUE(imu_.gyro_catches_up());
+  gyro(0.3);
+  EXPECT_FALSE(imu_.gyro_catches_up());
+}
+
+// Else whoever comes slower than the short hold would be lost for ever.
+TEST_F(ImuSamplesTest, AGyroSlowerThanTheShortHoldIsFoundOut) {
+  const double gap = 1.5 * ImuSamples::kShortHold;
+  for (int i = 0; i < 4; ++i) gyro(0.2, gap);
+  none(gap);
+  EXPECT_TRUE(imu_.gyro().has_value());
 }
 
 TEST_F(ImuSamplesTest, WhatIsNotFiniteIsNoSample) {
