@@ -35,9 +35,10 @@ double square(double value) noexcept {
   return value * value;
 }
 
-constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
-constexpr double kMaxBase = 0.3;    // of a skid-steer on another floor
-constexpr double kGate = 16.0;      // 4 σ of one degree of freedom: one good sample in 16 000 is refused
+constexpr double kMaxRatio = 0.05;      // wheels of one type differ by less than a tenth of it
+constexpr double kMaxBase = 0.3;        // of a skid-steer on another floor
+constexpr double kTravelSlack = 0.002;  // m: a reading that is less wrong is no outlier; sliding, the slip watch sees
+constexpr double kGate = 16.0;          // 4 σ of one degree of freedom: one good sample in 16 000 is refused
 
 }  // namespace
 
@@ -80,15 +81,17 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
     const double turn = (1 + radius_ratio / 2) * motion.right_travel - (1 - radius_ratio / 2) * motion.left_travel;
     omega.z() = turn / (geometry_.wheel_base * (1 + wheel_base)) / dt;
   }
-  const Matrix3d middle = rotation * exponential(omega * (dt / 2));
+  const Matrix3d half = exponential(omega * (dt / 2));
+  const Matrix3d turn = half * half;
+  const Matrix3d middle = rotation * half;
   const Vector3d gravity{0, 0, -kGravity};
   Vector3d u = velocity;
   if (motion.accelerometer) {
     const Vector3d steady = *motion.accelerometer - accelerometer_bias + middle.transpose() * gravity;
-    u += dt / 2 * (steady - omega.cross(velocity));
-    velocity += dt * (steady - omega.cross(u));
+    u = half.transpose() * velocity + dt / 2 * steady;
+    velocity = turn.transpose() * velocity + dt * (half.transpose() * steady);
   }
-  transport(motion, middle, u, omega);
+  transport(motion, middle, turn, u, omega);
 
   position += dt * (middle * u);
   const double scale[2] = {1 / (1 - radius_ratio / 2), 1 / (1 + radius_ratio / 2)};
@@ -96,14 +99,15 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
     const double contact = u.x() + omega.y() * geometry_.height - omega.z() * lever(side);
     travel[side] += dt * scale[side] * contact;
   }
-  rotation = rotation * exponential(omega * dt);
+  rotation = rotation * turn;
   orthonormalise(rotation);
   rate = omega;
   corrections_.setZero();
 }
 
-/// P ← F P Fᵀ + Q. F = I + dt·A is sparse: F P Fᵀ is two passes of column operations with a transposition between.
-void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, const Vector3d& u,
+/// P ← F P Fᵀ + Q. F = I + dt·A is sparse: F P Fᵀ is two passes of column operations with a transposition between. The
+/// velocity is turned exactly: I − dt [ω]× would let it grow without bound where a gyro reads nonsense.
+void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, const Matrix3d& turn, const Vector3d& u,
                                  const Vector3d& omega) noexcept {
   const double dt = motion.dt;
   const bool gyro = motion.gyro.has_value();
@@ -114,6 +118,8 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   const double scale[2] = {dt / (1 - radius_ratio / 2), dt / (1 + radius_ratio / 2)};
   const double height = geometry_.height;
   const double base = geometry_.wheel_base * (1 + wheel_base);
+  const double wheel_rate =
+      ((1 + radius_ratio / 2) * motion.right_speed - (1 - radius_ratio / 2) * motion.left_speed) / base;
   double contact[2];
   for (const int side : {0, 1}) contact[side] = u.x() + omega.y() * height - omega.z() * lever(side);
 
@@ -131,17 +137,17 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
       column += scale[side] * p.col(kVelocity) + scale[side] * sign * contact[side] * p.col(kRadiusRatio);
       if (!gyro) continue;
       column += scale[side] * (lever(side) * p.col(kGyroBias + 2) - height * p.col(kGyroBias + 1));
-      column -= scale[side] * motion.wheel_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
-      column -= scale[side] * motion.wheel_rate * lever(side) * p.col(kGyroScale);
+      column -= scale[side] * wheel_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
+      column -= scale[side] * wheel_rate * lever(side) * p.col(kGyroScale);
     }
     if (motion.accelerometer) {  // velocity
       const Column x = p.col(kVelocity);
       const Column y = p.col(kVelocity + 1);
       const Column z = p.col(kVelocity + 2);
       const auto g = [&](int i) { return p.col(kGyroBias + i); };
-      p.col(kVelocity) += dt * (omega.z() * y - omega.y() * z) - dt * p.col(kAccelerometerBias);
-      p.col(kVelocity + 1) += dt * (omega.x() * z - omega.z() * x) - dt * p.col(kAccelerometerBias + 1);
-      p.col(kVelocity + 2) += dt * (omega.y() * x - omega.x() * y) - dt * p.col(kAccelerometerBias + 2);
+      p.col(kVelocity) = turn(0, 0) * x + turn(1, 0) * y + turn(2, 0) * z - dt * p.col(kAccelerometerBias);
+      p.col(kVelocity + 1) = turn(0, 1) * x + turn(1, 1) * y + turn(2, 1) * z - dt * p.col(kAccelerometerBias + 1);
+      p.col(kVelocity + 2) = turn(0, 2) * x + turn(1, 2) * y + turn(2, 2) * z - dt * p.col(kAccelerometerBias + 2);
       for (const int i : {0, 1, 2}) {
         p.col(kVelocity + i) += by_tilt(i, 0) * p.col(kOrientation) + by_tilt(i, 1) * p.col(kOrientation + 1);
       }
@@ -192,9 +198,14 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
     p(kGyroBias + i, kGyroBias + i) += square(noise_.gyro_bias_walk) * dt;
     p(kAccelerometerBias + i, kAccelerometerBias + i) += square(noise_.accelerometer_bias_walk) * dt;
   }
+  const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) / 2 * dt;
   p(kTravel, kTravel) += square(noise_.wheel_slip) * std::abs(motion.left_speed) * dt;
   p(kTravel + 1, kTravel + 1) += square(noise_.wheel_slip) * std::abs(motion.right_speed) * dt;
-  // No measurement shrinks an asymmetric part: of rounding alone it would outgrow the covariance within an hour's drive.
+  p.block<2, 2>(kTravel, kTravel).array() += square(noise_.common_slip) * path;
+  if (p(kRadiusRatio, kRadiusRatio) > 0) p(kRadiusRatio, kRadiusRatio) += square(noise_.radius_ratio_walk) * path;
+  if (p(kWheelBase, kWheelBase) > 0) p(kWheelBase, kWheelBase) += square(noise_.wheel_base_walk) * path;
+  // No measurement shrinks an asymmetric part: of rounding alone it would outgrow the covariance within an hour's
+  // drive.
   for (int i = 1; i < kSize; ++i) {
     for (int j = 0; j < i; ++j) p(i, j) = p(j, i);
   }
@@ -215,12 +226,12 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct(const Column& ph, double 
 
 /// Tilt and accelerometer bias are considered, not corrected (S. F. Schmidt, 1966): their part of the gain is zero,
 /// which leaves the block of their own covariance as it was.
-ErrorStateFilter::Innovation ErrorStateFilter::correct_rolling(const Column& ph, double innovation,
-                                                               double variance) noexcept {
+ErrorStateFilter::Innovation ErrorStateFilter::correct_rolling(const Column& ph, double innovation, double variance,
+                                                               double slack) noexcept {
   const auto tilt = covariance.block<2, 2>(kOrientation, kOrientation).eval();
   const auto bias = covariance.block<3, 3>(kAccelerometerBias, kAccelerometerBias).eval();
   const auto both = covariance.block<2, 3>(kOrientation, kAccelerometerBias).eval();
-  const Innovation result{innovation * innovation / variance, innovation * innovation / variance <= kGate};
+  const Innovation result{innovation * innovation / variance, innovation * innovation <= kGate * (variance + slack)};
   if (!result.used) return result;
   const Column root = ph / std::sqrt(variance);
   covariance.noalias() -= root * root.transpose();
@@ -259,7 +270,8 @@ void ErrorStateFilter::doubt_velocity(int axis, double deviation, double time) n
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_travel(int side, double measured) noexcept {
   const Column ph = covariance.col(kTravel + side);
-  return correct_rolling(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder));
+  return correct_rolling(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder),
+                         square(kTravelSlack));
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexcept {
@@ -270,7 +282,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexce
   const double own = ph[kVelocity + 1] - x * ph[kGyroBias + 2] + z * ph[kGyroBias];
   const double noise = square(noise_.lateral) / dt + square(noise_.gyro) / dt * (x * x + z * z) +
                        square(noise_.lateral_per_force * velocity.x() * rate.z()) / dt;
-  return correct_rolling(ph, -speed, own + noise);
+  return correct_rolling(ph, -speed, own + noise, 0);
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_vertical(double dt) noexcept {
@@ -280,12 +292,18 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_vertical(double dt) noexc
   const Column ph = covariance.col(kVelocity + 2) - y * covariance.col(kGyroBias) + x * covariance.col(kGyroBias + 1);
   const double own = ph[kVelocity + 2] - y * ph[kGyroBias] + x * ph[kGyroBias + 1];
   const double noise = square(noise_.vertical) / dt + square(noise_.gyro) / dt * (x * x + y * y);
-  return correct_rolling(ph, -speed, own + noise);
+  return correct_rolling(ph, -speed, own + noise, 0);
 }
 
-ErrorStateFilter::Innovation ErrorStateFilter::correct_acceleration(int axis, double excess, double variance) noexcept {
-  const double bx = -kGravity * rotation(1, axis);
-  const double by = kGravity * rotation(0, axis);
+ErrorStateFilter::Innovation ErrorStateFilter::correct_acceleration(int axis, double excess, double variance,
+                                                                    double turned) noexcept {
+  // One row of the rotation's transpose, as it was before the turn about the base's z axis.
+  const double c = std::cos(turned);
+  const double s = std::sin(turned);
+  const Vector3d before[3] = {c * rotation.col(0) - s * rotation.col(1), s * rotation.col(0) + c * rotation.col(1),
+                              rotation.col(2)};
+  const double bx = -kGravity * before[axis].y();
+  const double by = kGravity * before[axis].x();
   const int a = kAccelerometerBias + axis;
   const Column ph = bx * covariance.col(kOrientation) + by * covariance.col(kOrientation + 1) - covariance.col(a);
   const double own = bx * ph[kOrientation] + by * ph[kOrientation + 1] - ph[a];

@@ -57,8 +57,11 @@ struct FilterNoise {
   double gyro_bias_walk = 1e-5;           ///< rad/s/√s
   double accelerometer = 2e-3;            ///< m/s²/√Hz
   double accelerometer_bias_walk = 1e-4;  ///< m/s²/√s
-  double wheel_slip = 1e-3;               ///< m/√m of each side's travel
+  double wheel_slip = 3e-4;               ///< m/√m of each side's travel, of either wheel alone
+  double common_slip = 2e-3;              ///< m/√m, of both together
   double encoder = 4.4e-5;                ///< m, of one reading
+  double radius_ratio_walk = 1e-5;        ///< 1/√m
+  double wheel_base_walk = 5e-5;          ///< 1/√m: load and floor change how a tyre turns
   double lateral = 1e-3;                  ///< m/s/√Hz, sideways at the contact
   double lateral_per_force = 0;           ///< s: sideways per centripetal acceleration, as a constant error would be
   double vertical = 2e-3;                 ///< m/s/√Hz
@@ -101,7 +104,6 @@ class ErrorStateFilter {
     std::optional<Eigen::Vector3d> gyro;           ///< rad/s, mean over dt, bias included
     std::optional<Eigen::Vector3d> accelerometer;  ///< m/s², mean over dt, bias included
     double left_travel = 0, right_travel = 0;      ///< m over dt, as the model's radii measure it
-    double wheel_rate = 0;                         ///< rad/s, of the wheels, smoothed, as the model's base measures it
     double left_speed = 0, right_speed = 0;        ///< m/s, smoothed
   };
 
@@ -120,7 +122,8 @@ class ErrorStateFilter {
   Innovation correct_lateral(double dt) noexcept;
   Innovation correct_vertical(double dt) noexcept;
   /// Measured: by how much the acceleration along a base axis is more than accelerometer − ba + Rᵀ g. m/s²
-  Innovation correct_acceleration(int axis, double excess, double variance) noexcept;
+  /// As it was when the robot had yet to turn by `turned` rad.
+  Innovation correct_acceleration(int axis, double excess, double variance, double turned) noexcept;
   /// `mean` over `time` s at rest. No gate: the caller judged them quiet.
   Innovation correct_gyro_at_rest(int axis, double mean, double variance) noexcept;
   Innovation correct_accelerometer_at_rest(int axis, double mean, double variance) noexcept;
@@ -167,9 +170,9 @@ class ErrorStateFilter {
 
  private:
   Innovation correct(const Column& ph, double innovation, double variance, double gate) noexcept;
-  Innovation correct_rolling(const Column& ph, double innovation, double variance) noexcept;
-  void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Vector3d& u,
-                 const Eigen::Vector3d& omega) noexcept;
+  Innovation correct_rolling(const Column& ph, double innovation, double variance, double slack) noexcept;
+  void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Matrix3d& turn,
+                 const Eigen::Vector3d& u, const Eigen::Vector3d& omega) noexcept;
 
   ContactGeometry geometry_;
   FilterNoise noise_;

@@ -415,7 +415,6 @@ void Estimator::move(double dt) noexcept {
   motion.right_travel = rolled(kRight, dt);
   motion.left_speed = left_speed;
   motion.right_speed = right_speed;
-  motion.wheel_rate = geometry_.turn(left_speed, right_speed);
   filter_.predict(motion);
   if (imu_.gyro_catches_up()) filter_.rate = (1 + filter_.gyro_scale) * (imu_.last_gyro() - filter_.gyro_bias);
   correct(dt);

@@ -15,8 +15,10 @@ constexpr std::size_t kLateral = 2;
 constexpr std::size_t kVertical = 3;
 constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
 constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
+constexpr int kTurning[4] = {Filter::kGyroBias + 2, Filter::kRadiusRatio, Filter::kWheelBase, Filter::kGyroScale};
 constexpr double kSigmas = 4;
 constexpr double kShaken = 0.4;
+constexpr std::size_t kLearning = 2;  // index of the window that bias and tilt learn from
 
 double square(double value) noexcept {
   return value * value;
@@ -43,8 +45,11 @@ void SlipWatch::open(Window& window, const Filter& filter) const noexcept {
   const auto& p = filter.covariance;
   window.velocity_variance = p.diagonal().segment<3>(Filter::kVelocity);
   window.acceleration_variance = filter.acceleration_deviation().cwiseAbs2().array() + square(kLeastAcceleration);
-  window.ratio_variance = p(Filter::kRadiusRatio, Filter::kRadiusRatio);
-  window.base_variance = p(Filter::kWheelBase, Filter::kWheelBase);
+  window.tilt_variance = square(Filter::kGravity) * std::max(p(Filter::kOrientation, Filter::kOrientation),
+                                                             p(Filter::kOrientation + 1, Filter::kOrientation + 1));
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) window.turning_covariance(i, j) = p(kTurning[i], kTurning[j]);
+  }
 }
 
 void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
@@ -83,6 +88,7 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
       window.path[c] += forward;
     }
     window.age += sample.dt;
+    window.turn += sample.dt * w.z();
   }
   for (State& state : states_) state.doubted += state.believed ? 0 : sample.dt;
 
@@ -98,16 +104,30 @@ double SlipWatch::residual(const Window& window, std::size_t contact, const Filt
   return window.measured[contact] - window.predicted[contact] + window.way[kAxis[contact]];
 }
 
+/// m per error: what a wheel's travel in the window gets from the errors of kTurning.
+Eigen::Vector4d SlipWatch::by_turning(const Window& window, int side, const Filter& filter) noexcept {
+  const double sign = side == 0 ? 0.5 : -0.5;
+  const double lever = filter.lever(side);
+  return {lever * window.age, sign * window.predicted[static_cast<std::size_t>(side)],
+          -sign * filter.geometry().wheel_base * window.turn, -lever * window.turn};
+}
+
+double SlipWatch::turning_variance(const Window& window, const Eigen::Vector4d& by) noexcept {
+  return by.dot(window.turning_covariance * by);
+}
+
 double SlipWatch::variance(const Window& window, std::size_t contact, const Filter& filter) noexcept {
   const int axis = kAxis[contact];
   const double t = window.age;
   const auto& noise = filter.noise();
-  double sum = window.velocity_variance[axis] * t * t + window.acceleration_variance[axis] * square(t * t) / 4 +
+  // A bias that tilt made good is made good no more after a turn: an acceleration that grows from nothing.
+  const double turned = window.tilt_variance * square(window.turn / 3);
+  double sum = window.velocity_variance[axis] * t * t +
+               (window.acceleration_variance[axis] + turned) * square(t * t) / 4 +
                square(noise.accelerometer) * t * t * t / 3;
   if (contact <= kRight) {
-    const double turn = window.predicted[kRight] - window.predicted[kLeft];
-    sum += 2 * square(noise.encoder) + square(noise.wheel_slip) * window.path[contact] +
-           window.ratio_variance / 4 * square(window.predicted[contact]) + window.base_variance / 4 * square(turn);
+    sum += 2 * square(noise.encoder) + (square(noise.wheel_slip) + square(noise.common_slip)) * window.path[contact] +
+           turning_variance(window, by_turning(window, static_cast<int>(contact), filter));
   }
   return sum;
 }
@@ -172,11 +192,6 @@ void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes,
     back[Filter::kAccelerometerBias + axis] = window.acceleration[axis];
     pulled[axis] = window.acceleration[axis];
   }
-  if (axes[0]) {
-    constexpr int kOfWheels[] = {Filter::kOrientation + 2, Filter::kGyroBias + 2, Filter::kRadiusRatio,
-                                 Filter::kWheelBase, Filter::kGyroScale};
-    for (const int index : kOfWheels) back[index] = -made[index];
-  }
   filter.inject(back);
   for (Window& other : windows_) {
     if (other.age > age) {
@@ -192,12 +207,16 @@ void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes,
 void SlipWatch::learn_acceleration(const Window& window, Filter& filter) noexcept {
   const auto believed = [](const State& state) { return state.believed; };
   if (!window.inertial || !std::ranges::all_of(states_, believed)) return;
+  for (std::size_t c = 0; c < kContacts; ++c) {
+    if (excess(window, c, filter) > kShaken) return;
+  }
   const double per_way = 2 / square(window.age);
   const double ways[3] = {(residual(window, kLeft, filter) + residual(window, kRight, filter)) / 2,
                           residual(window, kLateral, filter), residual(window, kVertical, filter)};
   for (int axis = 0; axis < 3; ++axis) {
     const double start = 4 * window.velocity_variance[axis] / square(window.age);
-    filter.correct_acceleration(axis, ways[axis] * per_way, start + square(kLeastAcceleration));
+    // A way weighs what came first twice: the mean acceleration is that of a third of the window.
+    filter.correct_acceleration(axis, ways[axis] * per_way, start + square(kLeastAcceleration), window.turn * 2 / 3);
   }
 }
 
@@ -236,10 +255,9 @@ void SlipWatch::judge(Filter& filter) noexcept {
     const double left = residual(longest, kLeft, filter);
     const double right = residual(longest, kRight, filter);
     const auto& noise = filter.noise();
-    const double turn = longest.predicted[kRight] - longest.predicted[kLeft];
     const double path = longest.path[kLeft] + longest.path[kRight];
-    const double var = 4 * square(noise.encoder) + square(noise.wheel_slip) * path +
-                       longest.ratio_variance / 4 * square(path) / 4 + longest.base_variance * square(turn) / 4 +
+    const Eigen::Vector4d by = by_turning(longest, 1, filter) - by_turning(longest, 0, filter);
+    const double var = 4 * square(noise.encoder) + square(noise.wheel_slip) * path + turning_variance(longest, by) +
                        square(noise.gyro) * longest.age * square(filter.geometry().wheel_base);
     turn_nis_ = square(right - left) / var;
     turn_slips_ = std::abs(right - left) > kSigmas * std::sqrt(var) + kCreep * path + kSlack;
@@ -247,7 +265,7 @@ void SlipWatch::judge(Filter& filter) noexcept {
   }
   for (std::size_t i = 0; i < kWindows; ++i) {  // the two of a length stay half a length apart
     Window& window = windows_[i];
-    if (i == kWindows - 2 && window.age >= kLengths[i] - 1e-9) learn_acceleration(window, filter);
+    if (i == kLearning && window.age >= kLengths[i] - 1e-9) learn_acceleration(window, filter);
     const bool twin = i % 2 == 1 && window.age == windows_[i - 1].age && window.age >= kLengths[i] / 2 - 1e-9;
     if (twin || window.age >= kLengths[i] - 1e-9) open(window, filter);
   }

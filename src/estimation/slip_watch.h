@@ -72,7 +72,10 @@ class SlipWatch {
     Vector4 path{};                                 ///< m, measured or predicted, whichever is longer, sum of sizes
     Eigen::Vector3d velocity_variance = Eigen::Vector3d::Zero();
     Eigen::Vector3d acceleration_variance = Eigen::Vector3d::Zero();
-    double ratio_variance = 0, base_variance = 0;
+    Eigen::Matrix4d turning_covariance =
+        Eigen::Matrix4d::Zero();  ///< of gyro bias about z, ratio, wheel base, gyro scale
+    double tilt_variance = 0;     ///< (m/s²)²: of gravity's part, which a turning robot sees from another side
+    double turn = 0;              ///< rad
   };
   struct State {
     bool believed = true;
@@ -86,6 +89,8 @@ class SlipWatch {
   bool judge(const Window& window, ErrorStateFilter& filter) noexcept;
   const Window& oldest_that_sees(const std::array<bool, kContacts>& contacts, const Window& sure,
                                  const ErrorStateFilter& filter) const noexcept;
+  static double turning_variance(const Window& window, const Eigen::Vector4d& by) noexcept;
+  static Eigen::Vector4d by_turning(const Window& window, int side, const ErrorStateFilter& filter) noexcept;
   static double excess(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
   void take_back(const Window& window, const std::array<bool, 3>& axes, ErrorStateFilter& filter) noexcept;
   void learn_acceleration(const Window& window, ErrorStateFilter& filter) noexcept;
