@@ -14,6 +14,7 @@ import numpy as np
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.estimate_bag import BagTopics, read_bag
 from robot_control.estimate_csv import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
+from robot_control.estimate_encoder import counts_per_turn
 from robot_control.estimate_files import BagSink, CsvSink, NewFiles, Sink
 from robot_control.estimate_report import Summary
 from robot_control.estimate_samples import InputError, IntArray, Samples
@@ -45,7 +46,7 @@ def main(arguments: list[str] | None = None) -> None:
     options = _parser().parse_args(arguments)
     try:
         print(estimate(options))
-    except (InputError, ParameterError, RobotError, ValueError, OSError) as error:
+    except (InputError, ParameterError, RobotError, ValueError, RuntimeError, OSError) as error:
         sys.exit(f"estimate.py: {error}")
     for path in _outputs(options):
         print(f"wrote {path}", file=sys.stderr)
@@ -59,18 +60,18 @@ def estimate(options: argparse.Namespace) -> str:
     """
     _check_options(options)
     _check_paths(options)
-    estimator = Estimator(
-        options.params,
-        options.urdf,
-        wheel_radius=options.wheel_radius,
-        wheel_base=options.wheel_base,
-        imu_position=options.imu_position,
-        imu_orientation=options.imu_orientation,
-        period=options.period,
-    )
+    estimator = _estimator(options, options.encoder_counts)
     samples = _read(options, estimator)
     note = samples.gap_note()
     samples.notes += [] if note is None else [note]
+    counts = None if samples.own_log or options.encoder_counts is not None else counts_per_turn(samples)
+    if counts is not None and options.params is None:
+        samples.notes.append(f"the wheel angles come in steps of 1/{counts:.4g} turn; --encoder-counts says otherwise")
+        estimator = _estimator(options, counts)
+    elif counts is not None:
+        samples.notes.append(
+            f"the wheel angles come in steps of 1/{counts:.4g} turn: look at encoder_noise in --params"
+        )
 
     summary = Summary()
     with NewFiles() as files:
@@ -93,7 +94,22 @@ def estimate(options: argparse.Namespace) -> str:
                     sink.close()
         if picture is not None:
             picture.draw(files.name(options.plot), f"{options.input.name}: {summary.last['distance']:.1f} m")
+        if options.calibration is not None:
+            estimator.save_calibration(files.name(options.calibration))
     return summary.report(samples, estimator.robot)
+
+
+def _estimator(options: argparse.Namespace, encoder_counts: float | None) -> Estimator:
+    return Estimator(
+        options.params,
+        options.urdf,
+        wheel_radius=options.wheel_radius,
+        wheel_base=options.wheel_base,
+        imu_position=options.imu_position,
+        imu_orientation=options.imu_orientation,
+        encoder_counts=encoder_counts,
+        period=options.period,
+    )
 
 
 def _blocks(estimator: Estimator, samples: Samples) -> Iterator[tuple[IntArray, Estimate]]:
@@ -149,7 +165,7 @@ def _picture(options: argparse.Namespace, samples: Samples) -> Picture | None:
 
 
 def _outputs(options: argparse.Namespace) -> list[Path]:
-    return [path for path in (options.csv, options.bag, options.plot) if path is not None]
+    return [path for path in (options.csv, options.bag, options.plot, options.calibration) if path is not None]
 
 
 OF_CSV = ("columns", "counts_per_turn", "time_unit", "gyro_unit", "accel_unit")
@@ -200,6 +216,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the estimate, a row per row of the input")
     parser.add_argument("--bag", type=Path, metavar="OUT.bag", help="write nav_msgs/Odometry on /odom, and /tf")
     parser.add_argument("--plot", type=Path, metavar="OUT.png", help="draw path, yaw, speeds, gyro bias, slip")
+    parser.add_argument(
+        "--calibration", type=Path, metavar="OUT.yaml", help="write what was learned, as the node's calibration_file"
+    )
     parser.add_argument("--rate", type=_positive, metavar="HZ", help=f"rows a second; bag: {BAG_RATE:g} unless given")
 
     robot = parser.add_argument_group("the robot")
@@ -210,6 +229,9 @@ def _parser() -> argparse.ArgumentParser:
     robot.add_argument("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link; =X,… where X < 0")
     robot.add_argument(
         "--imu-orientation", type=_numbers, metavar="R,P,Y", help="rad, as in a URDF, or a quaternion x,y,z,w"
+    )
+    robot.add_argument(
+        "--encoder-counts", type=_positive, metavar="N", help="a turn, gear included; else found, or 4096"
     )
     robot.add_argument("--period", type=_positive, metavar="S", help="between samples; else their median")
 

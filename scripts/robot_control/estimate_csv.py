@@ -110,7 +110,7 @@ def _read_log(table: _Table, robot: Robot) -> Samples:
         table.notes.append(f"{runs} runs in the file; this is the last one")
     split = [len(joints["left"]), len(wanted), len(wanted) + 3]
     left, right, gyro, accel = np.split(values, split, axis=1)
-    return Samples(time_ns, left, right, gyro, accel, table.notes)
+    return Samples(time_ns, left, right, gyro, accel, table.notes, own_log=True)
 
 
 class _Table:

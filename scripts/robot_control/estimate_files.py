@@ -153,8 +153,9 @@ def _columns(estimate: Estimate) -> dict[str, np.ndarray[Any, Any]]:
     columns |= {f"{name}_variance": pose[:, i, i] for i, name in enumerate(POSE)}
     columns |= {"x_y_covariance": pose[:, 0, 1], "x_yaw_covariance": pose[:, 0, 5], "y_yaw_covariance": pose[:, 1, 5]}
     columns |= {f"{name}_variance": twist[:, i, i] for i, name in enumerate(TWIST)}
-    for name in ("gyro_bias", "gyro_bias_deviation", "accelerometer_bias"):
-        columns |= {f"{name}_{axis}": estimate[name][:, i] for i, axis in enumerate(XYZ)}
+    columns |= {f"gyro_bias_{axis}": estimate["gyro_bias"][:, i] for i, axis in enumerate(XYZ)}
+    columns |= {f"gyro_bias_{axis}_deviation": estimate["gyro_bias_deviation"][:, i] for i, axis in enumerate(XYZ)}
+    columns |= {f"accelerometer_bias_{axis}": estimate["accelerometer_bias"][:, i] for i, axis in enumerate(XYZ)}
     columns |= {name: estimate[name] for name in (*SCALARS, *WHEELS)}
     for name in ("confidence", "nis", "rejected"):
         columns |= {f"{name}_{sensor}": estimate[name][:, i] for i, sensor in enumerate(SENSORS)}

@@ -113,7 +113,7 @@ def _draw_path(axes: Axes, time: FloatArray, rows: Estimate, spans: list[tuple[f
     axes.plot(rows["x"][-1], rows["y"][-1], "s", color=OURS, markersize=6, label="end")
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.08)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncols=3)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncols=3, markerscale=1.5)
 
 
 def _along(distance: FloatArray) -> IntArray:
@@ -154,6 +154,9 @@ def _draw_speeds(axes: Axes, time: FloatArray, rows: Estimate) -> None:
 
 def _draw_bias(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Gyro bias [°/s], IMU axes, ± 2 σ")
+    spread = 2 * float(np.median(rows["gyro_bias_deviation"])) * DEGREES + 0.02  # that of the start would hide all else
+    all_axes = rows["gyro_bias"] * DEGREES
+    axes.set_ylim(float(all_axes.min()) - 2 * spread, float(all_axes.max()) + 2 * spread)
     for i, (name, color) in enumerate(AXES):
         bias = rows["gyro_bias"][:, i] * DEGREES
         deviation = rows["gyro_bias_deviation"][:, i] * DEGREES

@@ -32,6 +32,7 @@ class Samples:
     gyro: FloatArray | None  # (N, 3), rad/s, IMU axes
     accel: FloatArray | None  # (N, 3), m/s², IMU axes
     notes: list[str] = field(default_factory=list)  # for the user's eyes
+    own_log: bool = False  # of this package's node, whose parameters are those to estimate with
 
     @property
     def seconds(self) -> FloatArray:

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robot_control._robot_control import OfflineEstimator, slip_reasons, state_flags
+from robot_control._robot_control import OfflineEstimator, slip_reasons, state_flags, state_sensors
 from robot_control.closed_loop import leaves
 from robot_control.share import share_file
 
 FloatArray = NDArray[np.float64]
 Estimate = dict[str, NDArray[Any]]
 
-SENSORS = ("left_encoder", "right_encoder", "gyro", "accelerometer", "lateral_contact", "vertical_contact")
+SENSORS: tuple[str, ...] = tuple(state_sensors)
 """Columns of `confidence`, `nis` and `rejected`. The contacts are what the ground says: wheels do not slide sideways,
 the robot neither sinks nor flies."""
 
@@ -40,7 +40,8 @@ class Estimator:
 
     Args:
         params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`, as
-            `ClosedLoop` takes them; the block `state_estimator` holds noises and switches.
+            `ClosedLoop` takes them; the block `state_estimator` holds noises, switches, what is known of the wheels,
+            and a `calibration_file` that is read as the node reads it.
         urdf: path of the robot description; overrides `robot.urdf`.
         wheel_radius: m, every wheel. With `urdf` it overrides the URDF's.
         wheel_base: m, between the left and the right wheels. With `urdf` it overrides the URDF's. Without `urdf`,
@@ -49,6 +50,9 @@ class Estimator:
         imu_orientation: of the IMU in base_link: (roll, pitch, yaw) in rad, turned about the fixed axes x, y, z in
             this order as in a URDF, or a quaternion (x, y, z, w); three numbers or four tell which. Overrides the
             URDF's.
+        encoder_counts: of one turn of a wheel, gear included, all edges counted; sets
+            `state_estimator.encoder_noise` to 2π / encoder_counts / √12 rad. None: that parameter holds, 4096 counts
+            unless set. An encoder that is coarser than the filter believes looks like slip.
         period: s between two samples, from which the filter's time constants are set up. None: the median of the
             times of the first `process`.
 
@@ -71,6 +75,7 @@ class Estimator:
         wheel_base: float | None = None,
         imu_position: Sequence[float] | FloatArray | None = None,
         imu_orientation: Sequence[float] | FloatArray | None = None,
+        encoder_counts: float | None = None,
         period: float | None = None,
     ) -> None:
         values: list[tuple[str, str]] = []
@@ -82,19 +87,24 @@ class Estimator:
         if urdf is not None:
             values.append(("robot.urdf", fspath(urdf)))
         elif (wheel_radius is None) != (wheel_base is None):
-            given, missing = ("wheel_base", "wheel_radius") if wheel_radius is None else ("wheel_radius", "wheel_base")
-            raise ValueError(f"{given} without {missing}: give both, or the urdf that {given} is laid over")
-        for name, value in (("wheel_radius", wheel_radius), ("wheel_base", wheel_base)):
-            if value is not None:
-                values.append((f"robot.{name}", repr(float(value)) if np.isfinite(value) else ".nan"))
+            one, other = ("wheel_base", "wheel_radius") if wheel_radius is None else ("wheel_radius", "wheel_base")
+            raise ValueError(f"{one} without {other}: give both, or the urdf that {one} is laid over")
+        given: dict[str, Any] = {"wheel_radius": wheel_radius, "wheel_base": wheel_base}
+        if imu_position is not None:
+            given["imu_position"] = _vector("imu_position", imu_position, (3,)).tolist()
+        if imu_orientation is not None:
+            given["imu_orientation"] = _roll_pitch_yaw(imu_orientation)
+        if encoder_counts is not None:
+            if not (np.isfinite(encoder_counts) and encoder_counts > 0):
+                raise ValueError(f"encoder_counts is {encoder_counts}; it must be above 0 counts per turn of a wheel")
+            values.append(("state_estimator.encoder_noise", repr(2 * np.pi / encoder_counts / np.sqrt(12))))
+        values += leaves({"robot": {name: value for name, value in given.items() if value is not None}})
         if period is not None and not (np.isfinite(period) and period > 0):
             raise ValueError(f"period is {period}; it must be above 0 s")
         self._estimator = OfflineEstimator(
             path,
             values,
             two_wheels=urdf is None and wheel_radius is not None,
-            imu_position=None if imu_position is None else _vector("imu_position", imu_position, (3,)).tolist(),
-            imu_orientation=None if imu_orientation is None else _quaternion(imu_orientation),
         )
         self._period = None if period is None else float(period)
         self._begun = False
@@ -145,7 +155,8 @@ class Estimator:
                 wheel_x, wheel_y (M,) m, wheel_yaw (M,) rad, wheel_linear m/s, wheel_angular rad/s: by wheels alone
                 confidence (M, 6): 0 (not used) … 1 (agrees); nis (M, 6): normalised innovation squared, ideal 1;
                 rejected (M, 6): samples refused so far; columns: SENSORS
-                flags (M,): bits of FLAGS; slip (M,): bits of SLIP_REASONS
+                flags (M,): bits of FLAGS; slip (M,): bits of SLIP_REASONS. A row without an angle of a side says so:
+                no_left_encoder, no_right_encoder, bad_sample; whether that matters yet says valid
                 valid (M,): bool, pose and twist may be used
             Deviations are standard deviations.
 
@@ -175,6 +186,15 @@ class Estimator:
         )
         out["valid"] = (out["flags"] & FLAGS["valid"]) != 0
         return out
+
+    def save_calibration(self, path: str | PathLike[str]) -> None:
+        """Writes what was learned so far of wheels and gyro: the file that `state_estimator.calibration_file` names.
+
+        Raises:
+            RuntimeError: nothing was learned, or beyond what a robot can be.
+            OSError: it cannot be written.
+        """
+        self._estimator.save_calibration(fspath(path))
 
     @property
     def period(self) -> float:
@@ -235,21 +255,19 @@ def _vector(name: str, given: Sequence[float] | FloatArray, shapes: tuple[int, .
     return values
 
 
-def _quaternion(given: Sequence[float] | FloatArray) -> list[float]:
-    """x, y, z, w of unit norm, from that or from roll, pitch, yaw."""
+def _roll_pitch_yaw(given: Sequence[float] | FloatArray) -> list[float]:
+    """rad, from that or from a quaternion x, y, z, w."""
     values = _vector("imu_orientation", given, (3, 4))
-    if values.size == 4:
-        norm = float(np.linalg.norm(values))
-        if abs(norm - 1) > _QUATERNION_TOLERANCE:
-            raise ValueError(f"imu_orientation is {values.tolist()}; a quaternion (x, y, z, w) must have norm 1")
-        return list(values / norm)
-    (cr, cp, cy), (sr, sp, sy) = np.cos(values / 2), np.sin(values / 2)
-    return [
-        float(sr * cp * cy - cr * sp * sy),
-        float(cr * sp * cy + sr * cp * sy),
-        float(cr * cp * sy - sr * sp * cy),
-        float(cr * cp * cy + sr * sp * sy),
-    ]
+    if values.size == 3:
+        return [float(angle) for angle in values]
+    norm = float(np.linalg.norm(values))
+    if abs(norm - 1) > _QUATERNION_TOLERANCE:
+        raise ValueError(f"imu_orientation is {values.tolist()}; a quaternion (x, y, z, w) must have norm 1")
+    x, y, z, w = values / norm
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return [float(roll), float(pitch), float(yaw)]
 
 
 def _check_increasing(stamps: FloatArray, last: float | None) -> None:

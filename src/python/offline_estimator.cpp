@@ -3,12 +3,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "parameters/calibration_file.h"
 #include "signals/names.h"
 
 namespace py = pybind11;
@@ -17,7 +19,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kSensors = kVerticalContact + 1;
+constexpr std::size_t kSensors = kStateSensorNames.size();
 
 Parameters parameters_of(const std::string& path, const OfflineEstimator::Values& values) {
   std::vector<Overlay> overlays;
@@ -45,14 +47,12 @@ RobotModel two_wheels(const RobotParameters& given) {
                             .velocity_limit = given.wheel_velocity_limit.value_or(0),
                             .role = JointRole::kWheel});
   }
-  return robot;
-}
-
-RobotModel robot_of(const Parameters& parameters, const OfflineRobot& given) {
-  RobotModel robot =
-      given.two_wheels ? two_wheels(parameters.robot) : read_robot(load_description(parameters.urdf), parameters.robot);
-  if (given.imu_position) robot.imu_in_base.position = *given.imu_position;
-  if (given.imu_orientation) robot.imu_in_base.orientation = *given.imu_orientation;
+  const auto [roll, pitch, yaw] = given.imu_orientation.value_or(Vector3{});
+  const Eigen::Quaterniond turn = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+  robot.imu_in_base = {.position = given.imu_position.value_or(Vector3{}),
+                       .orientation = {turn.x(), turn.y(), turn.z(), turn.w()}};
   return robot;
 }
 
@@ -179,12 +179,28 @@ struct OfflineEstimator::Rows {
   Table time, left, right, gyro, accel;
 };
 
-OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values, const OfflineRobot& robot) {
+OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values, bool use_two_wheels) {
   const Parameters parameters = parameters_of(path, values);
-  parameters_ = parameters.estimator;
-  robot_ = robot_of(parameters, robot);
+  robot_ =
+      use_two_wheels ? two_wheels(parameters.robot) : read_robot(load_description(parameters.urdf), parameters.robot);
+  given_ = parameters_ = parameters.estimator;
+  if (!parameters.calibration_file.empty()) {
+    const auto kept = read_calibration(parameters.calibration_file, robot_, given_);
+    if (kept) parameters_ = continued(given_, *kept);
+  }
   loop_period_ = parameters.loop.period();
   begin(loop_period_);
+}
+
+void OfflineEstimator::save_calibration(const std::string& path) const {
+  const LearnedCalibration now = learned(state_);
+  if (!began_ || (state_.flags & kStateValid) == 0)
+    throw std::runtime_error("no calibration: nothing was estimated yet");
+  if (!may_be_kept(now)) {
+    throw std::runtime_error(
+        "no calibration: nothing of it was learned, or it is beyond its bounds; look at the wheels");
+  }
+  write_calibration(path, now, robot_, given_);
 }
 
 void OfflineEstimator::begin(double period) {
@@ -297,18 +313,16 @@ void bind_offline_estimator(py::module_& module) {
     for (const BitName& row : table) bits[py::str(std::string(row.name))] = row.bit;
     return bits;
   };
+  module.attr("state_sensors") = std::vector<std::string>(kStateSensorNames.begin(), kStateSensorNames.end());
   module.attr("state_flags") = words(kStateFlagNames);
   module.attr("slip_reasons") = words(kSlipReasonNames);
   py::class_<OfflineEstimator>(module, "OfflineEstimator")
-      .def(py::init([](const std::string& path, const OfflineEstimator::Values& values, bool two_wheels,
-                       const std::optional<Vector3>& imu_position, const std::optional<Quaternion>& imu_orientation) {
-             return OfflineEstimator(path, values, {two_wheels, imu_position, imu_orientation});
-           }),
-           py::arg("path"), py::arg("values"), py::arg("two_wheels"), py::arg("imu_position"),
-           py::arg("imu_orientation"))
+      .def(py::init<const std::string&, const OfflineEstimator::Values&, bool>(), py::arg("path"), py::arg("values"),
+           py::arg("two_wheels"))
       .def("begin", &OfflineEstimator::begin, py::arg("period"))
       .def("process", &OfflineEstimator::process, py::arg("time"), py::arg("left"), py::arg("right"), py::arg("gyro"),
            py::arg("accel"), py::kw_only(), py::arg("rounding"), py::arg("every"), py::arg("covariance"))
+      .def("save_calibration", &OfflineEstimator::save_calibration, py::arg("path"))
       .def_property_readonly("period", &OfflineEstimator::period)
       .def_property_readonly("loop_period", &OfflineEstimator::loop_period)
       .def_property_readonly("last_time", &OfflineEstimator::last_time)

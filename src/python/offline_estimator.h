@@ -25,20 +25,15 @@
 
 namespace robot_control {
 
-/// Where the robot comes from, beside its parameters.
-struct OfflineRobot {
-  bool two_wheels = false;                    ///< no URDF: robot.wheel_radius and robot.wheel_base say it all
-  std::optional<Vector3> imu_position;        ///< m, base axes; empty: as the URDF says
-  std::optional<Quaternion> imu_orientation;  ///< IMU axes to base axes, unit norm
-};
-
 class OfflineEstimator {
  public:
   using Values = std::vector<std::pair<std::string, std::string>>;
   using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-  /// Reads parameters as ClosedLoop does. Throws ParameterError, RobotError, std::invalid_argument.
-  OfflineEstimator(const std::string& path, const Values& values, const OfflineRobot& robot);
+  /// Reads parameters as ClosedLoop does, and their calibration_file as the node does. `two_wheels`: no URDF, the robot
+  /// is robot.wheel_radius, wheel_base, imu_position, imu_orientation, base_link in the middle of the axle. Throws
+  /// ParameterError, RobotError, std::invalid_argument.
+  OfflineEstimator(const std::string& path, const Values& values, bool two_wheels);
 
   /// A new run with this period [s]. Throws std::invalid_argument.
   void begin(double period);
@@ -48,6 +43,10 @@ class OfflineEstimator {
   /// out, from the first one on, and the last. The caller has checked all of it. Other Python threads run meanwhile.
   pybind11::dict process(const Array& time, const Array& left, const Array& right, const Array& gyro,
                          const Array& accel, double rounding, pybind11::ssize_t every, bool covariance);
+
+  /// What was learned so far, as the node keeps it (parameters/calibration_file.h). Throws std::runtime_error: nothing
+  /// was, or beyond its bounds; std::system_error.
+  void save_calibration(const std::string& path) const;
 
   double period() const noexcept { return period_; }            ///< s
   double loop_period() const noexcept { return loop_period_; }  ///< s, of robot.rate
@@ -60,7 +59,8 @@ class OfflineEstimator {
   void sense(const Rows& rows, pybind11::ssize_t row) noexcept;
   double since_last(double time, double rounding) const noexcept;  ///< s
 
-  EstimatorParameters parameters_;
+  EstimatorParameters given_;       ///< before anything was read from the file
+  EstimatorParameters parameters_;  ///< the run begins with
   RobotModel robot_;
   double loop_period_ = 0;
   double period_ = 0;

@@ -225,6 +225,41 @@ def test_samples_may_come_at_irregular_times(log, samples):
     assert est.period == pytest.approx(np.median(np.diff(samples[0][rows])))
 
 
+def at_rates(samples, wheels, imu, offset):
+    """Exact rows of a 1 kHz log as sensors of other rates [Hz] would have given them; the IMU's stamps are `offset` s
+    late, its samples means over its period.
+    """
+    time, left, right, gyro, accel = samples
+    of_wheels = np.arange(0, time.size, 1000 // wheels)
+    step = 1000 // imu
+    of_imu = np.arange(step, time.size, step)
+    times = np.concatenate([time[of_wheels], time[of_imu] + offset])
+    merged = np.unique(times)
+    out = [merged, *(np.full((merged.size, *table.shape[1:]), np.nan) for table in samples[1:])]
+    for table, values in zip(out[1:3], (left, right), strict=True):
+        table[np.searchsorted(merged, times[: of_wheels.size])] = values[of_wheels]
+    for table, values in zip(out[3:], (gyro, accel), strict=True):
+        means = np.array([values[row - step + 1 : row + 1].mean(axis=0) for row in of_imu])
+        table[np.searchsorted(merged, times[of_wheels.size :])] = means
+    return out
+
+
+# From bags: stamps of two drivers lie anyhow, 10 µs apart among others.
+@pytest.mark.parametrize("offset", [1e-5, 0.0033])
+@pytest.mark.parametrize(("wheels", "imu"), [(50, 200), (100, 100), (20, 100), (10, 50)])
+def test_rates_that_people_have_give_path_and_twist(log, samples, wheels, imu, offset):
+    out = Estimator().process(*at_rates(samples, wheels, imu, offset))
+    rows = np.clip(np.round(out["time"] * 1000).astype(int), 0, log["time"].size - 1)
+    assert np.hypot(out["x"][-1] - log["truth_x"][rows[-1]], out["y"][-1] - log["truth_y"][rows[-1]]) < 0.1
+    moving = out["time"] > 2  # past the ramp
+    # The gyro's samples may be 0.02 s old, of a turn that changes by 0.8 rad/s²; the truth's own ripple has 0.03 rad/s.
+    assert np.max(np.abs(out["linear"][moving, 0] - log["truth_linear"][rows[moving]])) < 0.05  # a tenth
+    assert np.max(np.abs(out["angular"][moving, 2] - log["truth_angular"][rows[moving]])) < 0.1
+    assert np.mean(out["flags"] & FLAGS["slip"] != 0) < 0.05
+    for name, values in out.items():
+        assert np.all(np.isfinite(values)), name
+
+
 def test_wheels_alone_make_a_path(log, samples):
     out = Estimator().process(*samples[:3])
     assert_on_the_path(out, log)  # the simulated wheels hardly slip, and are as the URDF says
@@ -299,6 +334,8 @@ def test_a_refused_call_changes_nothing(samples):
         ({"imu_position": (1.0, 2.0, np.nan)}, ValueError, "imu_position"),
         ({"imu_orientation": (1.0, 1.0, 1.0, 1.0)}, ValueError, "must have norm 1"),
         ({"imu_orientation": (0.0, 0.0)}, ValueError, "3 or 4 finite numbers"),
+        ({"encoder_counts": 0}, ValueError, "encoder_counts is 0; it must be above 0 counts"),
+        ({"params": {"state_estimator": {"calibration_file": "/nowhere/c.yaml"}}}, ParameterError, "/nowhere"),
         ({"period": 0.0}, ValueError, "period is 0.0; it must be above 0 s"),
         ({"urdf": "/nowhere.urdf"}, RobotError, "/nowhere.urdf"),
         ({"params": {"state_estimator": {"gyro_noise": -1.0}}}, ParameterError, "gyro_noise"),
@@ -314,6 +351,28 @@ def test_parameters_reach_the_filter(samples):
     rough = Estimator({"state_estimator": {"wheel_slip_noise": 0.2}}).process(*samples)
     usual = Estimator().process(*samples)
     assert rough["pose_covariance"][-1, 0, 0] > 10 * usual["pose_covariance"][-1, 0, 0]
+
+
+def test_a_coarse_encoder_is_no_slip_when_its_counts_are_given(log, samples):
+    coarse = [table.copy() for table in samples]
+    for table in coarse[1:3]:
+        table[:] = np.floor(table / (2 * np.pi) * 360) * (2 * np.pi / 360)
+    out = Estimator(encoder_counts=360).process(*coarse)
+    assert not np.any(out["flags"] & FLAGS["slip"])
+    assert_on_the_path(out, log)
+
+
+def test_what_was_learned_is_kept_and_read_again(tmp_path, samples):
+    path = tmp_path / "calibration.yaml"
+    est = Estimator()
+    with pytest.raises(RuntimeError, match="nothing was estimated yet"):
+        est.save_calibration(path)
+    learned = est.process(*samples)
+    est.save_calibration(path)
+    again = Estimator({"state_estimator": {"calibration_file": str(path)}}).process(*part(samples, slice(0, 1)))
+    assert again["radius_ratio"][0] == learned["radius_ratio"][-1]
+    assert again["wheel_base_factor"][0] == learned["wheel_base_factor"][-1]
+    assert again["radius_ratio_deviation"][0] < 0.01  # the parameter's, of a robot that nobody knows
 
 
 def standing(rows):

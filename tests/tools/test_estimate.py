@@ -139,6 +139,36 @@ def test_without_imu_columns_the_wheels_do(run, columns, exact):
     assert_at(read_csv("out.csv"), exact)
 
 
+def test_a_coarse_encoder_is_found_out_and_is_no_slip(run, exact):
+    some = exact.at(np.arange(0, 12, 0.005))
+    columns = columns_of(some)
+    for side in ("left", "right"):
+        columns[side] = np.floor(columns[side] / (2 * np.pi) * 360)
+    write_csv("in.csv", columns)
+    report, message = run("in.csv", *ROBOT, "--counts-per-turn=360", "--csv", "out.csv")
+    assert message == ""
+    assert "steps of 1/360 turn" in report
+    assert_at(read_csv("out.csv"), exact)
+
+
+def test_neither_a_fine_encoder_nor_a_steady_speed_is_taken_for_a_coarse_one(run, columns):
+    write_csv("in.csv", columns)
+    assert "steps of" not in run("in.csv", *ROBOT)[0]
+    columns["left"] = columns["right"] = columns["time"] * 4.0
+    write_csv("in.csv", columns)
+    assert "steps of" not in run("in.csv", *ROBOT)[0]
+
+
+def test_what_was_learned_becomes_the_calibration_of_the_next_run(run, columns):
+    write_csv("in.csv", columns)
+    _, message = run("in.csv", *ROBOT, "--calibration", "learned.yaml", "--csv", "out.csv")
+    assert message == ""
+    params = {"state_estimator": {"calibration_file": str(Path("learned.yaml").absolute())}}
+    est = Estimator(params, wheel_radius=RADIUS, wheel_base=WHEEL_BASE)
+    again = est.process([0.0], [0.0], [0.0])
+    assert again["radius_ratio"][0] == pytest.approx(read_csv("out.csv")["radius_ratio"][-1], abs=1e-12)
+
+
 def test_rate_thins_what_is_written_and_keeps_the_last_row(run, columns):
     write_csv("in.csv", columns)
     run("in.csv", *ROBOT, "--csv", "all.csv")
