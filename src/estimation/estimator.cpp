@@ -184,6 +184,7 @@ void Estimator::reset() noexcept {
   }
   resting_ = true;
   held_ = {};
+  steady_time_ = 0;
   doubtful_windows_ = 0;
   wheels_ = {};
   distance_ = 0;
@@ -385,6 +386,22 @@ bool Estimator::quiet() const noexcept {
   return true;
 }
 
+bool Estimator::bias_changed() noexcept {
+  const Vector3d& gyro = *standstill_.gyro();
+  if (steady_time_ == 0 || (gyro - steady_gyro_).cwiseAbs().maxCoeff() > parameters_.standstill_speed) {
+    steady_time_ = 0;
+    steady_gyro_ = gyro;
+  }
+  steady_time_ += standstill_.time();
+  if (steady_time_ < kSteadyTime) return false;
+  steady_time_ = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int index = Filter::kGyroBias + i;
+    filter_.covariance(index, index) += square(gyro[i] - filter_.gyro_bias[i]);
+  }
+  return true;
+}
+
 void Estimator::learn_at_rest() noexcept {
   const double window = standstill_.time();
   lasting_flags_ |= kStateStandstill;
@@ -439,7 +456,8 @@ void Estimator::move(double dt) noexcept {
   if (imu_.new_accelerometer()) sample.accelerometer = imu_.last_accelerometer();
   const WindowEnd window = standstill_.step(sample);
   if (lost(kLeft) || lost(kRight)) standstill_.reset();
-  if (window != WindowEnd::kQuiet || !quiet()) return;
+  if (window == WindowEnd::kBroken || window == WindowEnd::kShaken) steady_time_ = 0;
+  if (window != WindowEnd::kQuiet || !(quiet() || bias_changed())) return;
   if (standstill_.accelerometer()) {
     const Vector3d rest = *standstill_.accelerometer() - filter_.accelerometer_bias +
                           filter_.rotation.transpose() * Vector3d(0, 0, -Filter::kGravity);

@@ -7,7 +7,9 @@
 ///                                          slip watch ◄┘
 ///
 /// At rest (standstill_window.h) nothing is integrated: pose and covariance stay, the biases and the tilt are learned.
-/// What happens in a window that turns out not to be quiet is made good at once. Every run begins so.
+/// What happens in a window that turns out not to be quiet is made good at once. Every run begins so. Wheels that stand
+/// under a gyro that reads the same rate for kSteadyTime are those of a robot at rest whose gyro bias is another one
+/// than believed.
 ///
 /// Samples may come at any rate; one that is missing, not finite or impossible is not used (kStateBadSample), and the
 /// last one holds: for three times the gap between the last two, within kShortHold … kLongHold. Beyond that the sensor
@@ -45,6 +47,7 @@ class Estimator {
   static constexpr double kRestartPosition = 0.05;   ///< m, standard deviation added by a restart
   static constexpr double kRestartYaw = 0.05;        ///< rad
   static constexpr double kSmoothing = 1.0;          ///< s
+  static constexpr double kSteadyTime = 10.0;        ///< s; nothing turns a robot so evenly on wheels that stand
   static constexpr double kRestSpeed = 0.01;         ///< m/s, standard deviation of the velocity when rest ends
   static constexpr std::uint64_t kMaxRefused =
       50;  ///< samples in a row behind the chi-square gate, then it begins anew
@@ -101,6 +104,7 @@ class Estimator {
   void end_rest() noexcept;
   void learn_at_rest() noexcept;
   bool quiet() const noexcept;
+  bool bias_changed() noexcept;
   void move(double dt) noexcept;
   double rolled(int side, double dt) noexcept;  ///< m in this step; between two readings as the filter moves
   bool lost(int side) const noexcept;
@@ -125,7 +129,9 @@ class Estimator {
 
   bool resting_ = true;  ///< nothing is integrated until the window breaks
   Held held_;
-  std::uint64_t doubtful_windows_ = 0;  ///< quiet ones in a row that contradict the velocity
+  Eigen::Vector3d steady_gyro_ = Eigen::Vector3d::Zero();  ///< rad/s, of windows that contradict the gyro's bias
+  double steady_time_ = 0;                                 ///< s, of these windows
+  std::uint64_t doubtful_windows_ = 0;                     ///< quiet ones in a row that contradict the velocity
   WheelOdometry wheels_;
   double distance_ = 0;
   std::array<double, kMaxConfidences> nis_{};
