@@ -53,10 +53,11 @@ class CalibrateTest(RobotTestCase):
             self.robot._cmd_vel = rospy.Publisher(self.robot.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
 
     def refused(self, *arguments: str) -> str:
-        start = self.robot.distance
+        before = self.robot.joints.position
         with self.started(*arguments) as program:
             self.assertEqual(program.wait(60.0), 1, program.output)
-            self.assertLess(abs(self.robot.distance - start), 0.005, "no motion")
+            turned = max(abs(now - then) for now, then in zip(self.robot.joints.position, before, strict=True))
+            self.assertLess(turned, 0.05, f"rad, no motion:\n{program.output}")
             self.assertFalse(self.out.exists())
             return program.output
 

@@ -13,8 +13,8 @@ import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from system_support import ESTIMATOR, PLANT, RobotTestCase, init_test_node, refusal, wait_for
 
-LEFT = 0.01
-"""Of the left radius, hidden in the plant: the ratio is 1/1.01"""
+LEFT = 0.02
+"""Of the left radius, hidden in the plant: the ratio is 1/1.02"""
 
 
 class CalibrationTest(RobotTestCase):
@@ -65,11 +65,11 @@ class CalibrationTest(RobotTestCase):
     def test_what_was_learned_goes_on_after_a_restart_and_a_broken_file_refuses_it(self) -> None:
         self.robot.await_ready()
         self.assertFalse(self.file.exists())
-        self.wander(lambda: self.told("radius_ratio_deviation") < 0.001)
+        self.wander(lambda: self.told("radius_ratio_deviation") < 0.002)
         self.robot.await_rest()
         self.assertEqual(self.robot.nodes[ESTIMATOR].end(), 0)
         kept = self.kept()
-        self.assertAlmostEqual(kept["radius_ratio"], 1 / (1 + LEFT), delta=0.003)
+        self.assertAlmostEqual(kept["radius_ratio"], 1 / (1 + LEFT), delta=0.008)
         self.assertEqual(list(self.folder.iterdir()), [self.file], "no temporary file is left")
 
         self.robot.end()  # all of it: the shared memory with the last state is gone, the file alone remembers
@@ -77,7 +77,7 @@ class CalibrationTest(RobotTestCase):
         self.robot.await_ready()
         self.assertIn("calibration of", self.robot.nodes[ESTIMATOR].output)
         wait_for("its diagnostics", lambda: abs(self.told("radius_ratio") - kept["radius_ratio"]) < 0.001)
-        self.assertLess(self.told("radius_ratio_deviation"), 0.0015)
+        self.assertLess(self.told("radius_ratio_deviation"), 0.003)
 
         self.assertEqual(self.robot.nodes[ESTIMATOR].end(), 0)
         whole = self.file.read_text()
