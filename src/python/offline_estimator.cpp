@@ -193,6 +193,7 @@ OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values
 }
 
 void OfflineEstimator::save_calibration(const std::string& path) const {
+  if (busy_) throw std::runtime_error("another thread is inside process() of this Estimator");
   const LearnedCalibration now = learned(state_);
   if (!began_ || (state_.flags & kStateValid) == 0)
     throw std::runtime_error("no calibration: nothing was estimated yet");
