@@ -359,6 +359,7 @@ void Estimator::rest(double dt) noexcept {
 void Estimator::end_rest() noexcept {
   resting_ = false;
   lasting_flags_ &= ~std::uint64_t{kStateStandstill};
+  flags_ &= ~std::uint64_t{kStateStandstill};
   const Vector3d turn =
       held_.gyro ? Vector3d(held_.turn - held_.time * filter_.gyro_bias) : Vector3d(0, 0, held_.wheel_turn);
   filter_.position += filter_.rotation.col(0) * held_.forward;

@@ -1,58 +1,47 @@
 // Where the robot is: the estimator against a truth in closed form, with ideal sensors.
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cstring>
 
-#include "estimation/estimator.h"
-#include "estimation/rolling_robot.h"
+#include "estimation/estimator_fixture.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = PlanarRobot::kPeriod;
-// 10⁴ additions of numbers of order 1, each rounded to 2⁻⁵³.
-constexpr double kRounding = 1e-11;
+constexpr double kPeriod = RollingRobot::kPeriod;
 
-class EstimatorPoseTest : public testing::Test {
+/// Ideal sensors leave what the first 20 ms leave: rest ends when a wheel has moved by its tolerance, and the filter
+/// finds the speed out of travel that it takes to be known to a reading's deviation, at either end of a way.
+double reading() {
+  return 2 * EstimatorParameters{}.encoder_noise * two_wheeler().wheels[0].radius;  // m
+}
+double reading_of_yaw() {
+  return std::numbers::sqrt2 * reading() / two_wheeler().wheel_base;  // rad
+}
+
+constexpr double kExact = 1e-18;  // m², rad²: rounding
+
+class EstimatorPoseTest : public EstimatorFixture {
  protected:
-  EstimatorPoseTest() { observe(); }
-
-  void observe() { estimator_.step(robot_.frame(), state_); }
-  void drive(double linear, double angular, int cycles) {
-    for (int i = 0; i < cycles; ++i) {
-      robot_.go(linear, angular);
-      observe();
-    }
+  EstimatorPoseTest() { stand(); }
+  void expect_truth() const {
+    EXPECT_LT(position_error(), reading());
+    EXPECT_LT(yaw_error(), reading_of_yaw());
   }
-  void expect_truth(double tolerance) const {
-    EXPECT_NEAR(state_.pose_odom.position[0], robot_.x, tolerance);
-    EXPECT_NEAR(state_.pose_odom.position[1], robot_.y, tolerance);
-    EXPECT_NEAR(std::remainder(yaw_of(state_.pose_odom) - robot_.yaw, 2 * std::numbers::pi), 0, tolerance);
-  }
-
-  PlanarRobot robot_;
-  Estimator estimator_{EstimatorParameters{}, two_wheeler(), kPeriod};
-  StateFrame state_;
 };
 
-/// The gyro reads the angular speed from the first cycle on, so that its trapezoid is exact.
 class SteadyMotion : public EstimatorPoseTest, public testing::WithParamInterface<std::pair<double, double>> {};
 
-TEST_P(SteadyMotion, PoseIsExact) {
+TEST_P(SteadyMotion, PoseAndTwistAreTheTruth) {
   const auto [linear, angular] = GetParam();
-  robot_.frame().imu.angular_velocity = {0, 0, angular};
-  estimator_.reset();
-  observe();
   drive(linear, angular, 10000);
-  expect_truth(kRounding);
-  EXPECT_NEAR(state_.distance, robot_.distance, kRounding);
-  EXPECT_NEAR(state_.twist_base.linear[0], linear, 1e-9);
-  EXPECT_NEAR(state_.twist_base.angular[2], angular, 1e-9);
+  expect_truth();
+  EXPECT_NEAR(speed(), linear, std::sqrt(state_.twist_covariance[0]));
+  EXPECT_NEAR(state_.twist_base.angular[2], angular, std::sqrt(state_.twist_covariance[35]));
+  EXPECT_NEAR(state_.distance, robot_.distance, 0.001 * robot_.distance + reading());
   EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+  EXPECT_EQ(state_.slip, 0u);
+  for (const std::uint64_t rejected : state_.rejected) EXPECT_EQ(rejected, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(EstimatorPose, SteadyMotion,
@@ -60,89 +49,97 @@ INSTANTIATE_TEST_SUITE_P(EstimatorPose, SteadyMotion,
                                          std::pair{-0.5, 0.0}, std::pair{0.0, 1.0}, std::pair{0.0, -1.0},
                                          std::pair{0.3, -2 * std::numbers::pi / 10}));
 
+// x = −r sin … of a circle run at constant twist after a ramp: the truth itself against its closed form.
+TEST_F(EstimatorPoseTest, AFullCircleEndsWhereItBegan) {
+  const double rate = 2 * std::numbers::pi / 10;
+  drive(0.3, rate, 1000);
+  const double x0 = x();
+  const double y0 = y();
+  const double yaw0 = yaw();
+  drive(0.3, rate, 10000);
+  EXPECT_NEAR(x(), x0, 2 * reading());
+  EXPECT_NEAR(y(), y0, 2 * reading());
+  EXPECT_NEAR(std::remainder(yaw() - yaw0, 2 * std::numbers::pi), 0, 2 * reading_of_yaw());
+}
+
 TEST_F(EstimatorPoseTest, TwistIsSignedInReverse) {
   drive(-0.5, 0, 1000);
-  EXPECT_LT(state_.twist_base.linear[0], -0.49);
-  EXPECT_LT(state_.pose_odom.position[0], -0.49);
+  EXPECT_NEAR(speed(), -0.5, 0.001);
+  EXPECT_LT(x(), -0.3);
 }
 
 TEST_F(EstimatorPoseTest, FirstEncoderReadingIsTheOffset) {
-  PlanarRobot robot;
-  robot.frame().joints[0].position = 1234.5;
-  robot.frame().joints[1].position = -77;
   estimator_.reset();
-  estimator_.step(robot.frame(), state_);
+  SensorFrame frame = robot_.frame();
+  frame.joints[0].position = 1234.5;
+  frame.joints[1].position = -77;
+  estimator_.step(frame, state_);
   EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
-  robot.go(0.5, 0);
-  estimator_.step(robot.frame(), state_);
-  EXPECT_NEAR(state_.pose_odom.position[0], 0.5 * kPeriod, 1e-12);
+  EXPECT_EQ(state_.distance, 0);
+}
+
+// Rest is held until a wheel has left its tolerance; what happened in that window is made good at once.
+TEST_F(EstimatorPoseTest, NothingOfAnEndedRestIsLost) {
+  int waited = 0;
+  while (x() == 0 && waited < 100) {
+    drive(0.5, 0, 1);
+    ++waited;
+  }
+  const double tolerance = EstimatorParameters{}.standstill_speed * EstimatorParameters{}.standstill_time * 0.1;
+  EXPECT_NEAR(robot_.x(), tolerance, tolerance);  // one cycle after it was left, at the latest
+  EXPECT_NEAR(x(), robot_.x(), 1e-12);
+}
+
+// A base_link beside the axle moves sideways when rest ends, which the filter has to find out: as well as it says.
+double deviation(const StateFrame& state) {
+  return std::sqrt(state.pose_covariance[0] + state.pose_covariance[7]);
 }
 
 // An axle 0.2 m behind base_link: spinning moves base_link on a circle of that radius.
-TEST_F(EstimatorPoseTest, ABaseBesideTheAxleMovesOnItsOwnCircle) {
+TEST(EstimatorPoseOfOtherRobots, ABaseBesideTheAxleMovesOnItsOwnCircle) {
   RobotModel model = two_wheeler();
   model.wheels[0].centre_base[0] = model.wheels[1].centre_base[0] = -0.2;
   Estimator estimator(EstimatorParameters{}, model, kPeriod);
-  PlanarRobot robot(model);
-  robot.frame().imu.angular_velocity = {0, 0, 0.5};
-  estimator.step(robot.frame(), state_);
-  for (int i = 0; i < 2000; ++i) {
-    robot.go(0, 0.5);
-    estimator.step(robot.frame(), state_);
+  RollingRobot robot(model);
+  StateFrame state;
+  for (int i = 0; i < 3000; ++i) {
+    robot.drive(0, i < 500 ? 0 : 0.5);
+    estimator.step(robot.frame(), state);
   }
-  EXPECT_NEAR(state_.pose_odom.position[0], -0.2 + 0.2 * std::cos(1.0), kRounding);
-  EXPECT_NEAR(state_.pose_odom.position[1], 0.2 * std::sin(1.0), kRounding);
-  EXPECT_NEAR(state_.twist_base.linear[1], 0.5 * 0.2, 1e-9);
+  const double yaw = yaw_of(state.pose_odom);
+  EXPECT_NEAR(yaw, 0.5 * 2.5 - 0.5 * 0.5 / RollingRobot::kTurnAcceleration / 2, reading_of_yaw());
+  EXPECT_NEAR(state.pose_odom.position[0], -0.2 + 0.2 * std::cos(yaw), 2 * deviation(state));
+  EXPECT_NEAR(state.pose_odom.position[1], 0.2 * std::sin(yaw), 2 * deviation(state));
+  EXPECT_NEAR(state.twist_base.linear[1], 0.5 * 0.2, 1e-3);
 }
 
-// The middle of the axles is 0.1 m ahead of base_link; v there moves base_link by (v, −0.1 ω).
-TEST_F(EstimatorPoseTest, FourWheelsTurnAboutTheirMiddleByTheEffectiveWheelBase) {
+TEST(EstimatorPoseOfOtherRobots, FourWheelsTurnAboutTheirMiddleByTheEffectiveWheelBase) {
   const RobotModel model = four_wheeler();
   Estimator estimator(EstimatorParameters{}, model, kPeriod);
-  PlanarRobot robot(model);
-  robot.frame().imu.angular_velocity = {0, 0, 0.5};
-  estimator.step(robot.frame(), state_);
-  for (int i = 0; i < 2000; ++i) {
-    robot.go(0.2, 0.5);
-    estimator.step(robot.frame(), state_);
+  RollingRobot robot(model);
+  StateFrame state;
+  for (int i = 0; i < 3000; ++i) {
+    robot.drive(i < 500 ? 0 : 0.2, i < 500 ? 0 : 0.5);
+    estimator.step(robot.frame(), state);
   }
-  EXPECT_NEAR(yaw_of(state_.pose_odom), 1.0, kRounding);
-  EXPECT_NEAR(state_.pose_odom.position[0], robot.x + 0.1 - 0.1 * std::cos(1.0), kRounding);
-  EXPECT_NEAR(state_.pose_odom.position[1], robot.y - 0.1 * std::sin(1.0), kRounding);
-  EXPECT_NEAR(state_.confidence[kGyro], 1, 1e-9) << "wheels and gyro agree";
+  EXPECT_NEAR(yaw_of(state.pose_odom), robot.yaw(), reading_of_yaw());
+  EXPECT_NEAR(state.pose_odom.position[0], robot.x(), deviation(state));
+  EXPECT_NEAR(state.pose_odom.position[1], robot.y(), deviation(state));
+  // Turning by the geometric wheel base would be 1.64 times as fast.
+  EXPECT_NEAR(state.wheels.yaw, robot.yaw(), 1e-9);
 }
 
-// Rolled by 180°, the IMU's z looks down.
-TEST_F(EstimatorPoseTest, TheGyroIsReadInTheAxesOfItsLink) {
-  RobotModel model = two_wheeler();
-  model.imu_in_base.orientation = {1, 0, 0, 0};
-  Estimator estimator(EstimatorParameters{}, model, kPeriod);
-  PlanarRobot robot(model);
-  robot.bias = -0.4;  // angular + bias = −angular
-  robot.frame().imu.angular_velocity = {0, 0, -0.2};
-  estimator.step(robot.frame(), state_);
-  for (int i = 0; i < 1000; ++i) {
-    robot.go(0.5, 0.2);
-    estimator.step(robot.frame(), state_);
-  }
-  EXPECT_NEAR(yaw_of(state_.pose_odom), 0.2, kRounding);
-  EXPECT_NEAR(state_.confidence[kGyro], 1, 1e-9);
-}
-
+// Constant velocity through a gap of eight cycles: its only accelerometer sample says so, too.
 TEST_F(EstimatorPoseTest, SkippedCyclesAreTravelledAndCounted) {
-  robot_.frame().imu.angular_velocity = {0, 0, 0.2};
-  estimator_.reset();
-  observe();
   drive(0.5, 0.2, 1000);
-  robot_.go(0.5, 0.2, 8);
+  for (int i = 0; i < 8; ++i) robot_.drive(0.5, 0.2);
   observe();
   EXPECT_EQ(state_.skipped, 7u);
-  EXPECT_NE(state_.flags & kStateSkipped, 0u);
-  expect_truth(kRounding);
-  EXPECT_NEAR(state_.twist_base.linear[0], 0.5, 1e-9);
+  EXPECT_TRUE(has(kStateSkipped));
+  expect_truth();
   drive(0.5, 0.2, 1);
   EXPECT_EQ(state_.skipped, 7u);
-  EXPECT_EQ(state_.flags & kStateSkipped, 0u);
+  EXPECT_FALSE(has(kStateSkipped));
 }
 
 TEST_F(EstimatorPoseTest, AFrameSeenBeforeChangesNothing) {
@@ -150,29 +147,94 @@ TEST_F(EstimatorPoseTest, AFrameSeenBeforeChangesNothing) {
   const StateFrame before = state_;
   observe();
   EXPECT_EQ(std::memcmp(&before, &state_, sizeof before), 0);
+  --robot_.frame().head.cycle;
+  observe();
+  EXPECT_EQ(std::memcmp(&before, &state_, sizeof before), 0) << "an older one neither";
 }
 
-TEST_F(EstimatorPoseTest, ResetPoseIsExactlyZeroInTheNextFrameAndKeepsTheTwist) {
+TEST_F(EstimatorPoseTest, ResetPoseIsZeroInTheNextFrameAndKeepsTheTwist) {
   drive(0.5, 0.2, 1000);
   const double distance = state_.distance;
   estimator_.reset_pose();
   drive(0.5, 0.2, 1);
   EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
-  EXPECT_EQ(state_.pose_odom.orientation, (Quaternion{0, 0, 0, 1}));
-  EXPECT_EQ(state_.pose_covariance[0], 0);
-  EXPECT_NEAR(state_.twist_base.linear[0], 0.5, 1e-3);
+  EXPECT_NEAR(yaw(), 0, 1e-15);
+  for (const std::size_t i : {0U, 1U, 5U, 6U, 7U, 11U, 30U, 31U, 35U}) {
+    EXPECT_NEAR(state_.pose_covariance[i], 0, kExact) << i;
+  }
+  EXPECT_NEAR(speed(), 0.5, 1e-3);
   EXPECT_GT(state_.distance, distance);
+}
+
+// An IMU high on a robot that may be tilted: its own place is in doubt, base_link's is not.
+TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
+  RobotModel model = two_wheeler();
+  model.imu_in_base.position = {0.2, -0.1, 0.8};
+  Estimator estimator(EstimatorParameters{}, model, kPeriod);
+  RollingRobot robot(model);
+  StateFrame state;
+  for (int i = 0; i < 3000; ++i) {
+    robot.drive(i < 500 ? 0 : 0.5, i < 500 ? 0 : 0.3);
+    if (i == 2000) robot.go({.velocity = robot.motion.velocity, .rate = {0, 0.05, robot.motion.rate.z()}});
+    if (i == 2999) estimator.set_pose({3, -4, 1});
+    estimator.step(robot.frame(), state);
+  }
+  EXPECT_NEAR(state.pose_odom.position[0], 3, 1e-15);
+  EXPECT_NEAR(state.pose_odom.position[1], -4, 1e-15);
+  EXPECT_NEAR(yaw_of(state.pose_odom), 1, 1e-15);
+  for (const std::size_t i : {0U, 1U, 5U, 6U, 7U, 11U, 30U, 31U, 35U}) {
+    EXPECT_NEAR(state.pose_covariance[i], 0, kExact) << i;
+  }
+}
+
+// From (1, 2, 90°) ahead is odom y.
+TEST_F(EstimatorPoseTest, SetPoseContinuesFromThere) {
+  drive(0.5, 0.2, 1000);
+  drive(0.5, 0, 1000);
+  estimator_.set_pose({1, 2, std::numbers::pi / 2});
+  drive(0.5, 0, 1);
+  EXPECT_NEAR(x(), 1, 1e-15);
+  EXPECT_NEAR(y(), 2, 1e-15);
+  EXPECT_NEAR(yaw(), std::numbers::pi / 2, 1e-15);
+  drive(0.5, 0, 1000);
+  EXPECT_NEAR(x(), 1, 2 * reading());
+  EXPECT_NEAR(y(), 2.5, 2 * reading());
+  EXPECT_GT(state_.pose_covariance[7], 0);
+}
+
+// The covariance of what is learned turns with the pose: from then on both drive by the same numbers.
+TEST_F(EstimatorPoseTest, SetPoseIsTheSameDriveInOtherAxes) {
+  drive(0.5, 0.2, 2000);
+  Estimator turned = estimator_;
+  const double angle = 2.0;
+  estimator_.set_pose({0, 0, 0});
+  turned.set_pose({0, 0, angle});
+  StateFrame other;
+  for (int i = 0; i < 3000; ++i) {
+    robot_.drive(0.3, -0.4);
+    observe();
+    turned.step(robot_.frame(), other);
+  }
+  constexpr double kRounding = 1e-9;            // of 15 000 updates of numbers of order 1
+  constexpr double kCovarianceRounding = 1e-6;  // relative: 10⁻¹⁵ of the accelerometer's bias, 10⁻² m²/s⁴, for seconds
+  EXPECT_NEAR(std::cos(angle) * x() - std::sin(angle) * y(), other.pose_odom.position[0], kRounding);
+  EXPECT_NEAR(std::sin(angle) * x() + std::cos(angle) * y(), other.pose_odom.position[1], kRounding);
+  EXPECT_NEAR(std::remainder(yaw() + angle - yaw_of(other.pose_odom), 2 * std::numbers::pi), 0, kRounding);
+  EXPECT_NEAR(state_.pose_covariance[0] + state_.pose_covariance[7],
+              other.pose_covariance[0] + other.pose_covariance[7], kCovarianceRounding * state_.pose_covariance[0]);
+  EXPECT_NEAR(state_.pose_covariance[35], other.pose_covariance[35], kCovarianceRounding * state_.pose_covariance[35]);
 }
 
 TEST_F(EstimatorPoseTest, ANewRunStartsAtZero) {
   drive(0.5, 0.2, 1000);
   estimator_.reset();
-  PlanarRobot robot;
+  RollingRobot robot;
   robot.frame().joints[0].position = 3;
   estimator_.step(robot.frame(), state_);
   EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
   EXPECT_EQ(state_.distance, 0);
   EXPECT_EQ(state_.skipped, 0u);
+  EXPECT_EQ(state_.wheels.x, 0);
 }
 
 TEST_F(EstimatorPoseTest, ARestartContinuesWithoutAJumpAndWithGrownCovariance) {
@@ -181,24 +243,31 @@ TEST_F(EstimatorPoseTest, ARestartContinuesWithoutAJumpAndWithGrownCovariance) {
   last.head.cycle = robot_.frame().head.cycle;
   Estimator restarted(EstimatorParameters{}, two_wheeler(), kPeriod);
   restarted.resume(last);
-  robot_.go(0.5, 0.2, 300);
+  for (int i = 0; i < 300; ++i) robot_.drive(0.5, 0.2);
   restarted.step(robot_.frame(), state_);
-  EXPECT_EQ(state_.pose_odom.position, last.pose_odom.position);
-  EXPECT_NEAR(yaw_of(state_.pose_odom), yaw_of(last.pose_odom), 1e-15);
+  for (const std::size_t i : {0U, 1U, 2U}) {
+    EXPECT_NEAR(state_.pose_odom.position[i], last.pose_odom.position[i], 1e-15);
+  }
+  EXPECT_NEAR(yaw(), yaw_of(last.pose_odom), 1e-15);
   EXPECT_EQ(state_.distance, last.distance);
   EXPECT_EQ(state_.skipped, last.skipped + 299);
-  EXPECT_NE(state_.flags & kStateRestarted, 0u);
-  EXPECT_NE(state_.flags & kStateValid, 0u);
+  EXPECT_TRUE(has(kStateRestarted));
+  EXPECT_TRUE(has(kStateValid));
+  EXPECT_EQ(state_.gyro_bias, last.gyro_bias);
+  EXPECT_NEAR(state_.calibration.radius_ratio, last.calibration.radius_ratio, 1e-15);
   // The unknown travel is about 0.5 m/s · 0.3 s.
   EXPECT_GT(state_.pose_covariance[0], last.pose_covariance[0] + 0.14 * 0.14);
   EXPECT_GT(state_.pose_covariance[35], last.pose_covariance[35] + 0.05 * 0.05);
-  EXPECT_NEAR(state_.twist_base.linear[0], last.twist_base.linear[0], 1e-12);
-  robot_.go(0.5, 0.2);
-  restarted.step(robot_.frame(), state_);
-  const double dx = state_.pose_odom.position[0] - last.pose_odom.position[0];
-  const double dy = state_.pose_odom.position[1] - last.pose_odom.position[1];
-  EXPECT_NEAR(std::hypot(dx, dy), 0.5 * kPeriod, 1e-9);
-  EXPECT_NE(state_.flags & kStateRestarted, 0u);
+  EXPECT_NEAR(speed(), last.twist_base.linear[0], 1e-12);
+  const double x0 = x();
+  const double y0 = y();
+  for (int i = 0; i < 1000; ++i) {
+    robot_.drive(0.5, 0.2);
+    restarted.step(robot_.frame(), state_);
+  }
+  const double chord = 2 * 0.5 / 0.2 * std::sin(0.2 / 2);
+  EXPECT_NEAR(std::hypot(x() - x0, y() - y0), chord, 1e-3);
+  EXPECT_TRUE(has(kStateRestarted));
 }
 
 TEST_F(EstimatorPoseTest, ARestartInTheCycleAlreadyPublishedHoldsThePose) {
@@ -208,38 +277,55 @@ TEST_F(EstimatorPoseTest, ARestartInTheCycleAlreadyPublishedHoldsThePose) {
   Estimator restarted(EstimatorParameters{}, two_wheeler(), kPeriod);
   restarted.resume(last);
   restarted.step(robot_.frame(), state_);
-  EXPECT_EQ(state_.pose_odom.position, last.pose_odom.position);
+  EXPECT_NEAR(x(), last.pose_odom.position[0], 1e-15);
   EXPECT_EQ(state_.skipped, last.skipped);
 }
 
 TEST_F(EstimatorPoseTest, ALastFrameThatIsNotFiniteIsNotContinuedFrom) {
-  StateFrame last;
-  last.flags = kStateValid;
-  last.pose_odom.position[0] = std::nan("");
-  Estimator restarted(EstimatorParameters{}, two_wheeler(), kPeriod);
-  restarted.resume(last);
-  restarted.step(robot_.frame(), state_);
-  EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
-  EXPECT_EQ(state_.flags & kStateRestarted, 0u);
+  drive(0.5, 0.2, 100);
+  const auto spoil = [&](auto fault) {
+    StateFrame last = state_;
+    last.head.cycle = robot_.frame().head.cycle;
+    fault(last);
+    Estimator restarted(EstimatorParameters{}, two_wheeler(), kPeriod);
+    restarted.resume(last);
+    StateFrame state;
+    restarted.step(robot_.frame(), state);
+    EXPECT_EQ(state.pose_odom.position, (Vector3{0, 0, 0}));
+    EXPECT_EQ(state.flags & kStateRestarted, 0u);
+    EXPECT_TRUE(all_finite(state));
+  };
+  spoil([](StateFrame& last) { last.pose_odom.position[0] = std::nan(""); });
+  spoil([](StateFrame& last) { last.pose_covariance[7] = HUGE_VAL; });
+  spoil([](StateFrame& last) { last.calibration.radius_ratio = std::nan(""); });
+  spoil([](StateFrame& last) { last.attitude = {0, 0, 0, 0}; });
+  spoil([](StateFrame& last) { last.flags = 0; });
 }
 
 TEST_F(EstimatorPoseTest, CovarianceGrowsWithDistanceAndWithTurn) {
-  drive(0.5, 0, 1000);
+  drive(0.5, 0, 2000);
   const double position = state_.pose_covariance[0];
   const double yaw = state_.pose_covariance[35];
   EXPECT_GT(position, 0);
-  drive(0.5, 0, 1000);
-  EXPECT_GT(state_.pose_covariance[0], 1.9 * position);
+  drive(0.5, 0, 2000);
+  EXPECT_GT(state_.pose_covariance[0], 1.5 * position);
   const double yaw_straight = state_.pose_covariance[35];
   EXPECT_GT(yaw_straight, yaw);
   drive(0, 1.0, 1000);
   EXPECT_GT(state_.pose_covariance[35], yaw_straight);
 }
 
-// Independent wheels of 0.02 m/√m: σ² of the mean of both after d metres is 4e-4 · d / 2.
+// The mean of two independent wheels: σ² after d metres is wheel_slip_noise² · d / 2. Before that, by the
+// accelerometer's short memory and two readings, it is a little less or more.
 TEST_F(EstimatorPoseTest, DistanceVarianceIsThatOfTwoIndependentWheels) {
   drive(0.5, 0, 10000);
-  EXPECT_NEAR(state_.pose_covariance[0], 4e-4 * 5.0 / 2, 1e-9);
+  const double before = state_.pose_covariance[0];
+  const double distance = robot_.distance;
+  drive(0.5, 0, 20000);
+  const double noise = EstimatorParameters{}.wheel_slip_noise;
+  const double common = FilterNoise{}.common_slip;
+  const double expected = (noise * noise / 2 + common * common) * (robot_.distance - distance);
+  EXPECT_NEAR(state_.pose_covariance[0] - before, expected, 0.02 * expected);
 }
 
 TEST_F(EstimatorPoseTest, CovariancesAreSymmetricAndPositive) {
@@ -247,28 +333,12 @@ TEST_F(EstimatorPoseTest, CovariancesAreSymmetricAndPositive) {
     drive(0.5 - 0.05 * leg, 0.3 * std::sin(leg), 500);
     for (const Matrix6& published : {state_.pose_covariance, state_.twist_covariance}) {
       const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> matrix(published.data());
-      EXPECT_EQ(matrix, matrix.transpose());
-      const Eigen::Matrix<double, 6, 6> copy = matrix;
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(copy);
-      EXPECT_GT(solver.eigenvalues().minCoeff(), 0) << "leg " << leg;
+      const Eigen::Matrix<double, 6, 1> scale = matrix.diagonal().cwiseSqrt();
+      const Eigen::Matrix<double, 6, 6> skew = matrix - matrix.transpose();
+      EXPECT_LT((skew.array() / (scale * scale.transpose()).array()).abs().maxCoeff(), 1e-12) << "leg " << leg;
+      EXPECT_GT(smallest_correlation(published), 0) << "leg " << leg;
     }
   }
-}
-
-TEST_F(EstimatorPoseTest, AWheelThatSlipsLowersConfidenceAndRaisesTheFlag) {
-  robot_.frame().imu.angular_velocity = {0, 0, 0};
-  drive(0.5, 0, 500);
-  EXPECT_NEAR(state_.confidence[kLeftEncoder], 1, 1e-9);
-  const double before = state_.pose_covariance[0];
-  for (int i = 0; i < 500; ++i) {
-    robot_.go(0.5, 0);
-    robot_.frame().joints[1].position += 10 * kPeriod;  // the right rim is 1 m/s too fast
-    observe();
-  }
-  EXPECT_LT(state_.confidence[kLeftEncoder], 0.02);
-  EXPECT_LT(state_.confidence[kGyro], 0.02);
-  EXPECT_NE(state_.flags & kStateSlip, 0u);
-  EXPECT_GT(state_.pose_covariance[0], 10 * before);
 }
 
 TEST_F(EstimatorPoseTest, SameInputsGiveTheSameBits) {
@@ -278,11 +348,10 @@ TEST_F(EstimatorPoseTest, SameInputsGiveTheSameBits) {
   second.reset();
   StateFrame one;
   StateFrame two;
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise(0, 0.03);
+  robot_.noise = {.gyro = 1e-3, .accelerometer = 1e-2, .counts = 4096};
   for (int i = 0; i < 3000; ++i) {
-    robot_.go(0.5 * std::sin(i * 1e-3), 0.2);
-    robot_.frame().imu.angular_velocity[2] += noise(random);
+    robot_.drive(0.5 * std::sin(i * 1e-3), 0.2);
+    if (i > 2000) robot_.tread[1] = 0.9;  // slips
     first.step(robot_.frame(), one);
     second.step(robot_.frame(), two);
     ASSERT_EQ(std::memcmp(&one, &two, sizeof one), 0) << "cycle " << i;
@@ -291,26 +360,69 @@ TEST_F(EstimatorPoseTest, SameInputsGiveTheSameBits) {
 
 TEST_F(EstimatorPoseTest, StepsWithoutAllocating) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
-  AllocationGuard guard;
-  for (int i = 0; i < 1000; ++i) {
-    robot_.go(i < 500 ? 0.5 : 0, 0);
+  const AllocationGuard guard;
+  for (int i = 0; i < 3000; ++i) {
+    robot_.drive(i < 1500 ? 0.5 : 0, i < 1000 ? 0.2 : 0);
+    if (i == 600) robot_.tread[0] = 2.0;  // spins
+    if (i == 1200) robot_.tread[0].reset();
     if (i == 300) robot_.frame().imu.angular_velocity[2] = std::nan("");
     if (i == 400) estimator_.reset_pose();
-    if (i == 700) estimator_.resume(state_);
-    if (i == 800) estimator_.reset();
+    if (i == 2500) estimator_.resume(state_);
+    if (i == 2800) estimator_.reset();
     observe();
   }
   EXPECT_EQ(guard.count(), 0u);
 }
 
+static_assert(noexcept(std::declval<Estimator>().step(SensorFrame{}, std::declval<StateFrame&>())));
+static_assert(noexcept(std::declval<Estimator>().step(SensorFrame{}, 1e-3, std::declval<StateFrame&>())));
+
 TEST(EstimatorConstruction, RefusesWhatCannotBe) {
-  EXPECT_THROW(Estimator(EstimatorParameters{}, two_wheeler(), 0), std::invalid_argument);
-  RobotModel robot = two_wheeler();
-  robot.wheel_base = 0;
-  EXPECT_THROW(Estimator(EstimatorParameters{}, robot, kPeriod), std::invalid_argument);
+  const RobotModel robot = two_wheeler();
+  EXPECT_THROW(Estimator(EstimatorParameters{}, robot, 0), std::invalid_argument);
+  EXPECT_THROW(Estimator(EstimatorParameters{}, robot, std::nan("")), std::invalid_argument);
+  const auto refuses_robot = [&](auto fault) {
+    RobotModel broken = robot;
+    fault(broken);
+    EXPECT_THROW(Estimator(EstimatorParameters{}, broken, kPeriod), std::invalid_argument);
+  };
+  refuses_robot([](RobotModel& broken) { broken.wheel_base = 0; });
+  refuses_robot([](RobotModel& broken) { broken.wheels.pop_back(); });
+  refuses_robot([](RobotModel& broken) { broken.wheels[0].radius = -0.1; });
+  refuses_robot([](RobotModel& broken) { broken.imu_in_base.orientation = {0, 0, 0, 0}; });
+  using Parameters = EstimatorParameters;
+  for (double Parameters::*const positive :
+       {&Parameters::gyro_noise, &Parameters::accelerometer_noise, &Parameters::encoder_noise,
+        &Parameters::standstill_speed, &Parameters::standstill_time, &Parameters::standstill_acceleration,
+        &Parameters::speed_bandwidth}) {
+    for (const double value : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+      Parameters parameters;
+      parameters.*positive = value;
+      EXPECT_THROW(Estimator(parameters, robot, kPeriod), std::invalid_argument) << value;
+    }
+  }
+  for (double Parameters::*const no_less :
+       {&Parameters::wheel_slip_noise, &Parameters::gyro_scale_deviation, &Parameters::gyro_bias_initial,
+        &Parameters::gyro_bias_walk, &Parameters::accelerometer_bias_initial, &Parameters::accelerometer_bias_walk}) {
+    for (const double value : {-1.0, std::nan(""), HUGE_VAL}) {
+      Parameters parameters;
+      parameters.*no_less = value;
+      EXPECT_THROW(Estimator(parameters, robot, kPeriod), std::invalid_argument) << value;
+    }
+  }
+}
+
+TEST(EstimatorConstruction, NamesWhatIsWrongItsRuleAndItsValue) {
   EstimatorParameters parameters;
-  parameters.gyro_noise = std::nan("");
-  EXPECT_THROW(Estimator(parameters, two_wheeler(), kPeriod), std::invalid_argument);
+  parameters.gyro_noise = -0.5;
+  try {
+    Estimator estimator(parameters, two_wheeler(), kPeriod);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("gyro_noise must be > 0 rad/s/√Hz"), std::string::npos) << text;
+    EXPECT_NE(text.find("-0.5"), std::string::npos) << text;
+  }
 }
 
 }  // namespace

@@ -79,6 +79,8 @@ class Trial {
     measured.gyro = *exact.gyro + filter_.noise().gyro / std::sqrt(kPeriod) * vector();
     measured.accelerometer = *exact.accelerometer + filter_.noise().accelerometer / std::sqrt(kPeriod) * vector();
     truth_.predict(exact);
+    const double path = (std::abs(exact.left_speed) + std::abs(exact.right_speed)) / 2 * kPeriod;
+    truth_.travel.array() += filter_.noise().common_slip * std::sqrt(path) * normal();
     for (const int side : {0, 1}) {
       const double speed = side == 0 ? exact.left_speed : exact.right_speed;
       truth_.travel[side] += filter_.noise().wheel_slip * std::sqrt(std::abs(speed) * kPeriod) * normal();
@@ -124,9 +126,8 @@ class Trial {
   Filter::Motion motion(const Vector3d& omega) const {
     Filter::Motion motion;
     motion.dt = kPeriod;
-    motion.wheel_rate = omega.z();
-    motion.left_speed = truth_.velocity.x() - omega.z() * truth_.lever(0);
-    motion.right_speed = truth_.velocity.x() - omega.z() * truth_.lever(1);
+    motion.left_speed = (truth_.velocity.x() - omega.z() * truth_.lever(0)) / (1 - truth_.radius_ratio / 2);
+    motion.right_speed = (truth_.velocity.x() - omega.z() * truth_.lever(1)) / (1 + truth_.radius_ratio / 2);
     return motion;
   }
 

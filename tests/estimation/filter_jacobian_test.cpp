@@ -77,12 +77,17 @@ class TransitionJacobian : public testing::TestWithParam<Sensors> {
     const Vector3d force = vector(2) + filter.rotation.transpose() * Vector3d(0, 0, Filter::kGravity);
     if (GetParam().gyro) motion.gyro = rate / (1 + filter.gyro_scale) + filter.gyro_bias;
     if (GetParam().accelerometer) motion.accelerometer = force + filter.accelerometer_bias;
-    motion.left_speed = 0.4;
-    motion.right_speed = 0.7;
+    roll(motion, filter, rate.z());
+    return motion;
+  }
+
+  /// Wheels that turn as the gyro says: β's and κ's columns take their rate in its place.
+  static void roll(Filter::Motion& motion, const Filter& filter, double rate) {
+    const double half = rate * kGeometry.wheel_base * (1 + filter.wheel_base) / 2;
+    motion.left_speed = (0.5 - half) / (1 - filter.radius_ratio / 2);
+    motion.right_speed = (0.5 + half) / (1 + filter.radius_ratio / 2);
     motion.left_travel = motion.left_speed * kPeriod;
     motion.right_travel = motion.right_speed * kPeriod;
-    motion.wheel_rate = rate.z();  // β's column takes it in the gyro's place
-    return motion;
   }
 
   static Filter::Covariance propagated(Filter filter, const Filter::Motion& motion, const Filter::Covariance& start) {
@@ -160,7 +165,7 @@ TEST_P(LevelTransitionJacobian, KnowsWhatTheGyrosScaleDoesToTheTravel) {
   const Filter filter = state(random, GetParam().calibrated);
   Filter::Motion motion = this->motion(random, filter);
   motion.gyro = Vector3d(0, 0, 0.8) / (1 + filter.gyro_scale) + filter.gyro_bias;
-  motion.wheel_rate = 0.8;
+  roll(motion, filter, 0.8);
   const Filter::Covariance expected = differences(filter, motion);
   const Filter::Covariance f = transition(filter, motion);
   for (const int side : {0, 1}) {

@@ -1,0 +1,85 @@
+#pragma once
+/// An estimator on a robot that rolls: what most of its tests begin with.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "estimation/estimator.h"
+#include "estimation/rolling_robot.h"
+
+namespace robot_control {
+
+inline bool all_finite(const StateFrame& state) {
+  bool good = std::isfinite(state.distance);
+  const auto check = [&](const auto& values) {
+    for (const double value : values) good = good && std::isfinite(value);
+  };
+  check(state.pose_odom.position);
+  check(state.pose_odom.orientation);
+  check(state.twist_base.linear);
+  check(state.twist_base.angular);
+  check(state.pose_covariance);
+  check(state.twist_covariance);
+  check(state.gyro_bias);
+  check(state.gyro_bias_deviation);
+  check(state.accelerometer_bias);
+  check(state.attitude);
+  check(state.attitude_covariance);
+  check(state.nis);
+  check(std::array{state.calibration.radius_ratio, state.calibration.wheel_base_factor,
+                   state.calibration.radius_ratio_deviation, state.calibration.wheel_base_deviation});
+  check(std::array{state.wheels.x, state.wheels.y, state.wheels.yaw, state.wheels.linear, state.wheels.angular});
+  for (const double value : state.confidence) good = good && value >= 0 && value <= 1;
+  return good;
+}
+
+/// Of the correlation: smallest eigenvalue, 0 for rounding of a singular one.
+inline double smallest_correlation(const Matrix6& published) {
+  Eigen::Matrix<double, 6, 6> matrix = Eigen::Map<const Eigen::Matrix<double, 6, 6>>(published.data());
+  const Eigen::Matrix<double, 6, 1> scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(matrix).eigenvalues().minCoeff();
+}
+
+class EstimatorFixture : public testing::Test {
+ protected:
+  explicit EstimatorFixture(const RobotModel& model = two_wheeler(), const EstimatorParameters& parameters = {},
+                            double period = RollingRobot::kPeriod)
+      : robot_(model, period), estimator_(parameters, model, period) {}
+
+  void observe() { estimator_.step(robot_.frame(), state_); }
+  /// Towards a planar twist, with the accelerations of RollingRobot::drive.
+  void drive(double linear, double angular, int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      robot_.drive(linear, angular);
+      observe();
+    }
+  }
+  void stand(int cycles = 1000) {
+    observe();
+    drive(0, 0, cycles);
+  }
+  /// One cycle at the present twist in which `fault` has been at the frame.
+  template <class Fault>
+  void broken(Fault fault) {
+    robot_.go(robot_.motion);
+    SensorFrame frame = robot_.frame();
+    fault(frame);
+    estimator_.step(frame, state_);
+  }
+  bool has(StateFlag flag) const { return (state_.flags & flag) != 0; }
+  double x() const { return state_.pose_odom.position[0]; }
+  double y() const { return state_.pose_odom.position[1]; }
+  double yaw() const { return yaw_of(state_.pose_odom); }
+  double speed() const { return state_.twist_base.linear[0]; }
+  double position_error() const { return std::hypot(x() - robot_.x(), y() - robot_.y()); }
+  double yaw_error() const { return std::abs(std::remainder(yaw() - robot_.yaw(), 2 * std::numbers::pi)); }
+
+  RollingRobot robot_;
+  Estimator estimator_;
+  StateFrame state_;
+};
+
+}  // namespace robot_control
