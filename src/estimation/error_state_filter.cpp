@@ -35,8 +35,9 @@ double square(double value) noexcept {
   return value * value;
 }
 
-constexpr double kMaxRatio = 0.05;      // wheels of one type differ by less than a tenth of it
-constexpr double kMaxBase = 0.3;        // of a skid-steer on another floor
+constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
+constexpr double kMaxBase = 0.3;    // of a skid-steer on another floor
+constexpr double kHuber = 1.5;
 constexpr double kTravelSlack = 0.002;  // m: a reading that is less wrong is no outlier; sliding, the slip watch sees
 constexpr double kGate = 16.0;          // 4 σ of one degree of freedom: one good sample in 16 000 is refused
 
@@ -55,6 +56,7 @@ void ErrorStateFilter::reset() noexcept {
   gyro_bias.setZero();
   accelerometer_bias.setZero();
   rate.setZero();
+  smooth_rate = 0;
   radius_ratio = wheel_base = gyro_scale = 0;
   corrections_.setZero();
   covariance.setZero();
@@ -91,6 +93,7 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
     u = half.transpose() * velocity + dt / 2 * steady;
     velocity = turn.transpose() * velocity + dt * (half.transpose() * steady);
   }
+  smooth_rate += dt / (kSmoothing + dt) * (omega.z() - smooth_rate);
   transport(motion, middle, turn, u, omega);
 
   position += dt * (middle * u);
@@ -118,10 +121,8 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   const double scale[2] = {dt / (1 - radius_ratio / 2), dt / (1 + radius_ratio / 2)};
   const double height = geometry_.height;
   const double base = geometry_.wheel_base * (1 + wheel_base);
-  const double wheel_rate =
-      ((1 + radius_ratio / 2) * motion.right_speed - (1 - radius_ratio / 2) * motion.left_speed) / base;
   double contact[2];
-  for (const int side : {0, 1}) contact[side] = u.x() + omega.y() * height - omega.z() * lever(side);
+  for (const int side : {0, 1}) contact[side] = u.x() - smooth_rate * lever(side);
 
   const auto pass = [&](Covariance& p) {
     for (const int i : {0, 1, 2}) {  // position
@@ -134,11 +135,12 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
     for (const int side : {0, 1}) {  // travel
       auto column = p.col(kTravel + side);
       const double sign = side == 0 ? 0.5 : -0.5;
-      column += scale[side] * p.col(kVelocity) + scale[side] * sign * contact[side] * p.col(kRadiusRatio);
-      if (!gyro) continue;
+      column += scale[side] * p.col(kVelocity);
+      if (!gyro) continue;  // the turn is the wheels' own: a wrong ratio turns the robot, and contradicts no encoder
+      column += scale[side] * sign * contact[side] * p.col(kRadiusRatio);
       column += scale[side] * (lever(side) * p.col(kGyroBias + 2) - height * p.col(kGyroBias + 1));
-      column -= scale[side] * wheel_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
-      column -= scale[side] * wheel_rate * lever(side) * p.col(kGyroScale);
+      column -= scale[side] * smooth_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
+      column -= scale[side] * smooth_rate * lever(side) * p.col(kGyroScale);
     }
     if (motion.accelerometer) {  // velocity
       const Column x = p.col(kVelocity);
@@ -231,8 +233,11 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_rolling(const Column& ph,
   const auto tilt = covariance.block<2, 2>(kOrientation, kOrientation).eval();
   const auto bias = covariance.block<3, 3>(kAccelerometerBias, kAccelerometerBias).eval();
   const auto both = covariance.block<2, 3>(kOrientation, kAccelerometerBias).eval();
-  const Innovation result{innovation * innovation / variance, innovation * innovation <= kGate * (variance + slack)};
+  const double nis = innovation * innovation / variance;
+  const Innovation result{nis, innovation * innovation <= kGate * (variance + slack)};
   if (!result.used) return result;
+  // Huber's weight: what is beyond kHuber deviations pulls no harder (P. J. Huber, Robust Statistics, 1981, chapter 3).
+  variance *= std::max(1.0, std::sqrt(nis) / kHuber);
   const Column root = ph / std::sqrt(variance);
   covariance.noalias() -= root * root.transpose();
   covariance.block<2, 2>(kOrientation, kOrientation) = tilt;
@@ -257,6 +262,10 @@ void ErrorStateFilter::inject(const Column& error) noexcept {
   radius_ratio = std::clamp(radius_ratio + error[kRadiusRatio], -kMaxRatio, kMaxRatio);
   wheel_base = std::clamp(wheel_base + error[kWheelBase], -kMaxBase, kMaxBase);
   gyro_scale = std::clamp(gyro_scale + error[kGyroScale], -kMaxRatio, kMaxRatio);
+}
+
+void ErrorStateFilter::take_back(const Column& error) noexcept {
+  inject(-error);
 }
 
 void ErrorStateFilter::doubt_velocity(int axis, double deviation, double time) noexcept {
@@ -330,6 +339,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int
 void ErrorStateFilter::stand(double deviation) noexcept {
   velocity.setZero();
   rate.setZero();
+  smooth_rate = 0;
   covariance.middleCols<3>(kVelocity).setZero();
   covariance.middleRows<3>(kVelocity).setZero();
   for (const int i : {0, 1, 2}) covariance(kVelocity + i, kVelocity + i) = square(deviation);

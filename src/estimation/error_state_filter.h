@@ -95,6 +95,7 @@ class ErrorStateFilter {
   using Column = Eigen::Matrix<double, kSize, 1>;
 
   static constexpr double kGravity = 9.80665;          ///< m/s², standard gravity
+  static constexpr double kSmoothing = 0.05;           ///< s
   static constexpr double kPulledBias = 0.005;         ///< m/s²
   static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
 
@@ -144,6 +145,8 @@ class ErrorStateFilter {
 
   /// Adds an error to the nominal state; what a window of corrections did is taken back by its negative.
   void inject(const Column& error) noexcept;
+  /// These errors were injected wrongly, perhaps: they are taken back, and not known any more as well as that.
+  void take_back(const Column& error) noexcept;
   /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the
   /// accelerometer's bias, which is from now on known to kPulledBias at best.
   void doubt_velocity(int axis, double deviation, double time) noexcept;
@@ -162,6 +165,7 @@ class ErrorStateFilter {
   Covariance covariance;
 
   Eigen::Vector3d rate{0, 0, 0};  ///< rad/s, bias-free, of the last prediction
+  double smooth_rate = 0;         ///< rad/s, about the base's z axis, over kSmoothing
 
   const ContactGeometry& geometry() const noexcept { return geometry_; }
   const FilterNoise& noise() const noexcept { return noise_; }

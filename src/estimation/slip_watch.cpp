@@ -193,6 +193,13 @@ void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes,
     pulled[axis] = window.acceleration[axis];
   }
   filter.inject(back);
+  Filter::Column turning = Filter::Column::Zero();
+  if (axes[0]) {
+    turning[Filter::kOrientation + 2] = made[Filter::kOrientation + 2];
+    for (const int index : kTurning) turning[index] = made[index];
+    filter.take_back(turning);
+    back -= turning;
+  }
   for (Window& other : windows_) {
     if (other.age > age) {
       other.corrections += back;
