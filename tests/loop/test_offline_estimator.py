@@ -266,6 +266,17 @@ def test_wheels_alone_make_a_path(log, samples):
     assert np.all(out["flags"] & FLAGS["no_gyro"])
 
 
+@pytest.mark.parametrize("accelerometer", [True, False])
+def test_without_a_gyro_nobody_can_know_the_wheels_and_the_yaw_says_so(log, samples, accelerometer):
+    time, left, right, _, accel = samples
+    out = Estimator().process(time, left, right * 1.01, accel=accel if accelerometer else None)
+    assert out["radius_ratio"][-1] == pytest.approx(1, abs=1e-3)
+    assert out["radius_ratio_deviation"][-1] > 0.009  # the parameter's 0.01, less what rounding and counts tell
+    _, yaw = path_error(out, log)
+    assert yaw > 0.05  # 1 % of 3.5 m over a base of 0.5 m: 0.07 rad
+    assert yaw < 2 * np.sqrt(out["pose_covariance"][-1, 5, 5])
+
+
 def test_a_row_without_any_sample_does_no_harm(log, samples):
     holes = [table.copy() for table in samples]
     for table in holes[1:]:
