@@ -285,7 +285,7 @@ void SlipWatch::tell(const Filter& filter) noexcept {
     if (states_[c].believed) continue;
     reasons_ |= c == kLeft ? kSlipLeft : kSlipRight;
     const double forward = filter.velocity.x();
-    const bool faster = states_[c].excess * (forward + states_[c].excess) > 0;
+    const bool faster = std::abs(forward + states_[c].excess) > std::abs(forward);
     reasons_ |= faster ? kSlipSpinning : kSlipStalled;
   }
   if (turn_slips_) reasons_ |= kSlipTurn;
