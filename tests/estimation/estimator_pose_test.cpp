@@ -174,8 +174,7 @@ TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
   RollingRobot robot(model);
   StateFrame state;
   for (int i = 0; i < 3000; ++i) {
-    robot.drive(i < 500 ? 0 : 0.5, i < 500 ? 0 : 0.3);
-    if (i == 2000) robot.go({.velocity = robot.motion.velocity, .rate = {0, 0.05, robot.motion.rate.z()}});
+    robot.drive(i < 500 ? 0 : 0.5, i < 500 ? 0 : 0.3, i < 2000 ? 0 : -0.05);  // onto a ramp of 0.05 rad
     if (i == 2999) estimator.set_pose({3, -4, 1});
     estimator.step(robot.frame(), state);
   }

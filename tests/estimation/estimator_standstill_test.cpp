@@ -82,8 +82,8 @@ TEST_F(EstimatorStandstillTest, NeitherPoseNorItsCovarianceMovesUnderNoise) {
   EXPECT_EQ(speed(), 0);
 }
 
-// Promised: yaw drift ≤ 0.01°, position ≤ 0.1 mm. In the first minute of a rest the bias gets known better than it was on
-// the way, which makes the way right.
+// Promised: yaw drift ≤ 0.01°, position ≤ 0.1 mm. In the first minute of a rest the bias gets known better than it was
+// on the way, which makes the way right.
 TEST_F(EstimatorStandstillTest, TenMinutesAtRestKeepThePose) {
   robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
   robot_.gyro_bias = {0.001, -0.002, 0.0017};  // 0.1 °/s

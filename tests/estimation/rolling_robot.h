@@ -105,14 +105,15 @@ class RollingRobot {
     read_imu(force);
   }
 
-  /// One cycle with constant acceleration towards a planar twist, until it is reached.
-  void drive(double linear, double angular) {
+  /// One cycle with constant acceleration towards a planar twist, until it is reached. `pitch_rate`: at its end, rad/s.
+  void drive(double linear, double angular, double pitch_rate = 0) {
     Rolling end = motion;
     const auto towards = [&](double from, double to, double rate) {
       return from + std::clamp(to - from, -rate * period_, rate * period_);
     };
     end.velocity.x() = towards(motion.velocity.x(), linear, kAcceleration);
     end.rate.z() = towards(motion.rate.z(), angular, kTurnAcceleration);
+    end.rate.y() = pitch_rate;
     go(end);
   }
 

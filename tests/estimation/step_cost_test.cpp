@@ -1,0 +1,66 @@
+/// What one step of the estimator costs on the move: prediction, both encoders, both contacts, slip watch.
+
+#include <algorithm>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+#include "bench/kernel.h"
+#include "bench/rows.h"
+#include "estimation/estimator_fixture.h"
+#include "support/allocation_guard.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kPromisedNs = 3000;  // the median on a quiet machine, whose kernel takes 92
+constexpr std::size_t kCycles = 1000;
+constexpr int kBlocks = 11;
+// A neighbour on the same core halves throughput, for seconds, and hardly touches the kernel's latency. What costs too
+// much does so in every round; one good round proves that it does not.
+constexpr int kRounds = 40;
+
+class EstimatorCost : public EstimatorFixture {
+ protected:
+  EstimatorCost() {
+    robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
+    stand();
+    drive(0.5, 0.2, 2000);
+    EXPECT_EQ(state_.flags, std::uint64_t{kStateValid}) << "all corrections";
+    for (std::size_t k = 0; k < kCycles; ++k) {
+      robot_.drive(0.5, 0.2);
+      recorded_.push_back(robot_.frame());
+    }
+  }
+
+  /// Of one round: the median over blocks of step over kernel.
+  double ratio() {
+    std::vector<double> steps;
+    std::vector<double> kernels;
+    for (int block = 0; block < kBlocks; ++block) {
+      kernels.push_back(bench::kernel_block(kCycles));
+      Estimator estimator = estimator_;
+      const AllocationGuard guard;
+      const std::int64_t start = monotonic_ns();
+      for (const SensorFrame& frame : recorded_) estimator.step(frame, state_);
+      const std::int64_t end = monotonic_ns();
+      EXPECT_EQ(guard.count(), 0u);
+      EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
+      steps.push_back(static_cast<double>(end - start) / kCycles);
+    }
+    return bench::median_ratio(steps, kernels);
+  }
+
+  std::vector<SensorFrame> recorded_;
+};
+
+TEST_F(EstimatorCost, IsWithinItsPromiseOnASteadyCurve) {
+  constexpr double kBound = kPromisedNs / bench::kKernelNs;
+  double best = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kRounds && best > kBound; ++round) best = std::min(best, ratio());
+  std::cout << "step over kernel: " << best << ", allowed " << kBound << "\n";
+  EXPECT_LE(best, kBound);
+}
+
+}  // namespace
+}  // namespace robot_control
