@@ -203,7 +203,10 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) / 2 * dt;
   p(kTravel, kTravel) += square(noise_.wheel_slip) * std::abs(motion.left_speed) * dt;
   p(kTravel + 1, kTravel + 1) += square(noise_.wheel_slip) * std::abs(motion.right_speed) * dt;
-  p.block<2, 2>(kTravel, kTravel).array() += square(noise_.common_slip) * path;
+  const double common = noise_.common_slip * (1 + kCautious * motion.caution);
+  p.block<2, 2>(kTravel, kTravel).array() += square(common) * path;
+  const double twist = square(noise_.turn_slip * base / 2) * std::abs(omega.z()) * dt;
+  p.block<2, 2>(kTravel, kTravel) += Eigen::Matrix2d{{twist, -twist}, {-twist, twist}};
   if (p(kRadiusRatio, kRadiusRatio) > 0) p(kRadiusRatio, kRadiusRatio) += square(noise_.radius_ratio_walk) * path;
   if (p(kWheelBase, kWheelBase) > 0) p(kWheelBase, kWheelBase) += square(noise_.wheel_base_walk) * path;
   // No measurement shrinks an asymmetric part: of rounding alone it would outgrow the covariance within an hour's

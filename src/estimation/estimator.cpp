@@ -431,6 +431,7 @@ void Estimator::move(double dt) noexcept {
   motion.accelerometer = imu_.accelerometer();
   motion.left_travel = rolled(kLeft, dt);
   motion.right_travel = rolled(kRight, dt);
+  motion.caution = slip_.caution();
   motion.left_speed = left_speed;
   motion.right_speed = right_speed;
   filter_.predict(motion);
@@ -611,7 +612,7 @@ void Estimator::fill_twist(StateFrame& out) const noexcept {
   joint.bottomLeftCorner<3, 3>() = joint.topRightCorner<3, 3>().transpose();
   joint.bottomRightCorner<3, 3>() = p.block<3, 3>(Filter::kGyroBias, Filter::kGyroBias);
   const double speed = (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2;
-  double yaw_noise = square(parameters_.gyro_noise) / period_;
+  double yaw_noise = square(parameters_.gyro_noise) / (2 * period_);  // the rate is the mean of two samples
   if (resting_) yaw_noise = 0;
   if (!imu_.gyro()) {
     yaw_noise = 4 / square(geometry_.wheel_base) *

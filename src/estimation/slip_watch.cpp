@@ -17,6 +17,7 @@ constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
 constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
 constexpr int kTurning[4] = {Filter::kGyroBias + 2, Filter::kRadiusRatio, Filter::kWheelBase, Filter::kGyroScale};
 constexpr double kSigmas = 4;
+constexpr double kYoungest = 0.04;  // s
 constexpr double kShaken = 0.4;
 constexpr std::size_t kLearning = 2;  // index of the window that bias and tilt learn from
 
@@ -31,7 +32,7 @@ void SlipWatch::reset() noexcept {
   windows_ = {};
   since_judged_ = 0;
   reasons_ = 0;
-  turn_nis_ = travel_nis_ = 0;
+  turn_nis_ = travel_nis_ = caution_ = 0;
   turn_slips_ = false;
 }
 
@@ -246,6 +247,12 @@ void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
 
 void SlipWatch::judge(Filter& filter) noexcept {
   bool found = false;
+  caution_ = 0;
+  for (const Window& window : windows_) {
+    if (!window.inertial || window.age < kYoungest) continue;
+    caution_ = std::max({caution_, excess(window, kLeft, filter), excess(window, kRight, filter)});
+  }
+  caution_ = std::min(caution_, 1.0);
   for (std::size_t i = 0; i < kWindows && !found; ++i) {
     if (windows_[i].inertial && windows_[i].age >= 0.4 * kLengths[i]) found = judge(windows_[i], filter);
   }

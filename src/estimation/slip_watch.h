@@ -50,6 +50,8 @@ class SlipWatch {
   void step(const Sample& sample, ErrorStateFilter& filter) noexcept;
 
   bool believed(Contact contact) const noexcept { return states_[static_cast<std::size_t>(contact)].believed; }
+  /// How near to sliding the wheels are, by the last judgement: 0 … 1, the largest residual over its limit.
+  double caution() const noexcept { return caution_; }
   std::uint64_t reasons() const noexcept { return reasons_; }  ///< SlipReason bits
   /// Residuals of the last judgement over their deviation, squared: of the turn (gyro), of the travel (accelerometer).
   double turn_nis() const noexcept { return turn_nis_; }
@@ -102,6 +104,7 @@ class SlipWatch {
   std::array<Window, kWindows> windows_;
   std::array<State, kContacts> states_;
   double since_judged_ = 0;
+  double caution_ = 0;
   std::uint64_t reasons_ = 0;
   double turn_nis_ = 0;
   double travel_nis_ = 0;
