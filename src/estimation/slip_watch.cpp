@@ -265,7 +265,8 @@ void SlipWatch::judge(Filter& filter) noexcept {
   }
   // The newer window of the two looks over the shorter time; the turn needs no accelerometer.
   const Window& longest = windows_[4].age > windows_[5].age ? windows_[4] : windows_[5];
-  if (longest.age > 0) {
+  const bool heard = std::isfinite(longest.measured[kLeft]) && std::isfinite(longest.measured[kRight]);
+  if (longest.age > 0 && heard) {
     const double left = residual(longest, kLeft, filter);
     const double right = residual(longest, kRight, filter);
     const auto& noise = filter.noise();
