@@ -194,7 +194,8 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
     p(kOrientation + 1, kOrientation + 1) += square(kLevel) * dt;
     p(kOrientation + 2, kOrientation + 2) += yaw;
   }
-  const double shake = square(motion.accelerometer ? noise_.accelerometer : kUnknownAcceleration) * dt;
+  const double known = noise_.accelerometer + (motion.sliding ? kSliding : 0);
+  const double shake = square(motion.accelerometer ? known : kUnknownAcceleration) * dt;
   for (const int i : {0, 1, 2}) {
     p(kVelocity + i, kVelocity + i) += shake;
     p(kGyroBias + i, kGyroBias + i) += square(noise_.gyro_bias_walk) * dt;
@@ -269,6 +270,11 @@ void ErrorStateFilter::inject(const Column& error) noexcept {
 
 void ErrorStateFilter::take_back(const Column& error) noexcept {
   inject(-error);
+}
+
+void ErrorStateFilter::doubt_position(int axis, double deviation) noexcept {
+  const Vector3d along = rotation.col(axis) * deviation;
+  covariance.block<3, 3>(kPosition, kPosition) += along * along.transpose();
 }
 
 void ErrorStateFilter::doubt_velocity(int axis, double deviation, double time) noexcept {

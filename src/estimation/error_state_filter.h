@@ -58,7 +58,7 @@ struct FilterNoise {
   double accelerometer = 2e-3;            ///< m/s²/√Hz
   double accelerometer_bias_walk = 1e-4;  ///< m/s²/√s
   double wheel_slip = 3e-4;               ///< m/√m of each side's travel, of either wheel alone
-  double common_slip = 3e-4;              ///< m/√m, of both together; up to kCautious times that near sliding
+  double common_slip = 2e-4;              ///< m/√m, of both together; up to kCautious times that near sliding
   double encoder = 4.4e-5;                ///< m, of one reading
   double turn_slip = 1e-3;                ///< rad/√rad, of the wheels' turn: a contact patch twists before it turns
   double radius_ratio_walk = 1e-5;        ///< 1/√m
@@ -96,7 +96,8 @@ class ErrorStateFilter {
   using Column = Eigen::Matrix<double, kSize, 1>;
 
   static constexpr double kGravity = 9.80665;          ///< m/s², standard gravity
-  static constexpr double kCautious = 10;              ///< times
+  static constexpr double kCautious = 15;              ///< times
+  static constexpr double kSliding = 0.03;             ///< m/s²/√Hz more, while no wheel holds the velocity
   static constexpr double kSmoothing = 0.05;           ///< s
   static constexpr double kPulledBias = 0.005;         ///< m/s²
   static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
@@ -108,6 +109,7 @@ class ErrorStateFilter {
     std::optional<Eigen::Vector3d> accelerometer;  ///< m/s², mean over dt, bias included
     double left_travel = 0, right_travel = 0;      ///< m over dt, as the model's radii measure it
     double caution = 0;                          ///< 0 … 1: the wheels may be about to slide
+    bool sliding = false;                        ///< no wheel holds the velocity
     double left_speed = 0, right_speed = 0;        ///< m/s, smoothed
   };
 
@@ -153,6 +155,7 @@ class ErrorStateFilter {
   /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the
   /// accelerometer's bias, which is from now on known to kPulledBias at best.
   void doubt_velocity(int axis, double deviation, double time) noexcept;
+  void doubt_position(int axis, double deviation) noexcept;  ///< m, along a base axis
   /// Sum of all errors injected by measurements since the last prediction.
   const Column& corrections() const noexcept { return corrections_; }
 

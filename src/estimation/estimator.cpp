@@ -432,6 +432,7 @@ void Estimator::move(double dt) noexcept {
   motion.left_travel = rolled(kLeft, dt);
   motion.right_travel = rolled(kRight, dt);
   motion.caution = slip_.caution();
+  motion.sliding = !slip_.believed(Contact::kLeft) && !slip_.believed(Contact::kRight);
   motion.left_speed = left_speed;
   motion.right_speed = right_speed;
   filter_.predict(motion);

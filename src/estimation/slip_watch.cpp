@@ -17,6 +17,7 @@ constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
 constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
 constexpr int kTurning[4] = {Filter::kGyroBias + 2, Filter::kRadiusRatio, Filter::kWheelBase, Filter::kGyroScale};
 constexpr double kSigmas = 4;
+constexpr double kDoubt = 3;        // deviations of the window's end speed: it was a slide that made the window
 constexpr double kYoungest = 0.04;  // s
 constexpr double kShaken = 0.4;
 constexpr std::size_t kLearning = 2;  // index of the window that bias and tilt learn from
@@ -163,16 +164,19 @@ bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
   const Window& whole = oldest_that_sees(slides, window, filter);
   const double age = whole.age;
   std::array<double, 3> doubt{};
+  std::array<double, 3> way{};
   for (std::size_t c = 0; c < kContacts; ++c) {
     // What shakes the belief in one contact shakes that in the others: two wheels on ice rarely begin together.
     if (!states_[c].believed || !(slides[c] || excess(window, c, filter) > kShaken)) continue;
     states_[c] = {.believed = false, .excess = residual(window, c, filter) / window.age};
-    doubt[static_cast<std::size_t>(kAxis[c])] = std::sqrt(variance(whole, c, filter)) / age;
+    way[static_cast<std::size_t>(kAxis[c])] = residual(whole, c, filter);
+    doubt[static_cast<std::size_t>(kAxis[c])] = kDoubt * std::sqrt(variance(whole, c, filter)) / age;
   }
   take_back(whole, {doubt[0] > 0, doubt[1] > 0, doubt[2] > 0}, filter);
   for (int axis = 0; axis < 3; ++axis) {
     const double deviation = doubt[static_cast<std::size_t>(axis)];
     if (deviation > 0) filter.doubt_velocity(axis, deviation, age);
+    if (deviation > 0) filter.doubt_position(axis, way[static_cast<std::size_t>(axis)] / 2);
   }
   return true;
 }
@@ -257,8 +261,11 @@ void SlipWatch::judge(Filter& filter) noexcept {
     if (windows_[i].inertial && windows_[i].age >= 0.4 * kLengths[i]) found = judge(windows_[i], filter);
   }
   if (windows_[0].inertial) {
-    const Window& older = windows_[0].age > windows_[1].age ? windows_[0] : windows_[1];
-    if (older.age >= 0.4 * kLengths[0]) heal(older, filter);
+    const Window& one = windows_[0];
+    const Window& other = windows_[1];
+    const bool first = one.age >= kYoungest && (one.age < other.age || other.age < kYoungest);
+    const Window& young = first ? one : other;
+    if (young.age >= kYoungest) heal(young, filter);
   }
   if (!windows_[0].inertial) {
     for (State& state : states_) state = {};

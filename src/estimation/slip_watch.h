@@ -32,7 +32,7 @@ class SlipWatch {
   static constexpr double kLeastAcceleration = 0.02;  ///< m/s², what no inertial sensor on a moving robot knows better
   static constexpr double kSlack = 0.0005;            ///< m
   static constexpr double kJudgeEvery = 0.01;         ///< s
-  static constexpr std::uint64_t kAgree = 8;          ///< judgements
+  static constexpr std::uint64_t kAgree = 4;          ///< judgements
   static constexpr double kAgreeSpeed = 0.02;         ///< m/s
   static constexpr double kDeadlock = 10.0;           ///< s
 
