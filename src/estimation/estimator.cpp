@@ -528,7 +528,6 @@ void Estimator::correct_side(int index, double dt) noexcept {
 void Estimator::note(SensorIndex sensor, double nis, double dt) noexcept {
   constexpr double kLargest = 1e6;
   if (std::isnan(nis)) return;  // a sensor it compares is lost
-  if (!std::isfinite(nis)) return;
   double& smoothed = nis_[sensor];
   smoothed += dt / (kSmoothing + dt) * (std::min(nis, kLargest) - smoothed);
 }
