@@ -80,6 +80,11 @@ class Trial {
     measured.accelerometer = *exact.accelerometer + filter_.noise().accelerometer / std::sqrt(kPeriod) * vector();
     truth_.predict(exact);
     const double path = (std::abs(exact.left_speed) + std::abs(exact.right_speed)) / 2 * kPeriod;
+    truth_.radius_ratio += filter_.noise().radius_ratio_walk * std::sqrt(path) * normal();
+    truth_.wheel_base += filter_.noise().wheel_base_walk * std::sqrt(path) * normal();
+    const double twist =
+        filter_.noise().turn_slip * kGeometry.wheel_base / 2 * std::sqrt(std::abs(omega.z()) * kPeriod) * normal();
+    truth_.travel += Eigen::Vector2d(twist, -twist);
     truth_.travel.array() += filter_.noise().common_slip * std::sqrt(path) * normal();
     for (const int side : {0, 1}) {
       const double speed = side == 0 ? exact.left_speed : exact.right_speed;
