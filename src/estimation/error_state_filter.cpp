@@ -37,6 +37,11 @@ double square(double value) noexcept {
 
 constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
 constexpr double kMaxBase = 0.3;    // of a skid-steer on another floor
+using Filter = ErrorStateFilter;
+constexpr int kGravityAndBias[] = {Filter::kOrientation, Filter::kOrientation + 1, Filter::kAccelerometerBias,
+                                   Filter::kAccelerometerBias + 1, Filter::kAccelerometerBias + 2};
+constexpr int kPlace[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosition + 2};
+constexpr int kPose[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosition + 2, Filter::kOrientation + 2};
 constexpr double kHuber = 1.5;
 constexpr double kTravelSlack = 0.002;  // m: a reading that is less wrong is no outlier; sliding, the slip watch sees
 constexpr double kGate = 16.0;          // 4 σ of one degree of freedom: one good sample in 16 000 is refused
@@ -217,43 +222,29 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   }
 }
 
+/// What is considered is not corrected (S. F. Schmidt, Application of state-space methods to navigation problems,
+/// 1966): its part of the gain is zero, which leaves the block of its own covariance as it was.
 ErrorStateFilter::Innovation ErrorStateFilter::correct(const Column& ph, double innovation, double variance,
-                                                       double gate) noexcept {
-  const double nis = innovation * innovation / variance;
-  if (!(nis <= gate)) return {nis, false};
-  const Column gain = ph / variance;
+                                                       std::span<const int> considered) noexcept {
   const Column root = ph / std::sqrt(variance);
   covariance.noalias() -= root * root.transpose();
-  const Column error = gain * innovation;
+  Column error = ph * (innovation / variance);
+  for (const int i : considered) {
+    for (const int j : considered) covariance(i, j) += root[i] * root[j];
+    error[i] = 0;
+  }
   inject(error);
   corrections_ += error;
-  return {nis, true};
+  return {innovation * innovation / variance, true};
 }
 
-/// Tilt and accelerometer bias are considered, not corrected (S. F. Schmidt, 1966): their part of the gain is zero,
-/// which leaves the block of their own covariance as it was.
 ErrorStateFilter::Innovation ErrorStateFilter::correct_rolling(const Column& ph, double innovation, double variance,
                                                                double slack) noexcept {
-  const auto tilt = covariance.block<2, 2>(kOrientation, kOrientation).eval();
-  const auto bias = covariance.block<3, 3>(kAccelerometerBias, kAccelerometerBias).eval();
-  const auto both = covariance.block<2, 3>(kOrientation, kAccelerometerBias).eval();
   const double nis = innovation * innovation / variance;
-  const Innovation result{nis, innovation * innovation <= kGate * (variance + slack)};
-  if (!result.used) return result;
+  if (!(innovation * innovation <= kGate * (variance + slack))) return {nis, false};
   // Huber's weight: what is beyond kHuber deviations pulls no harder (P. J. Huber, Robust Statistics, 1981, chapter 3).
-  variance *= std::max(1.0, std::sqrt(nis) / kHuber);
-  const Column root = ph / std::sqrt(variance);
-  covariance.noalias() -= root * root.transpose();
-  covariance.block<2, 2>(kOrientation, kOrientation) = tilt;
-  covariance.block<3, 3>(kAccelerometerBias, kAccelerometerBias) = bias;
-  covariance.block<2, 3>(kOrientation, kAccelerometerBias) = both;
-  covariance.block<3, 2>(kAccelerometerBias, kOrientation) = both.transpose();
-  Column error = ph * (innovation / variance);
-  error.segment<2>(kOrientation).setZero();
-  error.segment<3>(kAccelerometerBias).setZero();
-  inject(error);
-  corrections_ += error;
-  return result;
+  correct(ph, innovation, variance * std::max(1.0, std::sqrt(nis) / kHuber), kGravityAndBias);
+  return {nis, true};
 }
 
 void ErrorStateFilter::inject(const Column& error) noexcept {
@@ -325,12 +316,15 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_acceleration(int axis, do
   const int a = kAccelerometerBias + axis;
   const Column ph = bx * covariance.col(kOrientation) + by * covariance.col(kOrientation + 1) - covariance.col(a);
   const double own = bx * ph[kOrientation] + by * ph[kOrientation + 1] - ph[a];
-  return correct(ph, excess, own + variance, kGate);
+  if (!(excess * excess <= kGate * (own + variance))) return {excess * excess / (own + variance), false};
+  return correct(ph, excess, own + variance, kPose);
 }
 
-ErrorStateFilter::Innovation ErrorStateFilter::correct_gyro_at_rest(int axis, double mean, double variance) noexcept {
+ErrorStateFilter::Innovation ErrorStateFilter::correct_gyro_at_rest(int axis, double mean, double variance,
+                                                                    Rest rest) noexcept {
   const Column ph = covariance.col(kGyroBias + axis);
-  return correct(ph, mean - gyro_bias[axis], ph[kGyroBias + axis] + variance, HUGE_VAL);
+  return correct(ph, mean - gyro_bias[axis], ph[kGyroBias + axis] + variance,
+                 rest == Rest::kBegins ? std::span<const int>(kPlace) : std::span<const int>(kPose));
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int axis, double mean,
@@ -342,7 +336,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int
   const double by = by_tilt(axis, 1);
   const Column ph = covariance.col(own) + bx * covariance.col(kOrientation) + by * covariance.col(kOrientation + 1);
   const double expected = ph[own] + bx * ph[kOrientation] + by * ph[kOrientation + 1];
-  return correct(ph, mean - up[axis] - accelerometer_bias[axis], expected + variance, HUGE_VAL);
+  return correct(ph, mean - up[axis] - accelerometer_bias[axis], expected + variance, kPose);
 }
 
 void ErrorStateFilter::stand(double deviation) noexcept {
@@ -357,7 +351,7 @@ void ErrorStateFilter::stand(double deviation) noexcept {
 void ErrorStateFilter::halt(double deviation) noexcept {
   for (const int i : {0, 1, 2}) {
     const Column ph = covariance.col(kVelocity + i);
-    correct(ph, -velocity[i], ph[kVelocity + i] + square(deviation), HUGE_VAL);
+    correct(ph, -velocity[i], ph[kVelocity + i] + square(deviation), {});
   }
   stand(deviation);
 }

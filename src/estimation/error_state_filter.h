@@ -39,6 +39,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <optional>
+#include <span>
 
 namespace robot_control {
 
@@ -60,7 +61,7 @@ struct FilterNoise {
   double wheel_slip = 3e-4;               ///< m/√m of each side's travel, of either wheel alone
   double common_slip = 2e-4;              ///< m/√m, of both together; up to kCautious times that near sliding
   double encoder = 4.4e-5;                ///< m, of one reading
-  double turn_slip = 1e-3;                ///< rad/√rad, of the wheels' turn: a contact patch twists before it turns
+  double turn_slip = 5e-4;                ///< rad/√rad, of the wheels' turn: a contact patch twists before it turns
   double radius_ratio_walk = 1e-5;        ///< 1/√m
   double wheel_base_walk = 5e-5;          ///< 1/√m: load and floor change how a tyre turns
   double lateral = 1e-3;                  ///< m/s/√Hz, sideways at the contact
@@ -108,10 +109,14 @@ class ErrorStateFilter {
     std::optional<Eigen::Vector3d> gyro;           ///< rad/s, mean over dt, bias included
     std::optional<Eigen::Vector3d> accelerometer;  ///< m/s², mean over dt, bias included
     double left_travel = 0, right_travel = 0;      ///< m over dt, as the model's radii measure it
-    double caution = 0;                          ///< 0 … 1: the wheels may be about to slide
-    bool sliding = false;                        ///< no wheel holds the velocity
+    double caution = 0;                            ///< 0 … 1: the wheels may be about to slide
+    bool sliding = false;                          ///< no wheel holds the velocity
     double left_speed = 0, right_speed = 0;        ///< m/s, smoothed
   };
+
+  /// At rest the position does not move by what is learned, nor the yaw but when rest begins: then it learns what the
+  /// gyro's bias had made of it on the way.
+  enum class Rest { kBegins, kGoesOn };
 
   /// A scalar measurement's innovation over its deviation, squared.
   struct Innovation {
@@ -131,7 +136,7 @@ class ErrorStateFilter {
   /// As it was when the robot had yet to turn by `turned` rad.
   Innovation correct_acceleration(int axis, double excess, double variance, double turned) noexcept;
   /// `mean` over `time` s at rest. No gate: the caller judged them quiet.
-  Innovation correct_gyro_at_rest(int axis, double mean, double variance) noexcept;
+  Innovation correct_gyro_at_rest(int axis, double mean, double variance, Rest rest) noexcept;
   Innovation correct_accelerometer_at_rest(int axis, double mean, double variance) noexcept;
 
   /// The robot stands: the velocity is zero, known to `deviation` m/s.
@@ -179,7 +184,7 @@ class ErrorStateFilter {
   double lever(int side) const noexcept;  ///< m, lateral, of the contact from the IMU
 
  private:
-  Innovation correct(const Column& ph, double innovation, double variance, double gate) noexcept;
+  Innovation correct(const Column& ph, double innovation, double variance, std::span<const int> considered) noexcept;
   Innovation correct_rolling(const Column& ph, double innovation, double variance, double slack) noexcept;
   void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Matrix3d& turn,
                  const Eigen::Vector3d& u, const Eigen::Vector3d& omega) noexcept;

@@ -186,6 +186,7 @@ void Estimator::reset() noexcept {
   held_ = {};
   steady_time_ = 0;
   doubtful_windows_ = 0;
+  rested_ = 0;
   wheels_ = {};
   distance_ = 0;
   nis_ = {};
@@ -405,13 +406,15 @@ bool Estimator::bias_changed() noexcept {
 
 void Estimator::learn_at_rest() noexcept {
   const double window = standstill_.time();
+  rested_ += window;
+  const Filter::Rest rest = rested_ <= kSettling ? Filter::Rest::kBegins : Filter::Rest::kGoesOn;
   lasting_flags_ |= kStateStandstill;
   filter_.age(window);
   if (standstill_.gyro()) {
     const double turned = geometry_.turn(standstill_.left(), standstill_.right()) / window;
     for (int i = 0; i < 3; ++i) {
       filter_.correct_gyro_at_rest(i, (*standstill_.gyro())[i] - (i == 2 ? turned : 0),
-                                   square(parameters_.gyro_noise) / window);
+                                   square(parameters_.gyro_noise) / window, rest);
     }
   }
   if (standstill_.accelerometer()) {
@@ -471,6 +474,7 @@ void Estimator::move(double dt) noexcept {
   }
   doubtful_windows_ = 0;
   filter_.halt(kRestSpeed);
+  rested_ = 0;
   learn_at_rest();
   resting_ = true;
   held_ = {};

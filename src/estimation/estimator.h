@@ -48,6 +48,7 @@ class Estimator {
   static constexpr double kRestartYaw = 0.05;        ///< rad
   static constexpr double kSmoothing = 1.0;          ///< s
   static constexpr double kSteadyTime = 10.0;        ///< s; nothing turns a robot so evenly on wheels that stand
+  static constexpr double kSettling = 2.0;           ///< s of rest in which yaw still learns from the gyro's bias
   static constexpr double kRestSpeed = 0.01;         ///< m/s, standard deviation of the velocity when rest ends
   static constexpr std::uint64_t kMaxRefused =
       50;  ///< samples in a row behind the chi-square gate, then it begins anew
@@ -132,6 +133,7 @@ class Estimator {
   Eigen::Vector3d steady_gyro_ = Eigen::Vector3d::Zero();  ///< rad/s, of windows that contradict the gyro's bias
   double steady_time_ = 0;                                 ///< s, of these windows
   std::uint64_t doubtful_windows_ = 0;                     ///< quiet ones in a row that contradict the velocity
+  double rested_ = 0;                                      ///< s
   WheelOdometry wheels_;
   double distance_ = 0;
   std::array<double, kMaxConfidences> nis_{};
