@@ -5,6 +5,17 @@
 
 namespace robot_control {
 
+void ImuSamples::reset() noexcept {
+  for (Channel* channel : {&gyro_, &accelerometer_}) {  // GCC 12 with a sanitizer takes `= {}` for uninitialised
+    channel->mean.reset();
+    channel->last.setZero();
+    channel->heard = channel->known = channel->fresh = channel->catches_up = false;
+    channel->age = channel->last_gap = channel->gap = 0;
+    channel->hold = kShortHold;
+  }
+  refused_ = false;
+}
+
 void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
                       bool trapezoid) noexcept {
   channel.age += dt;

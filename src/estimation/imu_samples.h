@@ -23,7 +23,7 @@ class ImuSamples {
   static constexpr double kGyroRange = 100;            ///< rad/s; beyond what any MEMS gyro measures
   static constexpr double kAccelerometerRange = 1000;  ///< m/s²; likewise
 
-  void reset() noexcept { *this = {}; }
+  void reset() noexcept;
 
   /// `base_from_imu`: rotation. `dt`: s since the last call, 0 at the first.
   void step(const SensorFrame& sensors, const Eigen::Matrix3d& base_from_imu, double dt) noexcept;
