@@ -239,7 +239,7 @@ TEST_F(MeasurementJacobian, OfTheGyroAtRest) {
     const double mean = filter_.gyro_bias[axis] + 0.001;
     expect_measurement_jacobian(
         filter_, "gyro", [&](const Filter& filter) { return mean - filter.gyro_bias[axis]; },
-        [&](Filter& filter) { return filter.correct_gyro_at_rest(axis, mean, 1e-6); });
+        [&](Filter& filter) { return filter.correct_gyro_at_rest(axis, mean, 1e-6, Filter::Rest::kBegins); });
   }
 }
 

@@ -117,7 +117,8 @@ TEST(FilterProperties, RandomStepsLeaveTheCovariancePositive) {
           filter.correct_vertical(motion.dt);
           break;
         case 3:
-          filter.correct_gyro_at_rest(axis, filter.gyro_bias[axis] + 1e-3 * normal(random), 1e-7);
+          filter.correct_gyro_at_rest(axis, filter.gyro_bias[axis] + 1e-3 * normal(random), 1e-7,
+                                      random() % 2 == 0 ? Filter::Rest::kBegins : Filter::Rest::kGoesOn);
           break;
         case 4:
           filter.correct_accelerometer_at_rest(axis, normal(random), 1e-4);
@@ -174,7 +175,7 @@ TEST_F(FilterUpdate, AMeasurementShrinksVarianceByTheKalmanGain) {
   const Filter::Covariance before = filter_.covariance;
   const double p = before(Filter::kGyroBias, Filter::kGyroBias);
   const double r = 0.3 * p;
-  filter_.correct_gyro_at_rest(0, filter_.gyro_bias[0], r);
+  filter_.correct_gyro_at_rest(0, filter_.gyro_bias[0], r, Filter::Rest::kBegins);
   EXPECT_NEAR(filter_.covariance(Filter::kGyroBias, Filter::kGyroBias), p * r / (p + r), 1e-9 * p);
   for (int i = 0; i < Filter::kSize; ++i) EXPECT_LE(filter_.covariance(i, i), before(i, i)) << i;
 }
