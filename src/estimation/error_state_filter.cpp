@@ -3,37 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/algebra.h"
+
 namespace robot_control {
 namespace {
 
+using namespace algebra;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-Matrix3d cross_matrix(const Vector3d& v) noexcept {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-/// Rodrigues' formula, by its series where the angle is small.
-Matrix3d exponential(const Vector3d& angle) noexcept {
-  const double square = angle.squaredNorm();
-  const double norm = std::sqrt(square);
-  const double a = square < 1e-6 ? 1 - square / 6 : std::sin(norm) / norm;
-  const double b = square < 1e-6 ? 0.5 - square / 24 : (1 - std::cos(norm)) / square;
-  const Matrix3d x = cross_matrix(angle);
-  return Matrix3d::Identity() + a * x + b * (x * x);
-}
-
-/// One step of Newton's iteration for the polar decomposition keeps a rotation a rotation.
-void orthonormalise(Matrix3d& r) noexcept {
-  const Matrix3d excess = r.transpose() * r - Matrix3d::Identity();
-  r -= 0.5 * r * excess;
-}
-
-double square(double value) noexcept {
-  return value * value;
-}
 
 constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
 constexpr double kMaxBase = 0.3;    // of a skid-steer on another floor

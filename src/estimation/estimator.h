@@ -33,6 +33,7 @@
 #include "estimation/slip_watch.h"
 #include "estimation/speed_tracker.h"
 #include "estimation/standstill_window.h"
+#include "estimation/state_output.h"
 #include "estimation/wheel_geometry.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
@@ -43,13 +44,12 @@ namespace robot_control {
 class Estimator {
  public:
   static constexpr std::uint64_t kMaxHeld = 4;  ///< cycles without encoders, as many as a command lives (hal/gate.h)
-  static constexpr double kPlanarVariance = 1.0e-4;  ///< m², rad²: 1 cm, 0.6°, an even floor
-  static constexpr double kRestartPosition = 0.05;   ///< m, standard deviation added by a restart
-  static constexpr double kRestartYaw = 0.05;        ///< rad
-  static constexpr double kSmoothing = 1.0;          ///< s
-  static constexpr double kSteadyTime = 10.0;        ///< s; nothing turns a robot so evenly on wheels that stand
-  static constexpr double kSettling = 2.0;           ///< s of rest in which yaw still learns from the gyro's bias
-  static constexpr double kRestSpeed = 0.01;         ///< m/s, standard deviation of the velocity when rest ends
+  static constexpr double kRestartPosition = 0.05;  ///< m, standard deviation added by a restart
+  static constexpr double kRestartYaw = 0.05;       ///< rad
+  static constexpr double kSmoothing = 1.0;         ///< s
+  static constexpr double kSteadyTime = 10.0;       ///< s; nothing turns a robot so evenly on wheels that stand
+  static constexpr double kSettling = 2.0;          ///< s of rest in which yaw still learns from the gyro's bias
+  static constexpr double kRestSpeed = 0.01;        ///< m/s, standard deviation of the velocity when rest ends
   static constexpr std::uint64_t kMaxRefused =
       50;  ///< samples in a row behind the chi-square gate, then it begins anew
 
@@ -112,10 +112,8 @@ class Estimator {
   void correct(double dt) noexcept;
   void correct_side(int side, double dt) noexcept;
   void note(SensorIndex sensor, double nis, double dt) noexcept;
-  void place(const Vector3& pose) noexcept;
   void fill(StateFrame& out) const noexcept;
-  void fill_pose(StateFrame& out) const noexcept;
-  void fill_twist(StateFrame& out) const noexcept;
+  RateNoise rate_noise() const noexcept;
   void fill_health(StateFrame& out) const noexcept;
 
   EstimatorParameters parameters_;

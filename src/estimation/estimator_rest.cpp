@@ -1,0 +1,115 @@
+// The estimator while the robot stands.
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/algebra.h"
+#include "estimation/estimator.h"
+
+namespace robot_control {
+namespace {
+
+using namespace algebra;
+using Eigen::Vector3d;
+using Filter = ErrorStateFilter;
+constexpr int kLeft = 0;
+constexpr int kRight = 1;
+
+constexpr double kAccelerometerAtRest = 0.005;  // m/s², what a motor's hum leaves in a mean
+
+}  // namespace
+
+void Estimator::rest(double dt) noexcept {
+  const double left = sides_[kLeft].encoder.travel();
+  const double right = sides_[kRight].encoder.travel();
+  held_.time += dt;
+  held_.forward += (left + right) / 2;
+  held_.wheel_turn += geometry_.turn(left, right);
+  if (imu_.gyro()) {
+    held_.turn += *imu_.gyro() * dt;
+  } else {
+    held_.gyro = false;
+  }
+  StandstillSample sample{.dt = dt, .left = left, .right = right, .gyro = {}, .accelerometer = {}};
+  if (imu_.new_gyro()) sample.gyro = imu_.last_gyro();
+  if (imu_.new_accelerometer()) sample.accelerometer = imu_.last_accelerometer();
+  const WindowEnd window = standstill_.step(sample);
+  if (window == WindowEnd::kOpen) return;
+  if (window == WindowEnd::kQuiet && quiet()) {
+    learn_at_rest();
+    flags_ |= kStateStandstill;
+    held_ = {};
+    return;
+  }
+  end_rest();
+}
+
+void Estimator::end_rest() noexcept {
+  resting_ = false;
+  lasting_flags_ &= ~std::uint64_t{kStateStandstill};
+  flags_ &= ~std::uint64_t{kStateStandstill};
+  const Vector3d turn =
+      held_.gyro ? Vector3d(held_.turn - held_.time * filter_.gyro_bias) : Vector3d(0, 0, held_.wheel_turn);
+  filter_.position += filter_.rotation.col(0) * held_.forward;
+  filter_.turn_by(turn);
+  distance_ += std::abs(held_.forward);
+  auto& p = filter_.covariance;
+  p(Filter::kOrientation + 2, Filter::kOrientation + 2) += square(parameters_.gyro_noise) * held_.time;
+  filter_.stand(kRestSpeed);
+  for (const int i : {kLeft, kRight}) filter_.anchor_travel(i, sides_[static_cast<std::size_t>(i)].total);
+  slip_.begin(filter_);
+  held_ = {};
+}
+
+bool Estimator::quiet() const noexcept {
+  const auto& p = filter_.covariance;
+  if (standstill_.gyro()) {
+    const double turned = geometry_.turn(standstill_.left(), standstill_.right()) / standstill_.time();
+    const double noise = square(parameters_.gyro_noise) / standstill_.time();
+    for (int i = 0; i < 3; ++i) {
+      const double rate = (*standstill_.gyro())[i] - filter_.gyro_bias[i] - (i == 2 ? turned : 0);
+      const double bias = p(Filter::kGyroBias + i, Filter::kGyroBias + i);
+      if (std::abs(rate) > parameters_.standstill_speed + 3 * std::sqrt(bias + noise)) return false;
+    }
+  }
+  return true;
+}
+
+bool Estimator::bias_changed() noexcept {
+  const Vector3d& gyro = *standstill_.gyro();
+  if (steady_time_ == 0 || (gyro - steady_gyro_).cwiseAbs().maxCoeff() > parameters_.standstill_speed) {
+    steady_time_ = 0;
+    steady_gyro_ = gyro;
+  }
+  steady_time_ += standstill_.time();
+  if (steady_time_ < kSteadyTime) return false;
+  steady_time_ = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int index = Filter::kGyroBias + i;
+    filter_.covariance(index, index) += square(gyro[i] - filter_.gyro_bias[i]);
+  }
+  return true;
+}
+
+void Estimator::learn_at_rest() noexcept {
+  const double window = standstill_.time();
+  rested_ += window;
+  const Filter::Rest rest = rested_ <= kSettling ? Filter::Rest::kBegins : Filter::Rest::kGoesOn;
+  lasting_flags_ |= kStateStandstill;
+  filter_.age(window);
+  if (standstill_.gyro()) {
+    const double turned = geometry_.turn(standstill_.left(), standstill_.right()) / window;
+    for (int i = 0; i < 3; ++i) {
+      filter_.correct_gyro_at_rest(i, (*standstill_.gyro())[i] - (i == 2 ? turned : 0),
+                                   square(parameters_.gyro_noise) / window, rest);
+    }
+  }
+  if (standstill_.accelerometer()) {
+    const double variance = square(parameters_.accelerometer_noise) / window + square(kAccelerometerAtRest);
+    for (int i = 0; i < 3; ++i) {
+      filter_.correct_accelerometer_at_rest(i, (*standstill_.accelerometer())[i], variance);
+    }
+  }
+}
+
+}  // namespace robot_control

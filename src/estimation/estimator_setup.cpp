@@ -1,0 +1,86 @@
+#include "estimation/estimator_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "estimation/algebra.h"
+
+namespace robot_control {
+
+const EstimatorParameters& checked(const EstimatorParameters& parameters, const RobotModel& robot, double period) {
+  const auto require = [](bool holds, const char* what, double value) {
+    if (!holds) throw std::invalid_argument("estimator: " + std::string(what) + ", is " + std::to_string(value));
+  };
+  const auto positive = [&](double value, const char* what) {
+    require(value > 0 && std::isfinite(value), what, value);
+  };
+  const auto no_less = [&](double value, const char* what) {
+    require(value >= 0 && std::isfinite(value), what, value);
+  };
+  positive(period, "period must be > 0 s");
+  positive(robot.effective_wheel_base(), "wheel_base and its multiplier must be > 0 m");
+  const Quaternion& q = robot.imu_in_base.orientation;
+  positive(std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]),
+           "orientation of the IMU is no rotation: its norm must be > 0");
+  for (const auto side : {Side::kLeft, Side::kRight}) {
+    const auto wheels = std::ranges::count(robot.wheels, side, &WheelModel::side);
+    require(wheels > 0, "there must be a wheel on either side", static_cast<double>(wheels));
+  }
+  for (const WheelModel& wheel : robot.wheels) positive(wheel.radius, "radius of a wheel must be > 0 m");
+  no_less(parameters.wheel_slip_noise, "wheel_slip_noise must be >= 0 m/√m");
+  positive(parameters.encoder_noise, "encoder_noise must be > 0 rad");
+  positive(parameters.gyro_noise, "gyro_noise must be > 0 rad/s/√Hz");
+  positive(parameters.accelerometer_noise, "accelerometer_noise must be > 0 m/s²/√Hz");
+  positive(parameters.standstill_speed, "standstill_speed must be > 0 rad/s");
+  positive(parameters.standstill_time, "standstill_time must be > 0 s");
+  positive(parameters.standstill_acceleration, "standstill_acceleration must be > 0 m/s²");
+  no_less(parameters.gyro_scale_deviation, "gyro_scale_deviation must be >= 0");
+  no_less(parameters.gyro_bias_initial, "gyro_bias_initial must be >= 0 rad/s");
+  no_less(parameters.gyro_bias_walk, "gyro_bias_walk must be >= 0 rad/s/√s");
+  no_less(parameters.accelerometer_bias_initial, "accelerometer_bias_initial must be >= 0 m/s²");
+  no_less(parameters.accelerometer_bias_walk, "accelerometer_bias_walk must be >= 0 m/s²/√s");
+  no_less(parameters.calibration.radius_ratio_deviation, "radius_ratio_deviation must be >= 0");
+  no_less(parameters.calibration.wheel_base_deviation, "wheel_base_deviation must be >= 0");
+  positive(parameters.speed_bandwidth, "speed_bandwidth must be > 0 Hz");
+  return parameters;
+}
+
+ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot) {
+  const Vector3& imu = robot.imu_in_base.position;
+  return {.wheel_base = wheels.wheel_base,
+          .middle_y = wheels.axle_y - imu[1],
+          .middle_x = wheels.axle_x - imu[0],
+          .height = wheels.ground - imu[2],
+          .imu_in_base = algebra::vector(imu)};
+}
+
+FilterNoise filter_noise(const EstimatorParameters& parameters, const RobotModel& robot) {
+  FilterNoise noise;
+  noise.gyro = parameters.gyro_noise;
+  noise.gyro_bias_walk = parameters.gyro_bias_walk;
+  noise.accelerometer = parameters.accelerometer_noise;
+  noise.accelerometer_bias_walk = parameters.accelerometer_bias_walk;
+  noise.wheel_slip = parameters.wheel_slip_noise;
+  noise.encoder = parameters.encoder_noise * std::ranges::max(robot.wheels, {}, &WheelModel::radius).radius;
+  return noise;
+}
+
+FilterPrior filter_prior(const EstimatorParameters& parameters) {
+  const double learns = parameters.self_calibration ? 1.0 : 0.0;
+  return {.gyro_bias = parameters.gyro_bias_initial,
+          .accelerometer_bias = parameters.accelerometer_bias_initial,
+          .radius_ratio = learns * parameters.calibration.radius_ratio_deviation,
+          .wheel_base = learns * parameters.calibration.wheel_base_deviation,
+          .gyro_scale = parameters.gyro_scale_deviation};
+}
+
+StandstillLimits standstill_limits(const EstimatorParameters& parameters, const RobotModel& robot) {
+  return {.time = parameters.standstill_time,
+          .tolerance = parameters.standstill_speed * parameters.standstill_time *
+                       std::ranges::min(robot.wheels, {}, &WheelModel::radius).radius,
+          .acceleration = parameters.standstill_acceleration};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,24 @@
+#pragma once
+/// What a user sets and what the robot is → what the estimator's parts start with.
+
+#include "estimation/error_state_filter.h"
+#include "estimation/estimator_parameters.h"
+#include "estimation/standstill_window.h"
+#include "estimation/wheel_geometry.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+/// Throws std::invalid_argument: a parameter or a measure of the robot out of range, a side without a wheel, an
+/// orientation of the IMU that is no rotation.
+const EstimatorParameters& checked(const EstimatorParameters& parameters, const RobotModel& robot, double period);
+
+ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot);
+FilterNoise filter_noise(const EstimatorParameters& parameters, const RobotModel& robot);
+
+/// Without self_calibration ratio and wheel base are known for ever.
+FilterPrior filter_prior(const EstimatorParameters& parameters);
+
+StandstillLimits standstill_limits(const EstimatorParameters& parameters, const RobotModel& robot);
+
+}  // namespace robot_control

@@ -1,0 +1,20 @@
+#pragma once
+/// Sets the filter down: at a pose that somebody says, or where an earlier process left it.
+
+#include <Eigen/Core>
+
+#include "estimation/error_state_filter.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+/// base_link at x [m], y [m], yaw [rad]; height and tilt stay. The covariance of what is set is zero.
+void place(const Vector3& pose, ErrorStateFilter& filter) noexcept;
+
+/// Finite, and the state was valid.
+bool continuable(const StateFrame& last) noexcept;
+
+/// Pose, velocity, biases and calibration of a frame that is continuable, with its covariance.
+void continue_from(const StateFrame& last, const Eigen::Matrix3d& base_from_imu, ErrorStateFilter& filter) noexcept;
+
+}  // namespace robot_control

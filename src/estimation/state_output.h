@@ -1,0 +1,31 @@
+#pragma once
+/// The filter's state → the frame that is published: of base_link, in its axes, with covariances.
+///
+///   base      p − R r, r the IMU's place            δ = δp + [R r]× θ
+///   twist     v = u − ω × r, ω                      δv = δu + (δbg + noise) × r,  δω = −δbg − noise
+/// `planar`: x, y, yaw, and forward, sideways, yaw rate; the rest is zero, with kPlanarVariance on the diagonal.
+
+#include <Eigen/Core>
+
+#include "estimation/error_state_filter.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+inline constexpr double kPlanarVariance = 1.0e-4;  ///< m², rad²: 1 cm, 0.6°, an even floor
+
+/// pose_odom, attitude, and their covariances.
+void write_pose(const ErrorStateFilter& filter, bool planar, StateFrame& out) noexcept;
+
+/// How well the angular velocity is known.
+struct RateNoise {
+  double variance = 0;  ///< (rad/s)², of each axis, beside the gyro's bias
+  bool gyro = true;     ///< false: it is not the gyro's, its bias does not count
+};
+
+void write_twist(const ErrorStateFilter& filter, const RateNoise& noise, bool planar, StateFrame& out) noexcept;
+
+/// Biases in the IMU's axes, and calibration, with their deviations.
+void write_learned(const ErrorStateFilter& filter, const Eigen::Matrix3d& base_from_imu, StateFrame& out) noexcept;
+
+}  // namespace robot_control
