@@ -32,8 +32,8 @@ struct LearnedCalibration {
 /// Of this state.
 LearnedCalibration learned(const StateFrame& state);
 
-/// Something of it was estimated, and all of it is within the bounds that the reader holds it to. What stands at a bound
-/// was stopped there, not learned.
+/// Something of it was estimated, and all of it is within the bounds that the reader holds it to. What stands at a
+/// bound was stopped there, not learned.
 bool may_be_kept(const LearnedCalibration& calibration);
 
 /// Takes over, quantity by quantity, what `now` says better than `kept`: with a deviation smaller by a tenth, or moved

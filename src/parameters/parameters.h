@@ -50,8 +50,8 @@ struct ReportParameters {
   double odom_rate = 50;           ///< Hz, odom and wheel_odom
   bool publish_tf = true;
   std::string odom_frame = "odom";
-  std::string base_frame;    ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
-  double command_rate = 50;  ///< Hz, joint_commands, joint_targets, cmd_vel_out and drive_state
+  std::string base_frame;      ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
+  double command_rate = 50;    ///< Hz, joint_commands, joint_targets, cmd_vel_out and drive_state
   double imu_rate = 100;       ///< Hz, imu/data_raw
   double imu_data_rate = 100;  ///< Hz, imu/data
   double truth_rate = 50;      ///< Hz

@@ -14,9 +14,9 @@ namespace robot_control {
 /// Throws RobotError: a wished link that does not exist or moves.
 std::string imu_link_of(const RigidBodies& robot, const std::string& wished, std::vector<RobotNote>& notes);
 
-/// Where the IMU sits, in the base's axes: at `link` (empty: in the base), but for what imu_position and imu_orientation
-/// say otherwise. A difference of more than 1 % of `wheel_base`, or 0.01 rad, is noted. Throws RobotError: a number that
-/// is not finite.
+/// Where the IMU sits, in the base's axes: at `link` (empty: in the base), but for what imu_position and
+/// imu_orientation say otherwise. A difference of more than 1 % of `wheel_base`, or 0.01 rad, is noted. Throws
+/// RobotError: a number that is not finite.
 Pose imu_pose(const RigidBodies& robot, const std::string& link, const RobotParameters& parameters, double wheel_base,
               std::vector<RobotNote>& notes);
 

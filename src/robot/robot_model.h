@@ -30,7 +30,7 @@ struct RobotParameters {
   std::optional<Vector3> centre_of_gravity;     ///< m, base axes
   std::string imu_link;                         ///< empty: found by its name, else the IMU is in the base (imu_place.h)
   std::optional<Vector3> imu_position;          ///< m, base axes
-  std::optional<Vector3> imu_orientation;       ///< rad, roll, pitch, yaw of the IMU's axes in the base's, as URDF's rpy
+  std::optional<Vector3> imu_orientation;  ///< rad, roll, pitch, yaw of the IMU's axes in the base's, as URDF's rpy
 };
 
 enum class JointRole {
