@@ -21,17 +21,20 @@
 ///   ṡ_left = c_left / (1 − ε/2)     ṡ_right = c_right / (1 + ε/2)     c_i = (u + ω × r_i)_x
 /// r_i from the IMU to where wheel i touches the ground: the encoder measures the wheel against the body, so that a
 /// pitching body enters with the height of the contact. Its lateral component is ±(1 + β)/2 of the effective wheel
-/// base. Where gyro and wheels both say how the robot turns, β's column takes the rate of the wheels, smoothed: the
-/// gyro's own noise in it would bias β (errors-in-variables; W. Fuller, Measurement Error Models, 1987, section 1.1).
+/// base. The columns of ε, β and κ take the gyro's rate smoothed over kSmoothing: its noise, in both the column and the
+/// innovation, would bias them (errors in variables; W. Fuller, Measurement Error Models, 1987, section 1.1).
 ///
-/// Measurements, one scalar after another, each behind a chi-square gate (Y. Bar-Shalom, X. R. Li, T. Kirubarajan,
-/// Estimation with Applications to Tracking and Navigation, 2001, sections 5.4 and 10.2):
+/// Measurements, one scalar after another (Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to
+/// Tracking and Navigation, 2001, sections 5.4 and 10.2: gate and normalised innovation squared):
 ///   encoder angles         s_i = travel measured: angles, so that a count is an error once, not once per cycle
 ///   contact                (u + ω × r_c)_y = 0, (u + ω × r_c)_z = 0 at the middle c of the contacts (non-holonomic
 ///                          constraint; G. Dissanayake et al., The aiding of a low-cost strapdown inertial measurement
 ///                          unit using vehicle model constraints, IEEE T-RA 17(5), 2001, section III)
 ///   standstill             gyro = bg; accelerometer = ba − Rᵀ g (zero rotation and zero velocity; P. D. Groves,
 ///                          Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2013, 15.3)
+///   rolling                acceleration = accelerometer − ba + Rᵀ g, over a window in which everything rolled
+/// Encoders and contact consider tilt and accelerometer bias and do not correct them; what is learned at rest moves no
+/// position (Schmidt's gain, see `correct`). Encoders and contact pull no harder than Huber's bound.
 ///
 /// Without a gyro sample the robot turns as the calibrated wheels do, and level; without an accelerometer sample its
 /// velocity is carried on, with an acceleration of kUnknownAcceleration as noise.

@@ -2,16 +2,22 @@
 /// Do the wheels roll? What encoders and contact say is compared, over short windows, with what the inertial sensors
 /// alone say since the window began.
 ///
-/// A window keeps, from its beginning, every correction that the measurements have made since; taking them back leaves
-/// the inertial prediction. Its residuals over its age τ, in metres:
+/// A window keeps, from its beginning, every correction that the measurements have made since; without them the
+/// velocity is the inertial one. Its residuals over its age τ, in metres:
 ///   left, right   travel measured − travel of the contact, inertial
 ///   lateral       −(sideways way of the contact, inertial);  vertical likewise
-/// Expected deviation, with the velocity's variance at the beginning V, that of the acceleration A (bias and tilt), the
-/// accelerometer's noise n and the path m:
-///   σ² = 2 encoder² + V τ² + A τ⁴/4 + n² τ³/3 + slip_noise² |m|
-/// Beyond 4 σ + creep·|m| + slack the contact is not believed: windows of 0.1 s find what happens suddenly, windows of
-/// 1 s what happens slowly; two of each, half a length apart. It is believed again when its speed agrees with the
-/// filter's for kAgree judgements in a row, or after kDeadlock seconds.
+/// Expected deviation, with the velocity's variance at the beginning V, that of the acceleration A (bias and tilt; more
+/// where the robot has turned since), the accelerometer's noise n, the path m, and what gyro bias, ratio, wheel base
+/// and gyro scale may be wrong by, T:
+///   σ² = V τ² + A τ⁴/4 + n² τ³/3;   wheels: + 2 encoder² + slip_noise² |m| + T
+/// Beyond kSigmas σ + kCreep |m| + slack the contact is not believed. Windows of 0.1 s find what happens suddenly,
+/// those of 0.3 s and 1 s what happens slowly; two of each length, half of it apart. What the sliding contact has made
+/// of velocity, way and acceleration is taken back from the oldest window that saw it come, and the velocity is
+/// doubted. A contact is believed again when its speed agrees with the filter's for kAgree judgements in a row, or
+/// after kDeadlock seconds.
+///
+/// What the accelerometer's bias and the tilt are together is learned here, from windows of 0.3 s in which everything
+/// rolled: a wheel that only begins to slide would else be believed to be a bias.
 ///
 /// Rolling rubber creeps by up to some percent under force (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3):
 /// kCreep = 3 % is not called slip.
