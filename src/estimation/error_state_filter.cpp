@@ -266,8 +266,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexce
   const double speed = velocity.y() + rate.z() * x - rate.x() * z;
   const Column ph = covariance.col(kVelocity + 1) - x * covariance.col(kGyroBias + 2) + z * covariance.col(kGyroBias);
   const double own = ph[kVelocity + 1] - x * ph[kGyroBias + 2] + z * ph[kGyroBias];
-  const double noise = square(noise_.lateral) / dt + square(noise_.gyro) / dt * (x * x + z * z) +
-                       square(noise_.lateral_per_force * velocity.x() * rate.z()) / dt;
+  const double noise = square(noise_.lateral) / dt + square(noise_.gyro) / dt * (x * x + z * z);
   return correct_rolling(ph, -speed, own + noise, 0);
 }
 

@@ -68,7 +68,6 @@ struct FilterNoise {
   double radius_ratio_walk = 1e-5;        ///< 1/√m
   double wheel_base_walk = 5e-5;          ///< 1/√m: load and floor change how a tyre turns
   double lateral = 1e-3;                  ///< m/s/√Hz, sideways at the contact
-  double lateral_per_force = 0;           ///< s: sideways per centripetal acceleration, as a constant error would be
   double vertical = 2e-3;                 ///< m/s/√Hz
 };
 
