@@ -32,6 +32,7 @@ SLIP_REASONS: dict[str, int] = dict(slip_reasons)
 """Name → bit of `slip`."""
 
 _STAMP_ROUNDING = 1e-9  # s: text and ROS stamps hold nanoseconds
+_FARTHEST, _MOST_TURNED = 1e6, 1e6  # m, rad: as the node's service set_odometry takes
 _QUATERNION_TOLERANCE = 1e-3  # of the norm: four decimals, as people write them
 
 
@@ -108,10 +109,34 @@ class Estimator:
         )
         self._period = None if period is None else float(period)
         self._begun = False
+        self._pose: list[float] | None = None  # of the next row
 
     def reset(self) -> None:
         """Forgets all samples: the next `process` begins a new run, its pose at zero, at any time."""
         self._begun = False
+        self._pose = None
+
+    def reset_odometry(self) -> None:
+        """As the node's service: pose and its covariance are zero in the first row of the next `process`; speeds,
+        biases, calibration and distance stay.
+        """
+        self.set_odometry(0.0, 0.0, 0.0)
+
+    def set_odometry(self, x: float, y: float, yaw: float) -> None:
+        """As the node's service: in the first row of the next `process` the pose is x [m], y [m], yaw [rad], its
+        covariance zero; all else stays.
+
+        Raises:
+            ValueError: a number that is none, or beyond 1000 km or 10⁶ rad; then nothing has changed.
+        """
+        for name, value, most, unit in (
+            ("x", x, _FARTHEST, "m"),
+            ("y", y, _FARTHEST, "m"),
+            ("yaw", yaw, _MOST_TURNED, "rad"),
+        ):
+            if not abs(value) <= most:
+                raise ValueError(f"{name} is {value}; it must be a number of -{most:g} … {most:g} {unit}")
+        self._pose = [float(x), float(y), float(yaw)]
 
     def process(
         self,
@@ -182,8 +207,17 @@ class Estimator:
             self._estimator.begin(self._period or self._median_period(stamps, rounding))
             self._begun = True
         out: Estimate = self._estimator.process(
-            stamps, left, right, rates, forces, rounding=rounding, every=int(every), covariance=bool(covariance)
+            stamps,
+            left,
+            right,
+            rates,
+            forces,
+            rounding=rounding,
+            every=int(every),
+            covariance=bool(covariance),
+            pose=self._pose,
         )
+        self._pose = None
         out["valid"] = (out["flags"] & FLAGS["valid"]) != 0
         return out
 

@@ -249,10 +249,12 @@ double OfflineEstimator::since_last(double time, double rounding) const noexcept
 }
 
 py::dict OfflineEstimator::process(const Array& time, const Array& left, const Array& right, const Array& gyro,
-                                   const Array& accel, double rounding, py::ssize_t every, bool covariance) {
+                                   const Array& accel, double rounding, py::ssize_t every, bool covariance,
+                                   const std::optional<Vector3>& pose) {
   constexpr py::ssize_t kBlock = 100000;  // rows between two looks for Ctrl-C
   if (busy_) throw std::runtime_error("another thread is inside process() of this Estimator");
   const Mark mark(busy_);
+  if (pose) estimator_->set_pose(*pose);
   const Rows rows{Rows::Table(time), Rows::Table(left), Rows::Table(right), Rows::Table(gyro), Rows::Table(accel)};
   const py::ssize_t count = rows.time.rows;
   const py::ssize_t outputs = count == 0 ? 0 : 1 + (count - 1 + every - 1) / every;
@@ -322,7 +324,8 @@ void bind_offline_estimator(py::module_& module) {
            py::arg("two_wheels"))
       .def("begin", &OfflineEstimator::begin, py::arg("period"))
       .def("process", &OfflineEstimator::process, py::arg("time"), py::arg("left"), py::arg("right"), py::arg("gyro"),
-           py::arg("accel"), py::kw_only(), py::arg("rounding"), py::arg("every"), py::arg("covariance"))
+           py::arg("accel"), py::kw_only(), py::arg("rounding"), py::arg("every"), py::arg("covariance"),
+           py::arg("pose"))
       .def("save_calibration", &OfflineEstimator::save_calibration, py::arg("path"))
       .def_property_readonly("period", &OfflineEstimator::period)
       .def_property_readonly("loop_period", &OfflineEstimator::loop_period)

@@ -40,9 +40,11 @@ class OfflineEstimator {
 
   /// time (N,) strictly increasing, left and right (N, 1) or (N, wheels of the side), gyro and accel (N, 3), or (0, 3)
   /// where there is none. `rounding`: s, by which the difference of two stamps may be wrong. Every `every`-th row comes
-  /// out, from the first one on, and the last. The caller has checked all of it. Other Python threads run meanwhile.
+  /// out, from the first one on, and the last. `pose`: x [m], y [m], yaw [rad] of the first row, as set_odometry sets
+  /// it. The caller has checked all of it. Other Python threads run meanwhile.
   pybind11::dict process(const Array& time, const Array& left, const Array& right, const Array& gyro,
-                         const Array& accel, double rounding, pybind11::ssize_t every, bool covariance);
+                         const Array& accel, double rounding, pybind11::ssize_t every, bool covariance,
+                         const std::optional<Vector3>& pose);
 
   /// What was learned so far, as the node keeps it (parameters/calibration_file.h). Throws std::runtime_error: nothing
   /// was, or beyond its bounds; std::system_error.

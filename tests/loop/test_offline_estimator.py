@@ -125,6 +125,48 @@ def test_reset_begins_a_new_run(samples):
     assert same(est.process(*samples), first)
 
 
+def test_the_odometry_is_reset_in_the_next_row_and_all_else_stays(samples):
+    est = Estimator()
+    est.process(*part(samples, slice(0, 5000)))
+    whole = Estimator().process(*samples)
+    est.reset_odometry()
+    after = est.process(*part(samples, slice(5000, None)))
+    assert whole["x"][5000] > 0.1, "it had moved"
+    for name in ("x", "y", "z", "yaw"):
+        assert after[name][0] == pytest.approx(0, abs=1e-15), name
+    assert after["pose_covariance"][0][:2, :2] == pytest.approx(np.zeros((2, 2)), abs=1e-20)  # m²: rounding
+    assert after["pose_covariance"][0][5, 5] == pytest.approx(0, abs=1e-20)  # rad²
+    for name in ("linear", "angular", "gyro_bias", "radius_ratio", "distance", "flags"):
+        assert np.array_equal(after[name][0], whole[name][5000]), name
+
+
+def test_the_odometry_is_set_in_the_first_row_and_only_there(samples):
+    moved, plain = Estimator(), Estimator().process(*samples)
+    moved.set_odometry(1.0, -2.0, 0.5)
+    out = moved.process(*samples)
+    assert (out["x"][0], out["y"][0]) == (1.0, -2.0)
+    cos, sin = np.cos(0.5), np.sin(0.5)
+    assert out["yaw"][0] == pytest.approx(0.5)
+    # A run begins with the IMU's place as sure, a pose that is set with base_link's: 6 cm below, at a tilt of 0.1 rad.
+    assert out["x"][-1] == pytest.approx(1 + cos * plain["x"][-1] - sin * plain["y"][-1], abs=0.006)
+    assert out["y"][-1] == pytest.approx(-2 + sin * plain["x"][-1] + cos * plain["y"][-1], abs=0.006)
+
+
+def test_what_is_no_pose_is_refused_and_changes_nothing(samples):
+    est = Estimator()
+    for pose in ((np.nan, 0, 0), (0, 1.1e6, 0), (0, 0, np.inf)):
+        with pytest.raises(ValueError, match="must be a number of"):
+            est.set_odometry(*pose)
+    assert same(est.process(*samples), Estimator().process(*samples))
+
+
+def test_a_pose_that_was_set_is_forgotten_by_a_new_run(samples):
+    est = Estimator()
+    est.set_odometry(1.0, 0.0, 0.0)
+    est.reset()
+    assert same(est.process(*samples), Estimator().process(*samples))
+
+
 def test_thinned_rows_are_those_of_all_rows_and_the_last_one(samples):
     whole = Estimator().process(*samples)
     thin = Estimator().process(*samples, every=7)
