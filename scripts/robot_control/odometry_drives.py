@@ -15,7 +15,8 @@ from robot_control import odometry_slip
 from robot_control.odometry_program import RAMP, Program
 from robot_control.share import share_file
 
-FIRST_STAND = 3.0  # s, of every run, and before every square
+FIRST_STAND = 3.0  # s, of every run
+SET_DOWN = 10.0  # s, before each square
 SIDE = 4.0  # m, of UMBmark's square
 SQUARES = 5  # each way
 
@@ -41,11 +42,13 @@ class Draft:
 def umbmark(draft: Draft) -> None:
     """Borenstein & Feng 1996: a square of 4 m, five times each way, corners turned on the spot, at 0.2 … 0.5 m/s.
 
-    They set the robot down at the start before each run; here the next run begins where it stands, and each run's
-    error is taken in the frame of its own start. It stands 3 s before each, while a person would measure.
+    They set the robot down at the start, measure its place and reset its odometry before each run. Here the next run
+    begins where it stands; it stands SET_DOWN s before each, as long as that takes at the very least, then the odometry
+    is reset (at the marks cw, ccw).
     """
     speed = draft.random.uniform(0.2, 0.5)
     rate = draft.random.uniform(0.5, 1.0)  # rad/s
+    draft.program.stand(SET_DOWN - FIRST_STAND)
     for way in (-1, 1):
         for _ in range(SQUARES):
             draft.mark("cw" if way < 0 else "ccw")
@@ -53,7 +56,7 @@ def umbmark(draft: Draft) -> None:
                 draft.program.ways(speed, SIDE, 0.3)
                 draft.program.turn(way * rate, np.pi / 2, 0.3)
             draft.mark("end")
-            draft.program.stand(FIRST_STAND)
+            draft.program.stand(SET_DOWN)
 
 
 def random_drive(draft: Draft) -> None:
@@ -107,7 +110,6 @@ def standstill(draft: Draft) -> None:
     """A short drive, then ten minutes of nothing."""
     draft.program.ways(0.4, 1.0, 0.3)
     draft.program.turn(0.8, 1.0, 1.0)
-    draft.mark("rest")
     draft.program.stand(600.0)
 
 

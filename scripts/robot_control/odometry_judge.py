@@ -3,13 +3,18 @@
 position error   |estimated − true position| at the end of the run. UMBmark: of the ten return errors, each in the
                  frame of its own start, the larger of the two distances of their centres of gravity, one of the
                  five clockwise runs and one of the five counter-clockwise, from zero (Borenstein & Feng 1996,
-                 section III: E_max,syst)
+                 section III: E_max,syst). The odometry is reset before each
 yaw error        |estimated − true| at the end, within half a turn. UMBmark: the largest of the ten
-NEES             of odometry_consistency.py, every SAMPLE s from when the robot began to drive
+NEES             of odometry_consistency.py, every SAMPLE s, where the robot moves: one at rest errs by micrometres and
+                 has no dynamics that a covariance could describe
+standstill       from SETTLED s after the robot came to rest: in the first two s of rest the yaw still learns from the
+                 gyro's bias (estimator.h, kSettling), which corrects what was driven
 """
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,20 +24,21 @@ from numpy.typing import NDArray
 from robot_control.odometry_consistency import Notice, nees, notice, pose_error, twist_error
 from robot_control.odometry_drives import FIRST_STAND
 from robot_control.odometry_methods import METHODS, raw_wheels
-from robot_control.odometry_ours import OURS, estimate, true_track
+from robot_control.odometry_ours import OURS, estimate, resets_of, true_track
 from robot_control.odometry_picture import Picture, picture_of
 from robot_control.odometry_recording import Recording, load_recording, record
 from robot_control.odometry_scenarios import draw_trial
-from robot_control.odometry_truth import Array, Track, Truth, truth_of, wrapped
+from robot_control.odometry_truth import Array, Track, Truth, after_resets, moving, truth_of, wrapped
 
 SAMPLE = 10.0  # s, between two looks at the NEES: errors of pose change over many seconds
-SETTLED = 3.0  # s after the last command, from which on a robot is at rest
+SETTLED = 3.0  # s
 
 
 @dataclass(frozen=True)
 class Run:
-    """`position` m and `yaw` rad by method. `returns` (10, 2) m by method: of UMBmark. `killed`: position error of the
-    second half alone, driven without gyro, by method. `drift`: m and rad while it stands.
+    """`position` m and `yaw` rad by method. `pose_nees`, `twist_nees` at `times`, NaN where the robot stands. `returns`
+    (10, 2) m by method: of UMBmark. `killed`: position error of the second half alone, driven without gyro, by method.
+    `drift`: m and rad while it stands.
     """
 
     scenario: str
@@ -72,7 +78,8 @@ def recorded(scenario: str, seed: int, cache: Path | None) -> Recording:
 
 def judge(recording: Recording, *, picture: bool = False) -> Run:
     """Estimates and compares."""
-    truth, ours = truth_of(recording), estimate(recording)
+    truth, ours, resets = truth_of(recording), estimate(recording), resets_of(recording)
+    truth = dataclasses.replace(truth, odom=after_resets(truth.odom, resets))
     paths = {name: method(recording) for name, method in METHODS.items()} | {OURS: ours.path}
     ends = {name: _errors(path, true_track(truth, name)) for name, path in paths.items()}
     returns: dict[str, Array] = {}
@@ -81,6 +88,7 @@ def judge(recording: Recording, *, picture: bool = False) -> Run:
         returns = {name: errors[:, :2] for name, errors in returned.items()}
         ends = {name: (largest_mean(errors[:, :2]), np.abs(errors[:, 2]).max()) for name, errors in returned.items()}
     rows = _sampled_rows(recording)
+    at_rest = ~moving(truth)[rows]
     return Run(
         scenario=recording.scenario,
         seed=recording.seed,
@@ -89,15 +97,15 @@ def judge(recording: Recording, *, picture: bool = False) -> Run:
         position={name: float(end[0]) for name, end in ends.items()},
         yaw={name: float(end[1]) for name, end in ends.items()},
         times=recording.time[recording.index[rows]],
-        pose_nees=nees(pose_error(ours, truth)[rows], ours.pose_covariance[rows]),
-        twist_nees=nees(twist_error(ours, truth)[rows], ours.twist_covariance[rows]),
+        pose_nees=np.where(at_rest, np.nan, nees(pose_error(ours, truth)[rows], ours.pose_covariance[rows])),
+        twist_nees=np.where(at_rest, np.nan, nees(twist_error(ours, truth)[rows], ours.twist_covariance[rows])),
         notice=notice(ours, truth),
         pitch=_pitch(truth),
-        jump=_jump(ours.path, truth.odom),
+        jump=_jump(ours.path, truth.odom, resets),
         invalid=float(np.mean(~ours.valid)),
         returns=returns,
         killed=_without_gyro(recording, truth) if recording.scenario == "random" else {},
-        drift=_drift(recording, ours.path, truth.odom) if recording.scenario == "standstill" else None,
+        drift=_drift(recording, ours.path, truth) if recording.scenario == "standstill" else None,
         picture=picture_of(recording, truth, ours, paths) if picture else None,
     )
 
@@ -143,9 +151,9 @@ def _pitch(truth: Truth) -> float:
     return float(np.std(truth.pitch[moving])) if moving.any() else 0.0
 
 
-def _jump(path: Track, true: Track) -> float:
+def _jump(path: Track, true: Track, resets: Sequence[int]) -> float:
     estimated, really = (np.hypot(np.diff(track.x), np.diff(track.y)) for track in (path, true))
-    return float(np.max(estimated - really))
+    return float(np.max(np.delete(estimated - really, np.subtract(resets, 1).astype(np.int64))))
 
 
 def _without_gyro(recording: Recording, truth: Truth) -> dict[str, float]:
@@ -158,8 +166,9 @@ def _without_gyro(recording: Recording, truth: Truth) -> dict[str, float]:
     }
 
 
-def _drift(recording: Recording, path: Track, true: Track) -> tuple[float, float]:
-    begin = int(np.searchsorted(recording.time[recording.index], recording.marks["rest"][0] * 0.001 + SETTLED))
+def _drift(recording: Recording, path: Track, truth: Truth) -> tuple[float, float]:
+    times, true = recording.time[recording.index], truth.odom
+    begin = int(np.searchsorted(times, times[np.flatnonzero(moving(truth))[-1]] + SETTLED))
     moved_x, moved_y = path.x - true.x, path.y - true.y
     turned = path.yaw - true.yaw
     way = np.hypot(moved_x[begin:] - moved_x[begin], moved_y[begin:] - moved_y[begin])

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robot_control.odometry_recording import TRUTH_EVERY, Recording
 from robot_control.odometry_truth import Array, Track, Truth
-from robot_control.offline_estimator import FLAGS, Estimator
+from robot_control.offline_estimator import FLAGS, Estimate, Estimator
 
 OURS = "ours"  # its name among the methods
 PLANAR = [0, 1, 5]  # x, y, yaw of a pose; of a twist 0 and 5 are forward speed and yaw rate
@@ -38,19 +39,38 @@ def estimate(recording: Recording, gyro_until: float = np.inf) -> Ours:
     gyro = recording.gyro
     if np.isfinite(gyro_until):
         gyro = np.where(recording.time[:, None] < gyro_until, gyro, np.nan)
-    out = Estimator().process(recording.time, recording.left, recording.right, gyro, recording.accel, every=TRUTH_EVERY)
-    rows = slice(0, len(recording.index))  # without the last one, which is always there
+    out = _processed([recording.time, recording.left, recording.right, gyro, recording.accel], resets_of(recording))
     return Ours(
-        path=Track(out["x"][rows], out["y"][rows], np.unwrap(out["yaw"][rows])),
-        pose_covariance=out["pose_covariance"][rows][:, PLANAR][:, :, PLANAR],
-        linear=out["linear"][rows, 0],
-        angular=out["angular"][rows, 2],
-        twist_covariance=out["twist_covariance"][rows][:, DRIVEN][:, :, DRIVEN],
-        slip=(out["flags"][rows] & FLAGS["slip"]) != 0,
-        valid=out["valid"][rows],
-        radius_ratio=out["radius_ratio"][rows],
-        wheel_base_factor=out["wheel_base_factor"][rows],
+        path=Track(out["x"], out["y"], np.unwrap(out["yaw"])),
+        pose_covariance=out["pose_covariance"][:, PLANAR][:, :, PLANAR],
+        linear=out["linear"][:, 0],
+        angular=out["angular"][:, 2],
+        twist_covariance=out["twist_covariance"][:, DRIVEN][:, :, DRIVEN],
+        slip=(out["flags"] & FLAGS["slip"]) != 0,
+        valid=out["valid"],
+        radius_ratio=out["radius_ratio"],
+        wheel_base_factor=out["wheel_base_factor"],
     )
+
+
+def resets_of(recording: Recording) -> list[int]:
+    """Truth rows at which the odometry is reset: UMBmark's ten starts."""
+    if recording.scenario != "umbmark":
+        return []
+    return [-(-cycle // TRUTH_EVERY) for cycle in sorted(recording.marks["cw"] + recording.marks["ccw"])]
+
+
+def _processed(samples: list[Array], resets: list[int]) -> Estimate:
+    """At the rows of truth: without the last row of a part, which always comes out, where it is none of them."""
+    bounds = [0, *(TRUTH_EVERY * row for row in resets), len(samples[0])]
+    estimator, parts = Estimator(), []
+    for begin, end in pairwise(bounds):
+        if begin:
+            estimator.reset_odometry()
+        out = estimator.process(*(table[begin:end] for table in samples), every=TRUTH_EVERY)
+        rows = slice(0, -(-(end - begin) // TRUTH_EVERY))
+        parts.append({name: values[rows] for name, values in out.items()})
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def true_track(truth: Truth, method: str) -> Track:

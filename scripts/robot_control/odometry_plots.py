@@ -123,10 +123,11 @@ def _random_drive(picture: Picture) -> plt.Figure:
 def _consistency(runs: Sequence[Run]) -> plt.Figure:
     figure, axes = plt.subplots(2, 1, figsize=(12, 7), sharex=True, layout="constrained")
     for panel, what, ideal in ((axes[0], "pose", 3), (axes[1], "twist", 2)):
-        means, (low, high) = mean_nees(runs, what)
-        times = runs[0].times[: len(means)]
+        times, means, low, high = mean_nees(runs, what)
         inside = 100 * np.mean((means >= low) & (means <= high))
-        panel.axhspan(low, high, color="#1f5fa8", alpha=0.15, lw=0, label=f"95 % of means of {len(runs)} runs")
+        panel.fill_between(
+            times, low, high, color="#1f5fa8", alpha=0.15, lw=0, label=f"95 % of means of {len(runs)} runs"
+        )
         panel.axhline(ideal, color="#1f5fa8", linewidth=1)
         panel.plot(times, means, ".-", color=COLOURS[OURS], label="mean over the runs")
         names = "x, y, yaw" if what == "pose" else "forward speed, yaw rate"

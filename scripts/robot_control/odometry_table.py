@@ -48,12 +48,11 @@ def _by_scenario(runs: Sequence[Run]) -> list[str]:
     lines = [f"{'mean':<26}" + "".join(f"{title:>14}" for title in titles)]
     for scenario in (name for name in SCENARIOS if of(runs, name)):
         some = of(runs, scenario)
-        rows = sum(len(run.times) for run in some)
         cells = [
             float(len(some)),
             np.mean([run.distance for run in some]),
-            sum(run.pose_nees.sum() for run in some) / rows,
-            sum(run.twist_nees.sum() for run in some) / rows,
+            _mean([run.pose_nees for run in some]),
+            _mean([run.twist_nees for run in some]),
             *_noticed(some),
             np.rad2deg(np.mean([run.pitch for run in some])),
             1e3 * np.mean([run.jump for run in some]),
@@ -90,7 +89,6 @@ def _by_kind(runs: Sequence[Run]) -> list[str]:
         some = [run for run in runs if run.seed % len(KINDS) == number]
         if some:
             wheels, ours = positions(some, "slip", CALIBRATED), positions(some, "slip")
-            nees = np.concatenate([run.pose_nees for run in some])
             better = 100 * np.mean(wheels >= 5 * ours)
             cells = [
                 float(len(some)),
@@ -98,10 +96,16 @@ def _by_kind(runs: Sequence[Run]) -> list[str]:
                 1e3 * np.median(ours),
                 better,
                 *_noticed(some),
-                nees.mean(),
+                _mean([run.pose_nees for run in some]),
             ]
             lines.append(f"{kind:<26}" + "".join(f"{cell:16.4g}" for cell in cells))
     return lines
+
+
+def _mean(series: Sequence[Array]) -> float:
+    """NaN where no robot moved at a sampled time."""
+    values = np.concatenate(series)
+    return float(np.nanmean(values)) if np.isfinite(values).any() else np.nan
 
 
 def _spread(values: Array) -> str:

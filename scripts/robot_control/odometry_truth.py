@@ -21,7 +21,9 @@ sideways is not told by it. Below 0.1 m/s a difference of 2 cm/s is 20 %: a whee
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +32,7 @@ from robot_control.odometry_recording import Recording
 
 Array = NDArray[np.float64]
 SLOWEST = 0.1  # m/s, in the slip's denominator
+MOVING = 0.01  # m/s, rad/s
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,23 @@ def truth_of(recording: Recording) -> Truth:
         slip=slip_ratio(recording),
         pitch=-np.arcsin(np.clip(turned[:, 2, 0], -1, 1)),
     )
+
+
+def moving(truth: Truth) -> NDArray[np.bool_]:
+    """(M,): body moves, by more than a robot that rocks to rest."""
+    result: NDArray[np.bool_] = (np.abs(truth.linear) > MOVING) | (np.abs(truth.angular) > MOVING)
+    return result
+
+
+def after_resets(track: Track, rows: Sequence[int]) -> Track:
+    """The same with its pose set to zero in these rows."""
+    x, y, yaw = track.x.copy(), track.y.copy(), track.yaw.copy()
+    for begin, end in pairwise([*rows, len(x)]):
+        dx, dy = track.x[begin:end] - track.x[begin], track.y[begin:end] - track.y[begin]
+        cos, sin = np.cos(track.yaw[begin]), np.sin(track.yaw[begin])
+        x[begin:end], y[begin:end] = cos * dx + sin * dy, cos * dy - sin * dx
+        yaw[begin:end] = track.yaw[begin:end] - track.yaw[begin]
+    return Track(x, y, yaw)
 
 
 def wrapped(angle: Array) -> Array:
