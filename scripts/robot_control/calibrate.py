@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from robot_control.calibration_law import (
+    TAPE,
     NotCalibratedError,
     Square,
     Straight,
@@ -104,7 +105,7 @@ def parse_options(arguments: Sequence[str]) -> Options:
         parser.error("--distance 0 and --side 0 leave nothing to do")
     for name in ("distance", "side"):
         if 0 < given[name] < 0.5:
-            parser.error(f"--{name}: below 0.5 m a tape's {3} mm are more than the wheels' errors")
+            parser.error(f"--{name}: below 0.5 m a tape's {1000 * TAPE:g} mm are more than the wheels' errors")
     given["measured"], given["returned"] = tuple(given["measured"]), tuple(given["returned"])
     return Options(**given)
 

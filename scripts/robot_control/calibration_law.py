@@ -15,7 +15,8 @@ and integrating that says where the robot really is (`replay`). s, E_d and E_b a
 tape: the length of straight drives, the place to which squares driven both ways return. Least squares by Gauss-Newton
 on the exact arcs, so large errors, round corners and a square that did not close by odometry do no harm.
 
-Common radius and wheel base are told apart by the straight drives alone: squares see E_b/s. Without them s is 1.
+Common radius and wheel base are told apart by the straight drives alone: squares see E_b/s. Without straight
+drives s is 1.
 
 The authors' own formulas for small errors are `umbmark`. On a square of side L, α is what every quarter turn lacks, β
 what every side turns to the left. Adding the four sides' displacements to first order, a return of

@@ -157,7 +157,7 @@ class ErrorStateFilter {
 
   /// Adds an error to the nominal state; what a window of corrections did is taken back by its negative.
   void inject(const Column& error) noexcept;
-  /// These errors were injected wrongly, perhaps: they are taken back, and not known any more as well as that.
+  /// These errors were injected wrongly, perhaps: the nominal state loses them, the covariance stays.
   void take_back(const Column& error) noexcept;
   /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the
   /// accelerometer's bias, which is from now on known to kPulledBias at best.
@@ -182,7 +182,6 @@ class ErrorStateFilter {
 
   const ContactGeometry& geometry() const noexcept { return geometry_; }
   const FilterNoise& noise() const noexcept { return noise_; }
-  const FilterPrior& prior() const noexcept { return prior_; }
   double lever(int side) const noexcept;  ///< m, lateral, of the contact from the IMU
 
  private:

@@ -11,9 +11,9 @@
 /// under a gyro that reads the same rate for kSteadyTime are those of a robot at rest whose gyro bias is another one
 /// than believed.
 ///
-/// Samples may come at any rate; one that is missing, not finite or impossible is not used (kStateBadSample), and the
-/// last one holds: for three times the gap between the last two, within kShortHold … kLongHold. Beyond that the sensor
-/// is lost, and says so by its flag:
+/// Samples may come at any rate. One that is not finite or impossible is not used (kStateBadSample, which says, too,
+/// that encoders are missing in this cycle), and the last one holds: for three times the gap between the last two,
+/// within kShortHold … kLongHold. Beyond that the sensor is lost, and says so by its flag:
 ///   gyro            yaw comes from the wheels, by the calibration learned so far
 ///   accelerometer   tilt and slip of all wheels together are not noticed
 ///   one encoder     gyro and the other side carry on
@@ -50,8 +50,7 @@ class Estimator {
   static constexpr double kSteadyTime = 10.0;       ///< s; nothing turns a robot so evenly on wheels that stand
   static constexpr double kSettling = 2.0;          ///< s of rest in which yaw still learns from the gyro's bias
   static constexpr double kRestSpeed = 0.01;        ///< m/s, standard deviation of the velocity when rest ends
-  static constexpr std::uint64_t kMaxRefused =
-      50;  ///< samples in a row behind the chi-square gate, then it begins anew
+  static constexpr std::uint64_t kMaxRefused = 50;  ///< encoder readings in a row behind the gate, then anew
 
   /// `period`: s, > 0. Throws std::invalid_argument: a parameter or a measure of the robot out of range, a
   /// side without a wheel.

@@ -1,6 +1,5 @@
 // The estimator while the robot stands.
 
-#include <algorithm>
 #include <cmath>
 
 #include "estimation/algebra.h"

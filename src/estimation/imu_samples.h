@@ -2,8 +2,7 @@
 /// Gyro and accelerometer samples as they come → their means over each step, in base axes.
 ///
 ///   gyro            (ω_k−1 + ω_k)/2 over the time between two samples. Steps without a sample take the last one; the
-///   step
-///                   that brings the next one makes the trapezoid whole.
+///                   step that brings the next one makes the trapezoid whole.
 ///   accelerometer   the last sample: it is a mean over the time before it (signals/sensor_frame.h)
 /// A sample holds for three times the gap between the last two good ones, within kShortHold … kLongHold; then the
 /// sensor is lost. Not finite, or beyond kGyroRange or kAccelerometerRange, is no sample.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/algebra.h"
 #include "signals/state_frame.h"
 
 namespace robot_control {
 namespace {
 
+using algebra::square;
 using Filter = ErrorStateFilter;
 constexpr std::size_t kLeft = 0;
 constexpr std::size_t kRight = 1;
@@ -21,10 +23,6 @@ constexpr double kDoubt = 3;        // deviations of the window's end speed: it 
 constexpr double kYoungest = 0.04;  // s
 constexpr double kShaken = 0.4;
 constexpr std::size_t kLearning = 2;  // index of the window that bias and tilt learn from
-
-double square(double value) noexcept {
-  return value * value;
-}
 
 }  // namespace
 
@@ -101,8 +99,7 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
   }
 }
 
-double SlipWatch::residual(const Window& window, std::size_t contact, const Filter& filter) noexcept {
-  static_cast<void>(filter);
+double SlipWatch::residual(const Window& window, std::size_t contact) noexcept {
   return window.measured[contact] - window.predicted[contact] + window.way[kAxis[contact]];
 }
 
@@ -137,7 +134,7 @@ double SlipWatch::variance(const Window& window, std::size_t contact, const Filt
 double SlipWatch::excess(const Window& window, std::size_t contact, const Filter& filter) noexcept {
   const double limit = kSigmas * std::sqrt(variance(window, contact, filter)) + kCreep * window.path[contact] +
                        (contact == kVertical ? kVerticalSlack : kSlack);
-  return std::abs(residual(window, contact, filter)) / limit;
+  return std::abs(residual(window, contact)) / limit;
 }
 
 /// The oldest of the windows that sees any of `contacts` beyond a share of its limit: it began before the sliding did.
@@ -168,8 +165,8 @@ bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
   for (std::size_t c = 0; c < kContacts; ++c) {
     // What shakes the belief in one contact shakes that in the others: two wheels on ice rarely begin together.
     if (!states_[c].believed || !(slides[c] || excess(window, c, filter) > kShaken)) continue;
-    states_[c] = {.believed = false, .excess = residual(window, c, filter) / window.age};
-    way[static_cast<std::size_t>(kAxis[c])] = residual(whole, c, filter);
+    states_[c] = {.believed = false, .excess = residual(window, c) / window.age};
+    way[static_cast<std::size_t>(kAxis[c])] = residual(whole, c);
     doubt[static_cast<std::size_t>(kAxis[c])] = kDoubt * std::sqrt(variance(whole, c, filter)) / age;
   }
   take_back(whole, {doubt[0] > 0, doubt[1] > 0, doubt[2] > 0}, filter);
@@ -181,10 +178,10 @@ bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
   return true;
 }
 
-/// What was believed of a sliding contact since the window began: way and velocity along its axis, and what that made
-/// of the acceleration. Bias and tilt keep what they have learned apart from each other. Of wheels also yaw, the gyro's
-/// bias about it, and calibration. Older windows keep the rest of their corrections; younger ones began with what was
-/// wrong, and begin anew.
+/// What was believed of a sliding contact since the window began: the whole way, the velocity along its axis, and what
+/// that made of the acceleration. Bias and tilt keep what they have learned apart from each other. Of wheels also yaw,
+/// the gyro's bias about it, and calibration. Older windows keep the rest of their corrections; younger ones began with
+/// what was wrong, and begin anew.
 void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes, Filter& filter) noexcept {
   const double age = window.age;
   const Filter::Column& made = window.corrections;
@@ -215,7 +212,7 @@ void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes,
   }
 }
 
-/// A long window in which everything rolled tells what the accelerometer's bias and the tilt are together.
+/// A window in which everything rolled tells what the accelerometer's bias and the tilt are together.
 void SlipWatch::learn_acceleration(const Window& window, Filter& filter) noexcept {
   const auto believed = [](const State& state) { return state.believed; };
   if (!window.inertial || !std::ranges::all_of(states_, believed)) return;
@@ -223,8 +220,8 @@ void SlipWatch::learn_acceleration(const Window& window, Filter& filter) noexcep
     if (excess(window, c, filter) > kShaken) return;
   }
   const double per_way = 2 / square(window.age);
-  const double ways[3] = {(residual(window, kLeft, filter) + residual(window, kRight, filter)) / 2,
-                          residual(window, kLateral, filter), residual(window, kVertical, filter)};
+  const double ways[3] = {(residual(window, kLeft) + residual(window, kRight)) / 2, residual(window, kLateral),
+                          residual(window, kVertical)};
   for (int axis = 0; axis < 3; ++axis) {
     const double start = 4 * window.velocity_variance[axis] / square(window.age);
     // A way weighs what came first twice: the mean acceleration is that of a third of the window.
@@ -237,7 +234,7 @@ void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
     State& state = states_[c];
     if (state.believed) continue;
     const int axis = kAxis[c];
-    const double excess = residual(window, c, filter) / window.age;
+    const double excess = residual(window, c) / window.age;
     const double known = 3 * std::sqrt(filter.covariance(Filter::kVelocity + axis, Filter::kVelocity + axis));
     const double speed = window.path[c] / window.age;
     const double cap = std::max(0.05, 0.3 * speed);
@@ -274,8 +271,8 @@ void SlipWatch::judge(Filter& filter) noexcept {
   const Window& longest = windows_[4].age > windows_[5].age ? windows_[4] : windows_[5];
   const bool heard = std::isfinite(longest.measured[kLeft]) && std::isfinite(longest.measured[kRight]);
   if (longest.age > 0 && heard) {
-    const double left = residual(longest, kLeft, filter);
-    const double right = residual(longest, kRight, filter);
+    const double left = residual(longest, kLeft);
+    const double right = residual(longest, kRight);
     const auto& noise = filter.noise();
     const double path = longest.path[kLeft] + longest.path[kRight];
     const Eigen::Vector4d by = by_turning(longest, 1, filter) - by_turning(longest, 0, filter);

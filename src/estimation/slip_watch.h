@@ -49,7 +49,7 @@ class SlipWatch {
   };
 
   void reset() noexcept;                                ///< all contacts are believed
-  void begin(const ErrorStateFilter& filter) noexcept;  ///< windows begin anew
+  void begin(const ErrorStateFilter& filter) noexcept;  ///< the same, and windows begin anew
 
   /// After the filter's prediction and corrections of this cycle. Takes back corrections from the filter where a
   /// contact is found to slip.
@@ -103,7 +103,7 @@ class SlipWatch {
   void take_back(const Window& window, const std::array<bool, 3>& axes, ErrorStateFilter& filter) noexcept;
   void learn_acceleration(const Window& window, ErrorStateFilter& filter) noexcept;
   void heal(const Window& window, const ErrorStateFilter& filter) noexcept;
-  static double residual(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
+  static double residual(const Window& window, std::size_t contact) noexcept;
   static double variance(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
   void tell(const ErrorStateFilter& filter) noexcept;
 
