@@ -30,19 +30,18 @@ LOOSER = {
 UNTOLD = {  # by one run
     "standstill, position over simple part's",
     "standstill, yaw over simple part's",
+    "waves, position over simple part's",
     "waves, yaw over simple part's",
 }
-MISSED = {
-    # Promised at 90 % of the times; 0 % with fifty: the covariance is too large, NEES 2.0 (ideal 3). Here 40 %.
+MISSED = {  # and, by robots that are none of these: UMBmark's worst, 46 of 40 mm; slip, worst over wheels, 1.74 of 1.1
+    # Promised at 90 % of the times; 0 % with fifty: the covariance is too large, NEES 1.9 (ideal 3). Here 40 %.
     "NEES of the pose in its band": 30,
     # Promised at 90 %; 60 % with fifty, below the band in the rest: mean 1.5 (ideal 2). Here 90 %.
     "NEES of the twist in its band": 69,
-    # At most 10; 34 with fifty, of which 20 are two runs. Here 415: one sample of 18, of the run that is worst of all.
+    # At most 10; 34 with fifty, 8.8 without two of them. Here 415: one sample of 18, of the run that is worst of all.
     "slip, mean NEES of the pose": 540,
     # At most 1.1; 1.24 with fifty. Here 1.35.
     "slope, yaw over simple part's": 1.75,
-    # At most 1.1; 1.35 with fourteen: 12 mm, where the simple part has 9. Here 1.13, of one robot.
-    "waves, position over simple part's": 1.5,
 }
 
 
