@@ -18,11 +18,12 @@ from robot_control.odometry_promises import (
     all_promises,
     false_alarms,
     in_band,
+    mean_nees,
     never_worse,
     slip,
     umbmark,
 )
-from robot_control.odometry_truth import Track, levelling, rotation, slip_ratio, truth_of
+from robot_control.odometry_truth import Track, after_resets, levelling, rotation, slip_ratio, truth_of
 from synthetic_odometry import RADIUS, drive
 
 STAND, LINE = (0.0, 0.0, 1.0), (0.5, 0.0, 4.0)
@@ -101,6 +102,28 @@ def test_a_return_error_is_that_of_its_own_square():
     shifted = Track(recording.time[recording.index], np.zeros(len(recording.index)), np.zeros(len(recording.index)))
     still = Track(*(np.zeros(len(recording.index)) for _ in range(3)))
     assert return_errors(recording, shifted, still)[:, 0] == pytest.approx([8.0, 8.0])
+
+
+def test_a_reset_truth_begins_anew_in_its_own_axes():
+    track = Track(
+        np.array([0.0, 1.0, 1.0, 1.0]), np.array([0.0, 0.0, 2.0, 5.0]), np.array([0.0, 0.0, np.pi / 2, np.pi])
+    )
+    reset = after_resets(track, [2])
+    assert reset.x == pytest.approx([0.0, 1.0, 0.0, 3.0])
+    assert reset.y == pytest.approx([0.0, 0.0, 0.0, 0.0])
+    assert reset.yaw == pytest.approx([0.0, 0.0, 0.0, np.pi / 2])
+
+
+def test_who_stands_does_not_count_for_consistency():
+    runs = [
+        run_of("random", pose_nees=np.array([3.0, np.nan, np.nan]), seed=seed, killed={OURS: 0, RAW: 1})
+        for seed in (0, 1)
+    ]
+    runs[1].pose_nees[1] = 3.0
+    times, means, low, high = mean_nees(runs, "pose")
+    assert times == pytest.approx([1.0, 2.0])
+    assert means == pytest.approx([3.0, 3.0])
+    assert high[1] - low[1] > high[0] - low[0], "of one run"
 
 
 def test_the_largest_mean_is_of_the_worse_way_round():
