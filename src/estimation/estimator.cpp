@@ -137,6 +137,7 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   }
   if (pose_pending_) {
     place(*pose_pending_, filter_);
+    held_ = {};
     pose_pending_.reset();
     slip_.begin(filter_);
   }
@@ -156,6 +157,10 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     side.total += side.encoder.travel();
     if (reading == EncoderReading::kTravel && side.encoder.time() > 0) {
       side.speed.step(side.encoder.travel(), side.encoder.time());
+    }
+    if (reading == EncoderReading::kOffset) {  // first heard: in mid-run, perhaps
+      side.ahead = 0;
+      filter_.anchor_travel(i, side.total);
     }
     if (reading == EncoderReading::kLost) {
       side.ahead = 0;

@@ -4,6 +4,7 @@
 
 #include "estimation/algebra.h"
 #include "estimation/estimator.h"
+#include "estimation/placing.h"
 
 namespace robot_control {
 namespace {
@@ -28,6 +29,13 @@ void Estimator::rest(double dt) noexcept {
     held_.turn += *imu_.gyro() * dt;
   } else {
     held_.gyro = false;
+  }
+  const auto silent = [&](int side) { return sides_[static_cast<std::size_t>(side)].encoder.gap() > 0 && lost(side); };
+  if (silent(kLeft) && silent(kRight)) {  // nobody says that it still rests
+    standstill_.reset();
+    rested_ = 0;
+    lasting_flags_ &= ~std::uint64_t{kStateStandstill};
+    return;
   }
   StandstillSample sample{.dt = dt, .left = left, .right = right, .gyro = {}, .accelerometer = {}};
   if (imu_.new_gyro()) sample.gyro = imu_.last_gyro();
@@ -54,7 +62,7 @@ void Estimator::end_rest() noexcept {
   distance_ += std::abs(held_.forward);
   auto& p = filter_.covariance;
   p(Filter::kOrientation + 2, Filter::kOrientation + 2) += square(parameters_.gyro_noise) * held_.time;
-  filter_.stand(kRestSpeed);
+  filter_.stand(rested_ > 0 ? kRestSpeed : kUnknownSpeed);  // a run may begin in motion
   for (const int i : {kLeft, kRight}) filter_.anchor_travel(i, sides_[static_cast<std::size_t>(i)].total);
   slip_.begin(filter_);
   held_ = {};

@@ -27,6 +27,7 @@ void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sa
     channel.mean = *sample;
     if (continued && trapezoid) channel.mean = channel.last + (*sample - channel.last) * (steps / 2);
     channel.catches_up = continued && trapezoid && channel.age > dt;
+    if (channel.heard && dt > channel.hold) channel.mean.reset();  // one sample does not speak for a step that long
     // Also from a sample that was lost in between: else who comes slower than the short hold would be lost for ever.
     if (channel.heard && channel.age > 0) {
       channel.gap = std::min(channel.age, std::exchange(channel.last_gap, channel.age));

@@ -64,6 +64,7 @@ void continue_from(const StateFrame& last, const Matrix3d& base_from_imu, ErrorS
   filter.velocity =
       vector(last.twist_base.linear) + vector(last.twist_base.angular).cross(filter.geometry().imu_in_base);
   auto& p = filter.covariance;
+  for (int i = 0; i < 3; ++i) p(Filter::kVelocity + i, Filter::kVelocity + i) = square(kUnknownSpeed);
   p(Filter::kRadiusRatio, Filter::kRadiusRatio) = square(last.calibration.radius_ratio_deviation);
   p(Filter::kWheelBase, Filter::kWheelBase) = square(last.calibration.wheel_base_deviation);
   for (int i = 0; i < 3; ++i) {
@@ -72,7 +73,7 @@ void continue_from(const StateFrame& last, const Matrix3d& base_from_imu, ErrorS
   constexpr int kIndex[3] = {Filter::kPosition, Filter::kPosition + 1, Filter::kOrientation + 2};
   constexpr std::size_t kEntry[3] = {0, 1, 5};
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) p(kIndex[i], kIndex[j]) = last.pose_covariance[6 * kEntry[i] + kEntry[j]];
+    for (int j = 0; j < 3; ++j) p(kIndex[i], kIndex[j]) += last.pose_covariance[6 * kEntry[i] + kEntry[j]];
   }
 }
 

@@ -281,6 +281,8 @@ void SlipWatch::judge(Filter& filter) noexcept {
     turn_nis_ = square(right - left) / var;
     turn_slips_ = std::abs(right - left) > kSigmas * std::sqrt(var) + kCreep * path + kSlack;
     travel_nis_ = square((left + right) / 2) / variance(longest, kLeft, filter);
+  } else {
+    turn_slips_ = false;
   }
   for (std::size_t i = 0; i < kWindows; ++i) {  // the two of a length stay half a length apart
     Window& window = windows_[i];

@@ -83,6 +83,8 @@ TEST_F(ImuSamplesTest, TheIntegralOverIrregularGapsIsTheTrapezoidOfTheSamples) {
 TEST_F(ImuSamplesTest, AGapLongerThanTheHoldIsNotBridged) {
   gyro(0.1);
   gyro(0.5, 2 * ImuSamples::kLongHold);
+  EXPECT_FALSE(imu_.gyro().has_value());  // neither sample speaks for all that time
+  gyro(0.5);
   EXPECT_EQ(rate(), 0.5);
 }
 

@@ -1,0 +1,72 @@
+// What a run begins with is not always rest: in motion, anew in the midst of a drive, after a hole in all samples.
+
+#include "estimation/estimator_fixture.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kPeriod = RollingRobot::kPeriod;
+
+class EstimatorStartTest : public EstimatorFixture {
+ protected:
+  /// The robot moves, nobody listens.
+  void drive_unheard(double linear, double angular, int cycles) {
+    for (int i = 0; i < cycles; ++i) robot_.drive(linear, angular);
+  }
+};
+
+// 12 s at 0.5 m/s: the speed is found out of travel, within a count's deviation per 0.1 s; 1 % is ten times that.
+TEST_F(EstimatorStartTest, ARunThatBeginsInMotionFindsItsSpeed) {
+  drive_unheard(0.5, 0.1, 1000);
+  observe();
+  drive(0.5, 0.1, 12000);
+  EXPECT_NEAR(speed(), 0.5, 0.005);
+  EXPECT_NEAR(state_.distance, 6.0, 0.06);
+  EXPECT_EQ(state_.slip, 0u);
+  EXPECT_TRUE(has(kStateValid));
+}
+
+TEST_F(EstimatorStartTest, ARestartBelievesTheWheelsNotTheSpeedOfBefore) {
+  stand();
+  drive(0.5, 0, 2000);
+  StateFrame last = state_;
+  last.head.cycle = robot_.frame().head.cycle;
+  drive_unheard(0.2, 0, 600);
+  estimator_.resume(last);
+  observe();
+  drive(0.2, 0, 5000);
+  EXPECT_NEAR(speed(), 0.2, 0.005);
+  EXPECT_EQ(state_.slip, 0u);
+}
+
+// 0.3 s at 0.6 rad/s without a sample, in which the turn begins and ends: only the wheels know of it.
+TEST_F(EstimatorStartTest, AHoleInAllSamplesIsTurnedByTheWheels) {
+  stand();
+  drive(0.3, 0, 2000);
+  drive_unheard(0.3, 0.6, 150);
+  drive_unheard(0.3, 0, 150);
+  drive(0.3, 0, 1000);
+  EXPECT_LT(yaw_error(), 5 * std::sqrt(state_.pose_covariance[35]));
+  EXPECT_LT(yaw_error(), 0.01);
+  EXPECT_NEAR(speed(), 0.3, 0.005);
+}
+
+TEST_F(EstimatorStartTest, WithoutEncodersNobodySaysThatItStillRests) {
+  stand();
+  const Vector3 learned = state_.gyro_bias;
+  for (int i = 0; i < 3000; ++i) {
+    robot_.drive(0, 0.1);
+    SensorFrame frame = robot_.frame();
+    frame.valid &= ~std::uint64_t{kValidJoints};
+    estimator_.step(frame, state_);
+  }
+  EXPECT_FALSE(has(kStateStandstill));
+  EXPECT_FALSE(has(kStateValid));
+  EXPECT_NEAR(state_.gyro_bias[2], learned[2], 1e-3);
+  drive(0, 0.1, 2000);
+  EXPECT_NEAR(state_.twist_base.angular[2], 0.1, 0.005);
+  EXPECT_TRUE(has(kStateValid));
+}
+
+}  // namespace
+}  // namespace robot_control
