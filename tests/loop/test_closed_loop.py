@@ -57,8 +57,8 @@ def test_estimates_the_pose_within_one_percent_of_the_distance(loop, command):
 
 def test_the_estimate_is_signed_in_reverse(loop):
     log = drive(loop, 3.0, (-0.3, 0.0))
-    settled = log["time"] >= 2.0  # one sample holds the encoder's counts: up to 6 mm/s
-    assert log["estimate_linear"][settled].mean() == pytest.approx(-0.3, rel=0.001)
+    settled = log["time"] >= 2.0  # the filter's speed is known to 1 mm/s, and errs slowly
+    assert log["estimate_linear"][settled].mean() == pytest.approx(-0.3, abs=0.002)
     assert log["estimate_x"][-1] < -0.5
 
 
