@@ -295,7 +295,8 @@ def test_rates_that_people_have_give_path_and_twist(log, samples, wheels, imu, o
     assert np.hypot(out["x"][-1] - log["truth_x"][rows[-1]], out["y"][-1] - log["truth_y"][rows[-1]]) < 0.1
     moving = out["time"] > 2  # past the ramp
     # The gyro's samples may be 0.02 s old, of a turn that changes by 0.8 rad/s²; the truth's own ripple has 0.03 rad/s.
-    assert np.max(np.abs(out["linear"][moving, 0] - log["truth_linear"][rows[moving]])) < 0.1  # wheels heard every 0.1 s
+    # Wheels may be heard every 0.1 s only.
+    assert np.max(np.abs(out["linear"][moving, 0] - log["truth_linear"][rows[moving]])) < 0.1
     assert np.max(np.abs(out["angular"][moving, 2] - log["truth_angular"][rows[moving]])) < 0.1
     assert np.mean(out["flags"] & FLAGS["slip"] != 0) < 0.05
     for name, values in out.items():
