@@ -10,6 +10,7 @@ namespace {
 
 using namespace algebra;
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
@@ -22,6 +23,11 @@ constexpr int kPose[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosi
 constexpr double kHuber = 1.5;
 constexpr double kTravelSlack = 0.002;  // m: a reading that is less wrong is no outlier; sliding, the slip watch sees
 constexpr double kGate = 16.0;          // 4 σ of one degree of freedom: one good sample in 16 000 is refused
+
+/// What θ_x and θ_y make of gravity along the base axis whose direction in odom is `axis`: (Rᵀ [g]×) of that row.
+Vector2d acceleration_by_tilt(const Vector3d& axis) noexcept {
+  return {-Filter::kGravity * axis.y(), Filter::kGravity * axis.x()};
+}
 
 }  // namespace
 
@@ -178,11 +184,8 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   }
   const double known = noise_.accelerometer + (motion.sliding ? kSliding : 0);
   const double shake = square(motion.accelerometer ? known : kUnknownAcceleration) * dt;
-  for (const int i : {0, 1, 2}) {
-    p(kVelocity + i, kVelocity + i) += shake;
-    p(kGyroBias + i, kGyroBias + i) += square(noise_.gyro_bias_walk) * dt;
-    p(kAccelerometerBias + i, kAccelerometerBias + i) += square(noise_.accelerometer_bias_walk) * dt;
-  }
+  for (const int i : {0, 1, 2}) p(kVelocity + i, kVelocity + i) += shake;
+  age(dt);
   const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) / 2 * dt;
   p(kTravel, kTravel) += square(noise_.wheel_slip) * std::abs(motion.left_speed) * dt;
   p(kTravel + 1, kTravel + 1) += square(noise_.wheel_slip) * std::abs(motion.right_speed) * dt;
@@ -236,10 +239,6 @@ void ErrorStateFilter::inject(const Column& error) noexcept {
   gyro_scale = std::clamp(gyro_scale + error[kGyroScale], -kMaxRatio, kMaxRatio);
 }
 
-void ErrorStateFilter::take_back(const Column& error) noexcept {
-  inject(-error);
-}
-
 void ErrorStateFilter::doubt_position(int axis, double deviation) noexcept {
   const Vector3d along = rotation.col(axis) * deviation;
   covariance.block<3, 3>(kPosition, kPosition) += along * along.transpose();
@@ -287,11 +286,11 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_acceleration(int axis, do
   const double s = std::sin(turned);
   const Vector3d before[3] = {c * rotation.col(0) - s * rotation.col(1), s * rotation.col(0) + c * rotation.col(1),
                               rotation.col(2)};
-  const double bx = -kGravity * before[axis].y();
-  const double by = kGravity * before[axis].x();
+  const Vector2d by = acceleration_by_tilt(before[axis]);
   const int a = kAccelerometerBias + axis;
-  const Column ph = bx * covariance.col(kOrientation) + by * covariance.col(kOrientation + 1) - covariance.col(a);
-  const double own = bx * ph[kOrientation] + by * ph[kOrientation + 1] - ph[a];
+  const Column ph =
+      by.x() * covariance.col(kOrientation) + by.y() * covariance.col(kOrientation + 1) - covariance.col(a);
+  const double own = by.x() * ph[kOrientation] + by.y() * ph[kOrientation + 1] - ph[a];
   if (!(excess * excess <= kGate * (own + variance))) return {excess * excess / (own + variance), false};
   return correct(ph, excess, own + variance, kPose);
 }
@@ -306,12 +305,11 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_gyro_at_rest(int axis, do
 ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int axis, double mean,
                                                                              double variance) noexcept {
   const Vector3d up = rotation.transpose() * Vector3d{0, 0, kGravity};
-  const Matrix3d by_tilt = -rotation.transpose() * cross_matrix({0, 0, -kGravity});
+  const Vector2d by = acceleration_by_tilt(rotation.col(axis));
   const int own = kAccelerometerBias + axis;
-  const double bx = by_tilt(axis, 0);
-  const double by = by_tilt(axis, 1);
-  const Column ph = covariance.col(own) + bx * covariance.col(kOrientation) + by * covariance.col(kOrientation + 1);
-  const double expected = ph[own] + bx * ph[kOrientation] + by * ph[kOrientation + 1];
+  const Column ph =
+      covariance.col(own) - by.x() * covariance.col(kOrientation) - by.y() * covariance.col(kOrientation + 1);
+  const double expected = ph[own] - by.x() * ph[kOrientation] - by.y() * ph[kOrientation + 1];
   return correct(ph, mean - up[axis] - accelerometer_bias[axis], expected + variance, kPose);
 }
 
@@ -350,11 +348,11 @@ Vector3d ErrorStateFilter::acceleration_deviation() const noexcept {
   constexpr int t = kOrientation;
   Vector3d deviation;
   for (const int i : {0, 1, 2}) {
-    const double bx = -kGravity * rotation(1, i);
-    const double by = kGravity * rotation(0, i);
+    const Vector2d by = acceleration_by_tilt(rotation.col(i));
     const int a = kAccelerometerBias + i;
-    deviation[i] = std::sqrt(std::max(0.0, p(a, a) + bx * bx * p(t, t) + by * by * p(t + 1, t + 1) +
-                                               2 * (bx * by * p(t, t + 1) - bx * p(a, t) - by * p(a, t + 1))));
+    const double own = p(a, a) + by.x() * by.x() * p(t, t) + by.y() * by.y() * p(t + 1, t + 1);
+    const double shared = by.x() * by.y() * p(t, t + 1) - by.x() * p(a, t) - by.y() * p(a, t + 1);
+    deviation[i] = std::sqrt(std::max(0.0, own + 2 * shared));
   }
   return deviation;
 }

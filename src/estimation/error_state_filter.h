@@ -157,8 +157,6 @@ class ErrorStateFilter {
 
   /// Adds an error to the nominal state; what a window of corrections did is taken back by its negative.
   void inject(const Column& error) noexcept;
-  /// These errors were injected wrongly, perhaps: the nominal state loses them, the covariance stays.
-  void take_back(const Column& error) noexcept;
   /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the
   /// accelerometer's bias, which is from now on known to kPulledBias at best.
   void doubt_velocity(int axis, double deviation, double time) noexcept;

@@ -16,8 +16,6 @@ namespace {
 using namespace algebra;
 using Eigen::Vector3d;
 using Filter = ErrorStateFilter;
-constexpr int kLeft = 0;
-constexpr int kRight = 1;
 
 constexpr double kQuietAcceleration = 0.1;  // m/s², mean at rest beside what is expected: sliding slower is no slide
 constexpr std::uint64_t kDoubtfulWindows = 8;  // then the velocity was wrong, not the window
@@ -119,13 +117,11 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   read(sensors, dt);
   if (restart_pending_) {
     restart_pending_ = false;
-    const double speed = (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2;
-    const double rate = geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
     auto& p = filter_.covariance;
-    const double moved = square(kRestartPosition) + square(speed * dt);
+    const double moved = square(kRestartPosition) + square(wheel_speed() * dt);
     p(Filter::kPosition, Filter::kPosition) += moved;
     p(Filter::kPosition + 1, Filter::kPosition + 1) += moved;
-    p(Filter::kOrientation + 2, Filter::kOrientation + 2) += square(kRestartYaw) + square(rate * dt);
+    p(Filter::kOrientation + 2, Filter::kOrientation + 2) += square(kRestartYaw) + square(wheel_rate() * dt);
     slip_.begin(filter_);
   } else if (dt > 0) {
     follow_wheels();
@@ -172,6 +168,14 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   }
 }
 
+double Estimator::wheel_speed() const noexcept {
+  return (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2;
+}
+
+double Estimator::wheel_rate() const noexcept {
+  return geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
+}
+
 /// Raw odometry: whatever either side has travelled since it was last heard.
 void Estimator::follow_wheels() noexcept {
   const double left = sides_[kLeft].encoder.travel();
@@ -182,9 +186,7 @@ void Estimator::follow_wheels() noexcept {
   wheels_.x += chord.x;
   wheels_.y += chord.y;
   wheels_.yaw = std::remainder(wheels_.yaw + motion.turn, 2 * std::numbers::pi);
-  const double speed = (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2;
-  const double rate = geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
-  const Motion velocity = geometry_.base_motion(speed, rate);
+  const Motion velocity = geometry_.base_motion(wheel_speed(), wheel_rate());
   wheels_.linear = velocity.forward;
   wheels_.angular = velocity.turn;
 }
@@ -220,11 +222,7 @@ void Estimator::move(double dt) noexcept {
                filter_);
   }
 
-  StandstillSample sample{
-      .dt = dt, .left = motion.left_travel, .right = motion.right_travel, .gyro = {}, .accelerometer = {}};
-  if (imu_.new_gyro()) sample.gyro = imu_.last_gyro();
-  if (imu_.new_accelerometer()) sample.accelerometer = imu_.last_accelerometer();
-  const WindowEnd window = standstill_.step(sample);
+  const WindowEnd window = watch_rest(dt, motion.left_travel, motion.right_travel);
   if (lost(kLeft) || lost(kRight)) standstill_.reset();
   if (window == WindowEnd::kBroken || window == WindowEnd::kShaken) steady_time_ = 0;
   if (window != WindowEnd::kQuiet || !(quiet() || bias_changed())) return;
@@ -309,9 +307,8 @@ void Estimator::fill(StateFrame& out) const noexcept {
 
 RateNoise Estimator::rate_noise() const noexcept {
   if (!imu_.gyro()) {
-    const double speed = (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2;
     const double slip = square(parameters_.wheel_slip_noise) * parameters_.speed_bandwidth *
-                        (std::abs(speed) + std::abs(filter_.rate.z()));
+                        (std::abs(wheel_speed()) + std::abs(filter_.rate.z()));
     return {.variance = 4 / square(geometry_.wheel_base) * (square(kSpeedDeviation) + slip), .gyro = false};
   }
   if (resting_) return {};

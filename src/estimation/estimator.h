@@ -79,6 +79,9 @@ class Estimator {
   void step(const SensorFrame& sensors, double dt, StateFrame& out) noexcept;
 
  private:
+  static constexpr int kLeft = 0;  ///< index into sides_
+  static constexpr int kRight = 1;
+
   struct Side {
     SideEncoder encoder;
     SpeedTracker speed;
@@ -100,10 +103,14 @@ class Estimator {
   void advance(const SensorFrame& sensors, double dt) noexcept;
   void read(const SensorFrame& sensors, double dt) noexcept;
   void follow_wheels() noexcept;
+  double wheel_speed() const noexcept;  ///< m/s, mean of both sides
+  double wheel_rate() const noexcept;   ///< rad/s, as the model's wheel base has it
   void rest(double dt) noexcept;
   void end_rest() noexcept;
   void learn_at_rest() noexcept;
   bool quiet() const noexcept;
+  WindowEnd watch_rest(double dt, double left, double right) noexcept;  ///< travel of this step, m
+  Eigen::Vector3d gyro_at_rest() const noexcept;  ///< rad/s, mean of the last window, less what the wheels turned
   bool bias_changed() noexcept;
   void move(double dt) noexcept;
   double rolled(int side, double dt) noexcept;  ///< m in this step; between two readings as the filter moves

@@ -12,8 +12,6 @@ namespace {
 using namespace algebra;
 using Eigen::Vector3d;
 using Filter = ErrorStateFilter;
-constexpr int kLeft = 0;
-constexpr int kRight = 1;
 
 constexpr double kAccelerometerAtRest = 0.005;  // m/s², what a motor's hum leaves in a mean
 
@@ -37,10 +35,7 @@ void Estimator::rest(double dt) noexcept {
     lasting_flags_ &= ~std::uint64_t{kStateStandstill};
     return;
   }
-  StandstillSample sample{.dt = dt, .left = left, .right = right, .gyro = {}, .accelerometer = {}};
-  if (imu_.new_gyro()) sample.gyro = imu_.last_gyro();
-  if (imu_.new_accelerometer()) sample.accelerometer = imu_.last_accelerometer();
-  const WindowEnd window = standstill_.step(sample);
+  const WindowEnd window = watch_rest(dt, left, right);
   if (window == WindowEnd::kOpen) return;
   if (window == WindowEnd::kQuiet && quiet()) {
     learn_at_rest();
@@ -68,16 +63,25 @@ void Estimator::end_rest() noexcept {
   held_ = {};
 }
 
+WindowEnd Estimator::watch_rest(double dt, double left, double right) noexcept {
+  StandstillSample sample{.dt = dt, .left = left, .right = right, .gyro = {}, .accelerometer = {}};
+  if (imu_.new_gyro()) sample.gyro = imu_.last_gyro();
+  if (imu_.new_accelerometer()) sample.accelerometer = imu_.last_accelerometer();
+  return standstill_.step(sample);
+}
+
+Vector3d Estimator::gyro_at_rest() const noexcept {
+  const double turned = geometry_.turn(standstill_.left(), standstill_.right()) / standstill_.time();
+  return *standstill_.gyro() - Vector3d(0, 0, turned);
+}
+
 bool Estimator::quiet() const noexcept {
-  const auto& p = filter_.covariance;
-  if (standstill_.gyro()) {
-    const double turned = geometry_.turn(standstill_.left(), standstill_.right()) / standstill_.time();
-    const double noise = square(parameters_.gyro_noise) / standstill_.time();
-    for (int i = 0; i < 3; ++i) {
-      const double rate = (*standstill_.gyro())[i] - filter_.gyro_bias[i] - (i == 2 ? turned : 0);
-      const double bias = p(Filter::kGyroBias + i, Filter::kGyroBias + i);
-      if (std::abs(rate) > parameters_.standstill_speed + 3 * std::sqrt(bias + noise)) return false;
-    }
+  if (!standstill_.gyro()) return true;
+  const double noise = square(parameters_.gyro_noise) / standstill_.time();
+  const Vector3d rate = gyro_at_rest() - filter_.gyro_bias;
+  for (int i = 0; i < 3; ++i) {
+    const double bias = filter_.covariance(Filter::kGyroBias + i, Filter::kGyroBias + i);
+    if (std::abs(rate[i]) > parameters_.standstill_speed + 3 * std::sqrt(bias + noise)) return false;
   }
   return true;
 }
@@ -105,10 +109,9 @@ void Estimator::learn_at_rest() noexcept {
   lasting_flags_ |= kStateStandstill;
   filter_.age(window);
   if (standstill_.gyro()) {
-    const double turned = geometry_.turn(standstill_.left(), standstill_.right()) / window;
+    const Vector3d gyro = gyro_at_rest();
     for (int i = 0; i < 3; ++i) {
-      filter_.correct_gyro_at_rest(i, (*standstill_.gyro())[i] - (i == 2 ? turned : 0),
-                                   square(parameters_.gyro_noise) / window, rest);
+      filter_.correct_gyro_at_rest(i, gyro[i], square(parameters_.gyro_noise) / window, rest);
     }
   }
   if (standstill_.accelerometer()) {

@@ -194,14 +194,11 @@ void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes,
     back[Filter::kAccelerometerBias + axis] = window.acceleration[axis];
     pulled[axis] = window.acceleration[axis];
   }
-  filter.inject(back);
-  Filter::Column turning = Filter::Column::Zero();
   if (axes[0]) {
-    turning[Filter::kOrientation + 2] = made[Filter::kOrientation + 2];
-    for (const int index : kTurning) turning[index] = made[index];
-    filter.take_back(turning);
-    back -= turning;
+    back[Filter::kOrientation + 2] = -made[Filter::kOrientation + 2];
+    for (const int index : kTurning) back[index] = -made[index];
   }
+  filter.inject(back);
   for (Window& other : windows_) {
     if (other.age > age) {
       other.corrections += back;
