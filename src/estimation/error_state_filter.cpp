@@ -16,10 +16,40 @@ using Eigen::Vector3d;
 constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
 constexpr double kMaxBase = 0.3;    // of a skid-steer on another floor
 using Filter = ErrorStateFilter;
-constexpr int kGravityAndBias[] = {Filter::kOrientation, Filter::kOrientation + 1, Filter::kAccelerometerBias,
-                                   Filter::kAccelerometerBias + 1, Filter::kAccelerometerBias + 2};
-constexpr int kPlace[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosition + 2};
+// Considered and not corrected: by wheels that roll; by wheels that may slide; by the vertical contact, which an uneven
+// floor breaks all the time; by a window in which everything rolled; by what is learned at rest.
+constexpr int kConsidered[] = {Filter::kOrientation,           Filter::kOrientation + 1,
+                               Filter::kAccelerometerBias,     Filter::kAccelerometerBias + 1,
+                               Filter::kAccelerometerBias + 2, Filter::kGyroScale};
+constexpr int kLearned[] = {Filter::kOrientation,
+                            Filter::kOrientation + 1,
+                            Filter::kGyroBias,
+                            Filter::kGyroBias + 1,
+                            Filter::kGyroBias + 2,
+                            Filter::kAccelerometerBias,
+                            Filter::kAccelerometerBias + 1,
+                            Filter::kAccelerometerBias + 2,
+                            Filter::kRadiusRatio,
+                            Filter::kWheelBase,
+                            Filter::kGyroScale};
+constexpr int kAllButMotion[] = {Filter::kPosition,
+                                 Filter::kPosition + 1,
+                                 Filter::kPosition + 2,
+                                 Filter::kOrientation,
+                                 Filter::kOrientation + 1,
+                                 Filter::kOrientation + 2,
+                                 Filter::kGyroBias,
+                                 Filter::kGyroBias + 1,
+                                 Filter::kGyroBias + 2,
+                                 Filter::kAccelerometerBias,
+                                 Filter::kAccelerometerBias + 1,
+                                 Filter::kAccelerometerBias + 2,
+                                 Filter::kRadiusRatio,
+                                 Filter::kWheelBase,
+                                 Filter::kGyroScale};
 constexpr int kPose[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosition + 2, Filter::kOrientation + 2};
+constexpr int kYaw[] = {Filter::kOrientation + 2};
+
 constexpr double kHuber = 1.5;
 constexpr double kTravelSlack = 0.002;  // m: a reading that is less wrong is no outlier; sliding, the slip watch sees
 constexpr double kGate = 16.0;          // 4 σ of one degree of freedom: one good sample in 16 000 is refused
@@ -44,7 +74,7 @@ void ErrorStateFilter::reset() noexcept {
   gyro_bias.setZero();
   accelerometer_bias.setZero();
   rate.setZero();
-  smooth_rate = 0;
+  smooth_rate = slow_rate = 0;
   radius_ratio = wheel_base = gyro_scale = 0;
   corrections_.setZero();
   covariance.setZero();
@@ -82,6 +112,7 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
     velocity = turn.transpose() * velocity + dt * (half.transpose() * steady);
   }
   smooth_rate += dt / (kSmoothing + dt) * (omega.z() - smooth_rate);
+  slow_rate += dt / (kWindUp + dt) * (smooth_rate - slow_rate);
   transport(motion, middle, turn, u, omega);
 
   position += dt * (middle * u);
@@ -187,11 +218,16 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   for (const int i : {0, 1, 2}) p(kVelocity + i, kVelocity + i) += shake;
   age(dt);
   const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) / 2 * dt;
-  p(kTravel, kTravel) += square(noise_.wheel_slip) * std::abs(motion.left_speed) * dt;
-  p(kTravel + 1, kTravel + 1) += square(noise_.wheel_slip) * std::abs(motion.right_speed) * dt;
+  const double level = 3 * std::sqrt(p(kOrientation, kOrientation) + p(kOrientation + 1, kOrientation + 1));
+  const double slope = std::max(0.0, rotation.row(2).head<2>().norm() - level);
+  const double slip = square(noise_.wheel_slip) + square(noise_.slope_creep * slope);
+  p(kTravel, kTravel) += slip * std::abs(motion.left_speed) * dt;
+  p(kTravel + 1, kTravel + 1) += slip * std::abs(motion.right_speed) * dt;
   const double common = noise_.common_slip * (1 + kCautious * motion.caution);
   p.block<2, 2>(kTravel, kTravel).array() += square(common) * path;
-  const double twist = square(noise_.turn_slip * base / 2) * std::abs(omega.z()) * dt;
+  const double wound = std::abs(smooth_rate - slow_rate) / kWindUp;
+  const double twist =
+      square(base / 2) * (square(noise_.turn_slip) * std::abs(omega.z()) + square(noise_.wind_up) * wound) * dt;
   p.block<2, 2>(kTravel, kTravel) += Eigen::Matrix2d{{twist, -twist}, {-twist, twist}};
   if (p(kRadiusRatio, kRadiusRatio) > 0) p(kRadiusRatio, kRadiusRatio) += square(noise_.radius_ratio_walk) * path;
   if (p(kWheelBase, kWheelBase) > 0) p(kWheelBase, kWheelBase) += square(noise_.wheel_base_walk) * path;
@@ -218,12 +254,29 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct(const Column& ph, double 
   return {innovation * innovation / variance, true};
 }
 
+/// The gain of the position is that of the orientation on the lever from base_link to the IMU; what a gain other than
+/// Kalman's costs, the covariance gets (Y. Bar-Shalom et al., 2001, section 5.2.3: Joseph's form).
+ErrorStateFilter::Innovation ErrorStateFilter::learn(const Column& ph, double innovation, double variance,
+                                                     std::span<const int> considered) noexcept {
+  Column gain = ph / variance;
+  for (const int i : considered) gain[i] = 0;
+  gain.segment<3>(kPosition) = gain.segment<3>(kOrientation).cross(rotation * geometry_.imu_in_base);
+  const Column root = ph / std::sqrt(variance);
+  const Column missed = gain * std::sqrt(variance) - root;
+  covariance.noalias() -= root * root.transpose();
+  covariance.noalias() += missed * missed.transpose();
+  const Column error = gain * innovation;
+  inject(error);
+  corrections_ += error;
+  return {innovation * innovation / variance, true};
+}
+
 ErrorStateFilter::Innovation ErrorStateFilter::correct_rolling(const Column& ph, double innovation, double variance,
-                                                               double slack) noexcept {
+                                                               double slack, std::span<const int> considered) noexcept {
   const double nis = innovation * innovation / variance;
   if (!(innovation * innovation <= kGate * (variance + slack))) return {nis, false};
   // Huber's weight: what is beyond kHuber deviations pulls no harder (P. J. Huber, Robust Statistics, 1981, chapter 3).
-  correct(ph, innovation, variance * std::max(1.0, std::sqrt(nis) / kHuber), kGravityAndBias);
+  correct(ph, innovation, variance * std::max(1.0, std::sqrt(nis) / kHuber), considered);
   return {nis, true};
 }
 
@@ -253,10 +306,10 @@ void ErrorStateFilter::doubt_velocity(int axis, double deviation, double time) n
   covariance(bias, bias) += square(kPulledBias);
 }
 
-ErrorStateFilter::Innovation ErrorStateFilter::correct_travel(int side, double measured) noexcept {
+ErrorStateFilter::Innovation ErrorStateFilter::correct_travel(int side, double measured, Scope scope) noexcept {
   const Column ph = covariance.col(kTravel + side);
-  return correct_rolling(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder),
-                         square(kTravelSlack));
+  return correct_rolling(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder), square(kTravelSlack),
+                         scope == Scope::kAll ? std::span<const int>(kConsidered) : std::span<const int>(kLearned));
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexcept {
@@ -266,7 +319,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexce
   const Column ph = covariance.col(kVelocity + 1) - x * covariance.col(kGyroBias + 2) + z * covariance.col(kGyroBias);
   const double own = ph[kVelocity + 1] - x * ph[kGyroBias + 2] + z * ph[kGyroBias];
   const double noise = square(noise_.lateral) / dt + square(noise_.gyro) / dt * (x * x + z * z);
-  return correct_rolling(ph, -speed, own + noise, 0);
+  return correct_rolling(ph, -speed, own + noise, 0, kConsidered);
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_vertical(double dt) noexcept {
@@ -276,7 +329,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_vertical(double dt) noexc
   const Column ph = covariance.col(kVelocity + 2) - y * covariance.col(kGyroBias) + x * covariance.col(kGyroBias + 1);
   const double own = ph[kVelocity + 2] - y * ph[kGyroBias] + x * ph[kGyroBias + 1];
   const double noise = square(noise_.vertical) / dt + square(noise_.gyro) / dt * (x * x + y * y);
-  return correct_rolling(ph, -speed, own + noise, 0);
+  return correct_rolling(ph, -speed, own + noise, 0, kAllButMotion);
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_acceleration(int axis, double excess, double variance,
@@ -298,8 +351,8 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_acceleration(int axis, do
 ErrorStateFilter::Innovation ErrorStateFilter::correct_gyro_at_rest(int axis, double mean, double variance,
                                                                     Rest rest) noexcept {
   const Column ph = covariance.col(kGyroBias + axis);
-  return correct(ph, mean - gyro_bias[axis], ph[kGyroBias + axis] + variance,
-                 rest == Rest::kBegins ? std::span<const int>(kPlace) : std::span<const int>(kPose));
+  return learn(ph, mean - gyro_bias[axis], ph[kGyroBias + axis] + variance,
+               rest == Rest::kBegins ? std::span<const int>() : std::span<const int>(kYaw));
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int axis, double mean,
@@ -310,13 +363,13 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int
   const Column ph =
       covariance.col(own) - by.x() * covariance.col(kOrientation) - by.y() * covariance.col(kOrientation + 1);
   const double expected = ph[own] - by.x() * ph[kOrientation] - by.y() * ph[kOrientation + 1];
-  return correct(ph, mean - up[axis] - accelerometer_bias[axis], expected + variance, kPose);
+  return learn(ph, mean - up[axis] - accelerometer_bias[axis], expected + variance, kYaw);
 }
 
 void ErrorStateFilter::stand(double deviation) noexcept {
   velocity.setZero();
   rate.setZero();
-  smooth_rate = 0;
+  smooth_rate = slow_rate = 0;
   covariance.middleCols<3>(kVelocity).setZero();
   covariance.middleRows<3>(kVelocity).setZero();
   for (const int i : {0, 1, 2}) covariance(kVelocity + i, kVelocity + i) = square(deviation);

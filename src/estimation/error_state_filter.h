@@ -33,8 +33,12 @@
 ///   standstill             gyro = bg; accelerometer = ba − Rᵀ g (zero rotation and zero velocity; P. D. Groves,
 ///                          Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2013, 15.3)
 ///   rolling                acceleration = accelerometer − ba + Rᵀ g, over a window in which everything rolled
-/// Encoders and contact consider tilt and accelerometer bias and do not correct them; what is learned at rest moves no
-/// position (Schmidt's gain, see `correct`). Encoders and contact pull no harder than Huber's bound.
+/// Encoders and contact consider tilt, accelerometer bias and gyro scale and do not correct them (Schmidt's gain, see
+/// `correct`): nothing that rolls tells the scale from the wheel base. The vertical contact corrects the velocity
+/// alone. What is learned at rest leaves base_link where it is. Encoders and contact pull no harder than Huber's bound.
+///
+/// On a slope tyres creep under load: beyond what the tilt is known to (3 σ), each wheel's travel gets slope_creep
+/// times the slope as noise.
 ///
 /// Without a gyro sample the robot turns as the calibrated wheels do, and level; without an accelerometer sample its
 /// velocity is carried on, with an acceleration of kUnknownAcceleration as noise.
@@ -62,13 +66,16 @@ struct FilterNoise {
   double accelerometer = 2e-3;            ///< m/s²/√Hz
   double accelerometer_bias_walk = 1e-4;  ///< m/s²/√s
   double wheel_slip = 3e-4;               ///< m/√m of each side's travel, of either wheel alone
-  double common_slip = 2e-4;              ///< m/√m, of both together; up to kCautious times that near sliding
+  double common_slip = 1e-4;              ///< m/√m, of both together; up to kCautious times that near sliding
   double encoder = 4.4e-5;                ///< m, of one reading
   double turn_slip = 5e-4;                ///< rad/√rad, of the wheels' turn: a contact patch twists before it turns
-  double radius_ratio_walk = 1e-5;        ///< 1/√m
-  double wheel_base_walk = 5e-5;          ///< 1/√m: load and floor change how a tyre turns
-  double lateral = 1e-3;                  ///< m/s/√Hz, sideways at the contact
-  double vertical = 2e-3;                 ///< m/s/√Hz
+  double slope_creep = 0.2;               ///< m/√m per sine of the slope, of either wheel alone
+  double wind_up = 1.6e-3;          ///< rad/√(rad/s), of the wheels' turn where its rate changes: a tyre winds up
+                                    ///< before it rolls; 20 N at 50 kN/m on wheels 0.5 m apart
+  double radius_ratio_walk = 3e-6;  ///< 1/√m
+  double wheel_base_walk = 2e-5;    ///< 1/√m: load and floor change how a tyre turns
+  double lateral = 5e-4;            ///< m/s/√Hz, sideways at the contact
+  double vertical = 5e-3;           ///< m/s/√Hz
 };
 
 /// Of the start.
@@ -102,6 +109,7 @@ class ErrorStateFilter {
   static constexpr double kCautious = 15;              ///< times
   static constexpr double kSliding = 0.03;             ///< m/s²/√Hz more, while no wheel holds the velocity
   static constexpr double kSmoothing = 0.05;           ///< s
+  static constexpr double kWindUp = 0.1;               ///< s
   static constexpr double kPulledBias = 0.005;         ///< m/s²
   static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
 
@@ -120,6 +128,9 @@ class ErrorStateFilter {
   /// gyro's bias had made of it on the way.
   enum class Rest { kBegins, kGoesOn };
 
+  /// What a wheel's travel corrects: where it may be sliding, neither calibration nor the gyro's bias.
+  enum class Scope { kAll, kMotion };
+
   /// A scalar measurement's innovation over its deviation, squared.
   struct Innovation {
     double nis = 0;
@@ -131,7 +142,7 @@ class ErrorStateFilter {
   void reset() noexcept;
   void predict(const Motion& motion) noexcept;
 
-  Innovation correct_travel(int side, double travel) noexcept;
+  Innovation correct_travel(int side, double travel, Scope scope = Scope::kAll) noexcept;
   Innovation correct_lateral(double dt) noexcept;
   Innovation correct_vertical(double dt) noexcept;
   /// Measured: by how much the acceleration along a base axis is more than accelerometer − ba + Rᵀ g. m/s²
@@ -177,6 +188,7 @@ class ErrorStateFilter {
 
   Eigen::Vector3d rate{0, 0, 0};  ///< rad/s, bias-free, of the last prediction
   double smooth_rate = 0;         ///< rad/s, about the base's z axis, over kSmoothing
+  double slow_rate = 0;           ///< rad/s, smooth_rate over kWindUp
 
   const ContactGeometry& geometry() const noexcept { return geometry_; }
   const FilterNoise& noise() const noexcept { return noise_; }
@@ -184,7 +196,10 @@ class ErrorStateFilter {
 
  private:
   Innovation correct(const Column& ph, double innovation, double variance, std::span<const int> considered) noexcept;
-  Innovation correct_rolling(const Column& ph, double innovation, double variance, double slack) noexcept;
+  /// As `correct`, but base_link stays where it is.
+  Innovation learn(const Column& ph, double innovation, double variance, std::span<const int> considered) noexcept;
+  Innovation correct_rolling(const Column& ph, double innovation, double variance, double slack,
+                             std::span<const int> considered) noexcept;
   void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Matrix3d& turn,
                  const Eigen::Vector3d& u, const Eigen::Vector3d& omega) noexcept;
 

@@ -40,6 +40,7 @@ void Estimator::reset() noexcept {
   filter_.radius_ratio = parameters_.calibration.radius_ratio - 1;
   filter_.wheel_base = parameters_.calibration.wheel_base_factor - 1;
   filter_.gyro_bias = base_from_imu_ * vector(parameters_.gyro_bias);
+  place({0, 0, 0}, filter_);
   slip_.reset();
   standstill_.reset();
   imu_.reset();
@@ -280,7 +281,8 @@ void Estimator::correct_side(int index, double dt) noexcept {
   if (believed && !side.believed) filter_.anchor_travel(index, side.total);
   side.believed = believed;
   if (!believed || !side.encoder.heard()) return;
-  const auto [nis, used] = filter_.correct_travel(index, side.total);
+  const auto [nis, used] =
+      filter_.correct_travel(index, side.total, slip_.calm() ? Filter::Scope::kAll : Filter::Scope::kMotion);
   note(index == kLeft ? kLeftEncoder : kRightEncoder, nis, dt);
   side.refused = used ? 0 : side.refused + 1;
   if (used) return;

@@ -7,18 +7,18 @@
 namespace robot_control {
 
 struct EstimatorParameters {
-  double wheel_slip_noise = 2.0e-4;  ///< m/√m: standard deviation of travelled distance per √distance, per wheel
+  double wheel_slip_noise = 1.2e-4;  ///< m/√m: standard deviation of travelled distance per √distance, per wheel
   double gyro_noise = 2.44e-4;       ///< rad/s/√Hz, white noise density of the gyro
   double standstill_speed = 0.01;    ///< rad/s, wheel and yaw rate below which the robot may be standing
   double standstill_time = 0.25;     ///< s, for which all sensors must be quiet before the robot stands
   double standstill_acceleration = 0.3;  ///< m/s² RMS; MEMS noise is 0.05, a shaken robot above 0.5
   double encoder_noise = 4.4e-4;  ///< rad, standard deviation of an angle: 2π/4096/√12, counts of a wheel's turn
-  double gyro_scale_deviation = 1.0e-3;     ///< of the gyro's scale; not published, but part of the covariance
+  double gyro_scale_deviation = 5.8e-4;     ///< of the gyro's scale; not published, but part of the covariance
   double gyro_bias_initial = 0.05;          ///< rad/s, standard deviation at switch-on (3 °/s, a consumer MEMS gyro)
-  double gyro_bias_walk = 1.0e-5;           ///< rad/s/√s
-  double accelerometer_noise = 2.0e-3;      ///< m/s²/√Hz, white noise density
+  double gyro_bias_walk = 8.7e-6;           ///< rad/s/√s
+  double accelerometer_noise = 1.716e-3;    ///< m/s²/√Hz, white noise density
   double accelerometer_bias_initial = 0.2;  ///< m/s², standard deviation at switch-on (20 mg)
-  double accelerometer_bias_walk = 1.0e-4;  ///< m/s²/√s
+  double accelerometer_bias_walk = 6.5e-5;  ///< m/s²/√s
   double speed_bandwidth = 20.0;            ///< Hz, of the tracking loop behind the twist
 
   bool slip_detection = true;    ///< false: wheels are always believed

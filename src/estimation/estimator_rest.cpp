@@ -13,7 +13,7 @@ using namespace algebra;
 using Eigen::Vector3d;
 using Filter = ErrorStateFilter;
 
-constexpr double kAccelerometerAtRest = 0.005;  // m/s², what a motor's hum leaves in a mean
+constexpr double kAccelerometerAtRest = 0.03;  // m/s², what a body that rocks and a motor's hum leave in a mean
 
 }  // namespace
 

@@ -22,7 +22,9 @@ constexpr double kSigmas = 4;
 constexpr double kDoubt = 3;        // deviations of the window's end speed: it was a slide that made the window
 constexpr double kYoungest = 0.04;  // s
 constexpr double kShaken = 0.4;
+constexpr double kEase = 0.3;
 constexpr std::size_t kLearning = 2;  // index of the window that bias and tilt learn from
+constexpr double kSame = 0.3;         // part of the acceleration by which two of them differ at most
 
 }  // namespace
 
@@ -30,6 +32,8 @@ void SlipWatch::reset() noexcept {
   states_ = {};
   windows_ = {};
   since_judged_ = 0;
+  calm_ = kCalm;
+  shaken_ = 0;
   reasons_ = 0;
   turn_nis_ = travel_nis_ = caution_ = 0;
   turn_slips_ = false;
@@ -91,6 +95,9 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
     window.turn += sample.dt * w.z();
   }
   for (State& state : states_) state.doubted += state.believed ? 0 : sample.dt;
+  const auto believed = [](const State& state) { return state.believed; };
+  calm_ = std::ranges::all_of(states_, believed) ? calm_ + sample.dt : 0;
+  if (calm_ == 0) shaken_ = 0;
 
   since_judged_ += sample.dt;
   if (since_judged_ >= kJudgeEvery) {
@@ -211,18 +218,20 @@ void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes,
 
 /// A window in which everything rolled tells what the accelerometer's bias and the tilt are together.
 void SlipWatch::learn_acceleration(const Window& window, Filter& filter) noexcept {
-  const auto believed = [](const State& state) { return state.believed; };
-  if (!window.inertial || !std::ranges::all_of(states_, believed)) return;
-  for (std::size_t c = 0; c < kContacts; ++c) {
-    if (excess(window, c, filter) > kShaken) return;
-  }
+  if (!window.inertial || calm_ < kCalm) return;
   const double per_way = 2 / square(window.age);
-  const double ways[3] = {(residual(window, kLeft) + residual(window, kRight)) / 2, residual(window, kLateral),
-                          residual(window, kVertical)};
-  for (int axis = 0; axis < 3; ++axis) {
+  const Eigen::Vector3d excess_by = per_way * Eigen::Vector3d{(residual(window, kLeft) + residual(window, kRight)) / 2,
+                                                              residual(window, kLateral), residual(window, kVertical)};
+  double worst = 0;
+  for (std::size_t c = 0; c < kContacts; ++c) worst = std::max(worst, excess(window, c, filter));
+  const bool same = (excess_by - shaken_by_).norm() <= kSame * excess_by.norm();
+  shaken_by_ = excess_by;
+  shaken_ = worst > kShaken && same ? shaken_ + 1 : 0;
+  if (worst > kShaken && shaken_ < kSteady) return;
+  for (const int axis : {0, 1, 2}) {
     const double start = 4 * window.velocity_variance[axis] / square(window.age);
     // A way weighs what came first twice: the mean acceleration is that of a third of the window.
-    filter.correct_acceleration(axis, ways[axis] * per_way, start + square(kLeastAcceleration), window.turn * 2 / 3);
+    filter.correct_acceleration(axis, excess_by[axis], start + square(kRoughness), window.turn * 2 / 3);
   }
 }
 
@@ -239,7 +248,7 @@ void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
     const bool steady = std::abs(excess - state.excess) <= kAgreeSpeed;
     state.excess = excess;
     state.agreed = agrees && steady ? state.agreed + 1 : 0;
-    if (state.agreed >= kAgree || state.doubted > kDeadlock) state = {};
+    if (state.agreed >= (c == kVertical ? kLanded : kAgree) || state.doubted > kDeadlock) state = {};
   }
 }
 
@@ -250,7 +259,7 @@ void SlipWatch::judge(Filter& filter) noexcept {
     if (!window.inertial || window.age < kYoungest) continue;
     caution_ = std::max({caution_, excess(window, kLeft, filter), excess(window, kRight, filter)});
   }
-  caution_ = std::min(caution_, 1.0);
+  caution_ = std::clamp((caution_ - kEase) / (1 - kEase), 0.0, 1.0);
   for (std::size_t i = 0; i < kWindows && !found; ++i) {
     if (windows_[i].inertial && windows_[i].age >= 0.4 * kLengths[i]) found = judge(windows_[i], filter);
   }

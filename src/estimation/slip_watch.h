@@ -17,7 +17,10 @@
 /// after kDeadlock seconds.
 ///
 /// What the accelerometer's bias and the tilt are together is learned here, from windows of 0.3 s in which everything
-/// rolled: a wheel that only begins to slide would else be believed to be a bias.
+/// rolled, kCalm seconds after the last doubt: a wheel that only begins to slide would else be believed to be a bias. A
+/// small turn is a short lever between the two: kRoughness is what a window's mean is worth, or a shake would pry them
+/// apart. A window that nearly doubts a contact teaches nothing, unless kSteady in a row say the same: no slide keeps
+/// its acceleration and stays as slow.
 ///
 /// Rolling rubber creeps by up to some percent under force (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3):
 /// kCreep = 3 % is not called slip.
@@ -39,8 +42,12 @@ class SlipWatch {
   static constexpr double kSlack = 0.0005;            ///< m
   static constexpr double kJudgeEvery = 0.01;         ///< s
   static constexpr std::uint64_t kAgree = 4;          ///< judgements
+  static constexpr std::uint64_t kLanded = 2;         ///< the same, of the vertical: what lands stays on the ground
   static constexpr double kAgreeSpeed = 0.02;         ///< m/s
+  static constexpr double kCalm = 1.0;                ///< s
   static constexpr double kDeadlock = 10.0;           ///< s
+  static constexpr double kRoughness = 0.1;           ///< m/s², of a window's mean: floor and tyres go on shaking it
+  static constexpr std::uint64_t kSteady = 5;         ///< windows
 
   struct Sample {
     double dt = 0;
@@ -58,6 +65,8 @@ class SlipWatch {
   bool believed(Contact contact) const noexcept { return states_[static_cast<std::size_t>(contact)].believed; }
   /// How near to sliding the wheels are, by the last judgement: 0 … 1, the largest residual over its limit.
   double caution() const noexcept { return caution_; }
+  /// All has rolled for kCalm seconds: what is learned of the wheels and the gyro may be.
+  bool calm() const noexcept { return calm_ >= kCalm && caution_ == 0 && !turn_slips_; }
   std::uint64_t reasons() const noexcept { return reasons_; }  ///< SlipReason bits
   /// Residuals of the last judgement over their deviation, squared: of the turn (gyro), of the travel (accelerometer).
   double turn_nis() const noexcept { return turn_nis_; }
@@ -110,6 +119,9 @@ class SlipWatch {
   std::array<Window, kWindows> windows_;
   std::array<State, kContacts> states_;
   double since_judged_ = 0;
+  double calm_ = 0;                                      ///< s since a contact was doubted
+  std::uint64_t shaken_ = 0;                             ///< windows in a row that nearly doubted one
+  Eigen::Vector3d shaken_by_ = Eigen::Vector3d::Zero();  ///< m/s², by which the last one did
   double caution_ = 0;
   std::uint64_t reasons_ = 0;
   double turn_nis_ = 0;

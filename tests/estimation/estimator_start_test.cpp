@@ -26,6 +26,14 @@ TEST_F(EstimatorStartTest, ARunThatBeginsInMotionFindsItsSpeed) {
   EXPECT_TRUE(has(kStateValid));
 }
 
+// Tilt and bias are learned while it stands; nothing of that moves the robot.
+TEST_F(EstimatorStartTest, AFreshRunStandsAtZero) {
+  stand();
+  EXPECT_LT(std::hypot(state_.pose_odom.position[0], state_.pose_odom.position[1]), 1e-6);
+  EXPECT_LT(std::sqrt(state_.pose_covariance[0]), 1e-5);
+  EXPECT_LT(std::sqrt(state_.pose_covariance[7]), 1e-5);
+}
+
 TEST_F(EstimatorStartTest, ARestartBelievesTheWheelsNotTheSpeedOfBefore) {
   stand();
   drive(0.5, 0, 2000);

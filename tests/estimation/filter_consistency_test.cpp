@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "estimation/algebra.h"
 #include "estimation/filter_errors.h"
 
 namespace robot_control {
@@ -82,8 +83,10 @@ class Trial {
     const double path = (std::abs(exact.left_speed) + std::abs(exact.right_speed)) / 2 * kPeriod;
     truth_.radius_ratio += filter_.noise().radius_ratio_walk * std::sqrt(path) * normal();
     truth_.wheel_base += filter_.noise().wheel_base_walk * std::sqrt(path) * normal();
-    const double twist =
-        filter_.noise().turn_slip * kGeometry.wheel_base / 2 * std::sqrt(std::abs(omega.z()) * kPeriod) * normal();
+    const double wound = std::abs(truth_.smooth_rate - truth_.slow_rate) / Filter::kWindUp;
+    const double turning = algebra::square(filter_.noise().turn_slip) * std::abs(omega.z()) +
+                           algebra::square(filter_.noise().wind_up) * wound;
+    const double twist = kGeometry.wheel_base / 2 * std::sqrt(turning * kPeriod) * normal();
     truth_.travel += Eigen::Vector2d(twist, -twist);
     truth_.travel.array() += filter_.noise().common_slip * std::sqrt(path) * normal();
     for (const int side : {0, 1}) {

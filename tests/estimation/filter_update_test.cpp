@@ -170,14 +170,44 @@ TEST_F(FilterUpdate, WhatIsNotANumberIsRefused) {
   EXPECT_TRUE(same(filter_, before));
 }
 
-// A scalar measurement: the variance of what is measured becomes P r/(P + r), no other grows.
+// A scalar measurement: the variance of what is measured becomes P r/(P + r), no other grows but that of the IMU's
+// place, which goes with the orientation so that base_link stays.
 TEST_F(FilterUpdate, AMeasurementShrinksVarianceByTheKalmanGain) {
   const Filter::Covariance before = filter_.covariance;
   const double p = before(Filter::kGyroBias, Filter::kGyroBias);
   const double r = 0.3 * p;
   filter_.correct_gyro_at_rest(0, filter_.gyro_bias[0], r, Filter::Rest::kBegins);
   EXPECT_NEAR(filter_.covariance(Filter::kGyroBias, Filter::kGyroBias), p * r / (p + r), 1e-9 * p);
-  for (int i = 0; i < Filter::kSize; ++i) EXPECT_LE(filter_.covariance(i, i), before(i, i)) << i;
+  for (int i = Filter::kOrientation; i < Filter::kSize; ++i) EXPECT_LE(filter_.covariance(i, i), before(i, i)) << i;
+}
+
+// A wheel that may be sliding tells where it is, not what radius it has, nor what the gyro's bias is.
+TEST_F(FilterUpdate, AWheelInDoubtCorrectsMotionAlone) {
+  Filter believed = filter_;
+  Filter doubted = filter_;
+  believed.correct_travel(0, filter_.travel[0] + 1e-4);
+  doubted.correct_travel(0, filter_.travel[0] + 1e-4, Filter::Scope::kMotion);
+  EXPECT_NE(believed.radius_ratio, filter_.radius_ratio);
+  EXPECT_NE(believed.wheel_base, filter_.wheel_base);
+  EXPECT_NE(believed.gyro_bias, filter_.gyro_bias);
+  EXPECT_EQ(doubted.radius_ratio, filter_.radius_ratio);
+  EXPECT_EQ(doubted.wheel_base, filter_.wheel_base);
+  EXPECT_EQ(doubted.gyro_bias, filter_.gyro_bias);
+  EXPECT_EQ(doubted.velocity, believed.velocity);
+  EXPECT_EQ(doubted.travel, believed.travel);
+  for (const int i : {+Filter::kRadiusRatio, +Filter::kWheelBase, Filter::kGyroBias + 2}) {
+    EXPECT_EQ(doubted.covariance(i, i), filter_.covariance(i, i)) << i;
+  }
+}
+
+// At rest the tilt is learned about base_link: the IMU moves on its lever, base_link does not.
+TEST_F(FilterUpdate, WhatIsLearnedAtRestLeavesTheBaseWhereItIs) {
+  const auto base = [&] { return Vector3d(filter_.position - filter_.rotation * kGeometry.imu_in_base); };
+  const Vector3d before = base();
+  const Eigen::Matrix3d level = filter_.rotation;
+  for (const int axis : {0, 1, 2}) filter_.correct_accelerometer_at_rest(axis, axis == 2 ? 9.8 : 0.05, 1e-3);
+  EXPECT_GT((filter_.rotation - level).norm(), 1e-3);
+  EXPECT_LT((base() - before).norm(), 1e-5);
 }
 
 TEST_F(FilterUpdate, CorrectionsAreWhatWasInjectedSinceThePrediction) {
