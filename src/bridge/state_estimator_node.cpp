@@ -107,11 +107,11 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   bool set_odometry(msg::SetOdometryRequest& request, msg::SetOdometryResponse& response) {
-    const Vector3 asked{request.x, request.y, request.yaw};
-    const std::string problem = odometry_problem(asked);
-    const std::string refusal = problem.empty() ? take(normalised(asked)) : "not done: " + problem;
+    const Vector3 wished{request.x, request.y, request.yaw};
+    const std::string problem = odometry_problem(wished);
+    const std::string refusal = problem.empty() ? take(normalised(wished)) : "not done: " + problem;
     response.success = refusal.empty();
-    response.message = refusal.empty() ? taken_sentence(normalised(asked)) : refusal;
+    response.message = refusal.empty() ? taken_sentence(normalised(wished)) : refusal;
     return true;
   }
 

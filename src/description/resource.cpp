@@ -3,7 +3,6 @@
 #include <tinyxml.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "description/environment.h"
 #include "description/robot_description.h"
 
 namespace robot_control {
@@ -20,11 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
-
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 std::vector<fs::path> folders_of(const std::string& search_path) {
   std::vector<fs::path> folders;

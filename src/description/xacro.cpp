@@ -1,9 +1,9 @@
 #include "description/xacro.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
+#include "description/environment.h"
 #include "description/other_process.h"
 #include "description/robot_description.h"
 #include "description/wording.h"
@@ -15,11 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr int kNotInstalled = 69;  // scripts/robot_control/expand_xacro.py
 constexpr const char* kByHand = "or expand the file by hand: xacro FILE > robot.urdf";
-
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 std::string python() {
   if (std::string chosen = environment("ROBOT_CONTROL_XACRO_PYTHON"); !chosen.empty()) return chosen;

@@ -23,6 +23,10 @@ struct Finding {
   std::uint64_t joint = kMaxJoints;  ///< index into RobotModel::joints; kMaxJoints: of no single one
 };
 
+inline Finding beyond(std::size_t joint, double value, double limit) noexcept {
+  return {.beyond = value > limit, .value = value, .limit = limit, .joint = joint};
+}
+
 /// Of two, that which is further beyond its limit, or nearer to it. What is not a number is no finding.
 inline const Finding& worse(const Finding& a, const Finding& b) noexcept {
   return b.value - b.limit > a.value - a.limit ? b : a;

@@ -6,10 +6,6 @@
 namespace robot_control {
 namespace {
 
-Finding beyond(std::size_t joint, double value, double limit) noexcept {
-  return {.beyond = value > limit, .value = value, .limit = limit, .joint = joint};
-}
-
 /// In the direction of the target.
 double along(double target, double speed) noexcept {
   return target < 0 ? -speed : speed;

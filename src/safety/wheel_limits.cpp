@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace robot_control {
-namespace {
-
-Finding beyond(std::size_t joint, double value, double limit) noexcept {
-  return {.beyond = value > limit, .value = value, .limit = limit, .joint = joint};
-}
-
-}  // namespace
-
 SpeedLimitInForce::SpeedLimitInForce(double ramp_time, double period) noexcept
     : cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(ramp_time / period)))) {}
 

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "bridge/nanoseconds.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Healthy: a state that learned something, a file in a folder that is there.
 class CalibrationKeeperTest : public testing::Test {

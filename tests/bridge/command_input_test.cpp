@@ -6,14 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "bridge/nanoseconds.h"
+
 namespace robot_control {
 namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kHour = 3600 * kSecond;
 
 /// One node sends every 0.1 s, on the robot's clock.
 class CommandInputTest : public testing::Test {

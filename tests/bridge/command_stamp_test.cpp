@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "bridge/nanoseconds.h"
+
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kTimeout = 1'250'000'000;
 constexpr std::int64_t kNow = 1'700'000'000 * kSecond;
-constexpr std::int64_t kHour = 3600 * kSecond;
 
 JudgedStamp aged(std::int64_t age_ns, std::int64_t timeout_ns = kTimeout) {
   return judge_stamp(kNow - age_ns, kNow, timeout_ns);

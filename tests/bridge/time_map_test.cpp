@@ -5,12 +5,11 @@
 
 #include <random>
 
+#include "bridge/nanoseconds.h"
 #include "rt/clock.h"
 
 namespace robot_control {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(TimeMap, AddsTheMeasuredOffset) {
   TimeMap map(ClockMode::kWall);

@@ -12,7 +12,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kLimitRounding = 1e-9;
 
 class Draw {
  public:
@@ -64,7 +64,7 @@ struct Axis {
   const char* go(double next, bool emergency, bool yielded) {
     const double step = (next - speed) / dt;
     const double grain = 1e-12 * limits.speed / dt;  // of a difference of two speeds
-    const double tolerance = kRounding * (1 + std::abs(step)) + grain;
+    const double tolerance = kLimitRounding * (1 + std::abs(step)) + grain;
     const double slows = emergency ? limits.emergency_deceleration : limits.deceleration;
     const auto side = [](double of) { return (of > 0) - (of < 0); };
     const bool crosses = side(speed) * side(next) < 0 && std::abs(next) > grain * dt;
@@ -74,16 +74,16 @@ struct Axis {
       bound = std::max(bound, std::abs(acceleration) - limits.jerk * dt);
     }
     const double change = std::min(std::abs(step - acceleration), yielded_before ? std::abs(step) : INFINITY) / dt;
-    const bool jerks = change > limits.jerk * (1 + kRounding) + 2 * grain / dt;
+    const bool jerks = change > limits.jerk * (1 + kLimitRounding) + 2 * grain / dt;
 
     const char* violated = std::isfinite(next) ? nullptr : "finite";
     if (std::abs(next) > limits.speed * (1 + 1e-12)) violated = "speed";
     if (std::abs(step) > bound + tolerance) violated = "acceleration";
     if (jerks && !(yielded && next == 0)) violated = "jerk";
     if (side(next) != 0 && side(next) != side(goal) && side(next) != side(speed)) violated = "zero";
-    if (next < low - kRounding - grain * dt || next > high + kRounding + grain * dt) violated = "overshoot";
+    if (next < low - kLimitRounding - grain * dt || next > high + kLimitRounding + grain * dt) violated = "overshoot";
 
-    emergency_fades = emergency || (emergency_fades && std::abs(step) > limits.deceleration * (1 + kRounding));
+    emergency_fades = emergency || (emergency_fades && std::abs(step) > limits.deceleration * (1 + kLimitRounding));
     acceleration = step;
     yielded_before = yielded && next == 0;  // this axis, or the other while this one passed zero
     speed = next;
@@ -136,7 +136,7 @@ class Trial {
   bool beside_the_line(const PlanarTwist& at) const {
     if (!line_) return false;
     const double size = std::hypot(line_->linear, line_->angular);
-    return std::abs(at.linear * line_->angular - at.angular * line_->linear) > kRounding * size * size;
+    return std::abs(at.linear * line_->angular - at.angular * line_->linear) > kLimitRounding * size * size;
   }
 
   std::optional<std::string> step() {

@@ -11,7 +11,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kRounding = 1e-14;  // a few operations on numbers of order one
+constexpr double kPermitRounding = 1e-14;  // a few operations on numbers of order one
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double fastest_rim(const DriveKinematics& kinematics, const PlanarTwist& twist) {
@@ -35,7 +35,7 @@ TEST(RimSpeedScale, LeavesAloneWhatIsSlowEnough) {
 }
 
 TEST(RimSpeedScale, WheelsBehindEachOtherCountWithTheirEffectiveWheelBase) {
-  EXPECT_NEAR(DriveKinematics(make_skid_steer()).rim_speed_scale({0, 1}, 0.205), 0.5, kRounding);  // 0.41 m/s
+  EXPECT_NEAR(DriveKinematics(make_skid_steer()).rim_speed_scale({0, 1}, 0.205), 0.5, kPermitRounding);  // 0.41 m/s
 }
 
 TEST(RimSpeedScale, ALimitThatIsNoSpeedLetsNothingMove) {
@@ -55,10 +55,10 @@ TEST(RimSpeedScale, NoRimOfAnyRobotExceedsIt) {
       const PlanarTwist twist{any(random), any(random)};
       const double limit = std::abs(any(random));
       const double scale = kinematics.rim_speed_scale(twist, limit);
-      ASSERT_LE(fastest_rim(kinematics, {scale * twist.linear, scale * twist.angular}), limit + kRounding)
+      ASSERT_LE(fastest_rim(kinematics, {scale * twist.linear, scale * twist.angular}), limit + kPermitRounding)
           << "seed " << seed;
       if (scale < 1) {
-        ASSERT_NEAR(scale * fastest_rim(kinematics, twist), limit, kRounding) << "seed " << seed;
+        ASSERT_NEAR(scale * fastest_rim(kinematics, twist), limit, kPermitRounding) << "seed " << seed;
       }
     }
   }
@@ -91,7 +91,7 @@ TEST_F(PermitSpeed, DoesNothingWithoutALimit) {
 }
 
 TEST_F(PermitSpeed, DoesNothingAboveTheFastestRim) {
-  bench.permit.speed_limit = 1.0 + kRounding;
+  bench.permit.speed_limit = 1.0 + kPermitRounding;
   bench.step();
   EXPECT_EQ(limited().linear, 0.8);
   EXPECT_FALSE(slowed());
@@ -101,9 +101,9 @@ TEST_F(PermitSpeed, DoesNothingAboveTheFastestRim) {
 TEST_F(PermitSpeed, EndsAtTheLimitOnTheSameCurve) {
   bench.permit.speed_limit = 0.25;
   bench.run(1.0);
-  EXPECT_NEAR(rim(), 0.25, kRounding);
-  EXPECT_NEAR(limited().linear, 0.2, kRounding);
-  EXPECT_NEAR(limited().angular / limited().linear, 1, kRounding);
+  EXPECT_NEAR(rim(), 0.25, kPermitRounding);
+  EXPECT_NEAR(limited().linear, 0.2, kPermitRounding);
+  EXPECT_NEAR(limited().angular / limited().linear, 1, kPermitRounding);
   EXPECT_TRUE(slowed());
   EXPECT_EQ(bench.command.twist_requested.linear[0], 0.8);
 }
@@ -114,10 +114,10 @@ TEST_F(PermitSpeed, SlowsDownAlongTheCurveAtTheAccelerationLimit) {
   for (int k = 0; k < 600; ++k) {
     const double before = limited().linear;
     bench.step();
-    ASSERT_LE(before - limited().linear, 1e-3 + kRounding) << "cycle " << k;
+    ASSERT_LE(before - limited().linear, 1e-3 + kPermitRounding) << "cycle " << k;
     ASSERT_NEAR(limited().angular / limited().linear, 1, 1e-12) << "cycle " << k;  // 600 roundings
   }
-  EXPECT_NEAR(limited().linear, 0.2, kRounding);
+  EXPECT_NEAR(limited().linear, 0.2, kPermitRounding);
 }
 
 TEST_F(PermitSpeed, LetsGoAgainAtTheAccelerationLimit) {
@@ -125,7 +125,7 @@ TEST_F(PermitSpeed, LetsGoAgainAtTheAccelerationLimit) {
   bench.run(1.0);
   bench.permit.speed_limit = kNoSpeedLimit;
   bench.step();
-  EXPECT_NEAR(limited().linear, 0.201, kRounding);
+  EXPECT_NEAR(limited().linear, 0.201, kPermitRounding);
   EXPECT_FALSE(slowed());
   bench.run(1.0);
   EXPECT_EQ(limited().linear, 0.8);

@@ -4,10 +4,11 @@
 
 #include <numbers>
 
+#include "support/constants.h"
+
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 1e-3;
 constexpr double kCount = 2 * std::numbers::pi / 4096;
 
 TEST(Standstill, IsSeenAfterAQuarterOfASecondWithoutMotion) {

@@ -7,11 +7,10 @@
 #include <random>
 
 #include "control/speed_limiter.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kDt = 1e-3;
 
 TEST(StopDistance, IsThatOfTextbooksWithoutAJerkLimit) {
   EXPECT_DOUBLE_EQ(stop_distance(1, 2, std::numeric_limits<double>::infinity()), 0.25);
@@ -44,10 +43,10 @@ TEST(StopDistance, IsWhatTheLimiterTakes) {
     limiter.seed({speed, 0});
     double way = 0;
     for (double before = speed; before > 0; before = limiter.value().linear) {
-      way += 0.5 * (before + limiter.step({}, kDt, emergency).linear) * kDt;
+      way += 0.5 * (before + limiter.step({}, kPeriod, emergency).linear) * kPeriod;
     }
     const double deceleration = emergency ? 10 : limits.linear.deceleration;
-    ASSERT_NEAR(way, stop_distance(speed, deceleration, limits.linear.jerk), speed * kDt)
+    ASSERT_NEAR(way, stop_distance(speed, deceleration, limits.linear.jerk), speed * kPeriod)
         << speed << " m/s, " << deceleration << " m/s², " << limits.linear.jerk << " m/s³, against "
         << limits.linear.acceleration;
   }

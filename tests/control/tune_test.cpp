@@ -13,7 +13,7 @@ namespace robot_control {
 namespace {
 
 /// Between rounding and anything that a wheel could feel.
-constexpr double kRounding = 1e-9;
+constexpr double kTuneRounding = 1e-9;
 
 /// The rigid plant with friction that the controller does not know of, so that error and integral are not zero.
 class Tune : public testing::Test {
@@ -112,9 +112,9 @@ TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
   for (std::size_t i = 0; i < 2; ++i) {
     const double wheel_error = error(before_last, tuned.command, i);
     // What the test would miss without the hand-over: a jump of this size.
-    ASSERT_GT(std::abs((*given.pid_kp - derived.wheels[i].kp) * wheel_error), 1e3 * kRounding);
+    ASSERT_GT(std::abs((*given.pid_kp - derived.wheels[i].kp) * wheel_error), 1e3 * kTuneRounding);
     const double learnt_more = (*given.pid_ki - derived.wheels[i].ki) * wheel_error * tuned.period;
-    EXPECT_NEAR(tuned.command.joints[i].effort, left.command.joints[i].effort + learnt_more, kRounding);
+    EXPECT_NEAR(tuned.command.joints[i].effort, left.command.joints[i].effort + learnt_more, kTuneRounding);
   }
 }
 
@@ -142,7 +142,7 @@ TEST_F(Tune, BeforeAHandOverLeavesItTheTorqueThatTheBrakeHeld) {
   loop.measure({.position = 1e-4 * 25}, 1, false);
   loop.resume();
   loop.carry(1.5);
-  EXPECT_NEAR(loop.step({.velocity = loop.velocity()}, 1), 1.5, kRounding);
+  EXPECT_NEAR(loop.step({.velocity = loop.velocity()}, 1), 1.5, kTuneRounding);
 }
 
 TEST_F(Tune, OfTheMassLetsTorqueAndTrackingGoOn) {
@@ -156,8 +156,8 @@ TEST_F(Tune, OfTheMassLetsTorqueAndTrackingGoOn) {
     tuned.step();
     left.step();
     for (std::size_t i = 0; i < 2; ++i) {
-      ASSERT_NEAR(tuned.command.joints[i].effort, left.command.joints[i].effort, kRounding) << k;
-      ASSERT_NEAR(tuned.command.velocity_measured[i], left.command.velocity_measured[i], kRounding) << k;
+      ASSERT_NEAR(tuned.command.joints[i].effort, left.command.joints[i].effort, kTuneRounding) << k;
+      ASSERT_NEAR(tuned.command.velocity_measured[i], left.command.velocity_measured[i], kTuneRounding) << k;
     }
   }
 }
@@ -195,7 +195,7 @@ TEST_F(Tune, ReturnsToALoweredSpeedAtTheDeceleration) {
   bench.send(1.0, 0);
   for (int k = 1; k <= 600; ++k) {
     bench.step();
-    ASSERT_NEAR(bench.command.twist_limited.linear[0], std::max(0.6, 1.0 - 0.8 * k * bench.period), kRounding) << k;
+    ASSERT_NEAR(bench.command.twist_limited.linear[0], std::max(0.6, 1.0 - 0.8 * k * bench.period), kTuneRounding) << k;
   }
 }
 
@@ -223,7 +223,7 @@ TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
   bench.send(0.5, 0);
   bench.step();
   const double load = 0.5 * 12 * TwoWheelPlant::kGravity * std::sin(0.05) * 0.1;
-  EXPECT_NEAR(bench.command.joints[0].effort, load, kRounding);
+  EXPECT_NEAR(bench.command.joints[0].effort, load, kTuneRounding);
 }
 
 TEST_F(Tune, WhileBrakedAtSpeedChangesNothingThatTheIntegratorsKnow) {
@@ -242,7 +242,7 @@ TEST_F(Tune, WhileBrakedAtSpeedChangesNothingThatTheIntegratorsKnow) {
     bench->step();
     ASSERT_GT(std::abs(bench->plant.speed.left), 1.0);
   }
-  EXPECT_NEAR(tuned.command.joints[0].effort, left.command.joints[0].effort, kRounding);
+  EXPECT_NEAR(tuned.command.joints[0].effort, left.command.joints[0].effort, kTuneRounding);
 }
 
 TEST_F(Tune, AllocatesNothing) {
@@ -266,10 +266,10 @@ struct WatchedAxis {
   void look(double now, const AxisTuning& limits, double dt) {
     const double next = (now - speed) / dt;
     const double fastest = std::max({limits.acceleration, limits.deceleration, std::abs(acceleration)});
-    EXPECT_LE(std::abs(next), fastest + kRounding / dt);
-    if (std::abs(now) > limits.speed + kRounding && std::abs(now) > std::abs(speed) + kRounding * dt) {
+    EXPECT_LE(std::abs(next), fastest + kTuneRounding / dt);
+    if (std::abs(now) > limits.speed + kTuneRounding && std::abs(now) > std::abs(speed) + kTuneRounding * dt) {
       const double faded = std::max(0.0, std::abs(acceleration) - limits.jerk * dt);
-      EXPECT_LE(std::abs(next), faded + kRounding / dt);
+      EXPECT_LE(std::abs(next), faded + kTuneRounding / dt);
     }
     speed = now;
     acceleration = next;

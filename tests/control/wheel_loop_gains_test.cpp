@@ -10,6 +10,7 @@
 #include "control/feed_forward.h"
 #include "control/test_robot.h"
 #include "control/wheel_loop_stability.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
@@ -100,7 +101,6 @@ TEST(WheelLoopGains, AreStableWithAMarginOfThreeInADampedJoint) {
 
 // A creeping wheel of next to no inertia, whose damping takes the whole torque: the loop must not see it race.
 TEST(WheelLoopGains, SeeNoSpeedThatADampedWheelDoesNotHave) {
-  constexpr double kPeriod = 1e-3;
   constexpr double kDamping = 0.2;
   RobotModel robot = make_test_robot();
   WheelModel& wheel = robot.wheels[0];

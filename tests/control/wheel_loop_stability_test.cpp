@@ -7,26 +7,26 @@
 #include <limits>
 
 #include "control/wheel_loop.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 1e-3;
-constexpr double kBandwidth = 20;
+constexpr double kTrackingBandwidth = 20;
 constexpr double kLifted = 0.005;
 constexpr double kTurning = 0.045;
 constexpr double kStraight = 0.065;
 constexpr double kDoubled = 0.125;  // 24 kg
 
 double radius(const WheelLoopGains& gains, double inertia, double period = kPeriod) {
-  return wheel_loop_spectral_radius(gains, {inertia}, period, kBandwidth);
+  return wheel_loop_spectral_radius(gains, {inertia}, period, kTrackingBandwidth);
 }
 
 /// The classes themselves on one wheel, disturbed at the start: growth per cycle of the envelope between the middle and
 /// the end of `cycles`.
 double simulated_growth(const WheelLoopGains& gains, const WheelLoad& load, int cycles, std::size_t delay = 0) {
   constexpr int kParts = 100;  // of a cycle, for the damping
-  WheelLoop loop(gains, kBandwidth, std::numeric_limits<double>::max(), kPeriod);
+  WheelLoop loop(gains, kTrackingBandwidth, std::numeric_limits<double>::max(), kPeriod);
   double angle = 0;
   double speed = 1e-3;
   double applied = 0;
@@ -107,26 +107,27 @@ TEST(WheelLoopSpectralRadius, IsTheGrowthOfTheRealClasses) {
 TEST(WheelLoopSpectralRadius, IsTheGrowthOfTheRealClassesInADampedJointToo) {
   for (const double damping : {0.1, 1.0, 3.0}) {
     const WheelLoad load{kLifted, damping};
-    EXPECT_NEAR(simulated_growth({}, load, 1600), wheel_loop_spectral_radius({}, load, kPeriod, kBandwidth), 1e-3)
+    EXPECT_NEAR(simulated_growth({}, load, 1600), wheel_loop_spectral_radius({}, load, kPeriod, kTrackingBandwidth),
+                1e-3)
         << damping;
   }
 }
 
 TEST(WheelLoopSpectralRadius, IsTheGrowthOfTheRealClassesBehindALateActuatorToo) {
   for (const unsigned delay : {1u, 2u}) {
-    const double predicted = wheel_loop_spectral_radius({}, {kStraight}, kPeriod, kBandwidth, delay);
+    const double predicted = wheel_loop_spectral_radius({}, {kStraight}, kPeriod, kTrackingBandwidth, delay);
     EXPECT_NEAR(simulated_growth({}, {kStraight}, 1600, delay), predicted, 1e-3) << delay;
   }
   // A lifted wheel that oscillates ever more: a pair dominates, the envelope shows it to 0.5 %.
-  const double predicted = wheel_loop_spectral_radius({}, {kLifted}, kPeriod, kBandwidth, 8);
+  const double predicted = wheel_loop_spectral_radius({}, {kLifted}, kPeriod, kTrackingBandwidth, 8);
   EXPECT_GT(predicted, 1);
   EXPECT_NEAR(simulated_growth({}, {kLifted}, 400, 8), predicted, 5e-3);
 }
 
 TEST(WheelLoopSpectralRadius, GrowsWithEveryCycleOfDelayWhereTheWheelIsLifted) {
   for (unsigned delay = 4; delay < 12; ++delay) {
-    EXPECT_LT(wheel_loop_spectral_radius({}, {kLifted}, kPeriod, kBandwidth, delay),
-              wheel_loop_spectral_radius({}, {kLifted}, kPeriod, kBandwidth, delay + 1))
+    EXPECT_LT(wheel_loop_spectral_radius({}, {kLifted}, kPeriod, kTrackingBandwidth, delay),
+              wheel_loop_spectral_radius({}, {kLifted}, kPeriod, kTrackingBandwidth, delay + 1))
         << delay;
   }
 }

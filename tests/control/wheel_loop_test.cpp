@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 1e-3;
 constexpr double kLimit = 5;
 
 WheelLoop seeded(double velocity = 0, const WheelLoopGains& gains = {}) {

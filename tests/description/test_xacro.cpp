@@ -20,14 +20,14 @@ constexpr const char* kWheel =
     "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:macro name=\"wheel\" params=\"side radius\">"
     "<link name=\"${side}_wheel_ä\"><visual><geometry><sphere radius=\"${radius}\"/></geometry></visual></link>"
     "</xacro:macro></robot>";
-constexpr const char* kManifest =
+constexpr const char* kPartsManifest =
     "<package><name>robot_control_test_parts</name><version>1.0.0</version><description>d</description>"
     "<maintainer email=\"a@b.c\">m</maintainer><license>l</license></package>";
 
 class Xacro : public testing::Test {
  protected:
   Xacro() {
-    folder_.write("ws/parts/package.xml", kManifest);
+    folder_.write("ws/parts/package.xml", kPartsManifest);
     folder_.write("ws/parts/wheel.xacro", kWheel);
   }
 
@@ -62,7 +62,7 @@ TEST_F(Xacro, FindsPackagesByRospkg) {
 TEST_F(Xacro, FindsPackagesAboveTheFile) {
   SKIP_WITHOUT_XACRO();
   const ScopedVariable nowhere("ROS_PACKAGE_PATH", folder_.path() / "nowhere");
-  folder_.write("robot_control_test_parts/package.xml", kManifest);
+  folder_.write("robot_control_test_parts/package.xml", kPartsManifest);
   folder_.write("robot_control_test_parts/wheel.xacro", kWheel);
   EXPECT_THAT(expand_xacro(folder_.write("robots/urdf/bot.urdf.xacro", kRobot)), HasSubstr("left_wheel"));
 }

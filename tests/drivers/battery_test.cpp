@@ -10,12 +10,12 @@ namespace robot_control {
 namespace {
 
 constexpr double kVoltage = 24, kResistance = 0.5;
-constexpr double kRounding = 1e-12;
+constexpr double kVoltRounding = 1e-12;
 
 TEST(Battery, IdlesJustBelowItsOpenVoltage) {
   const BatterySample idle = battery_under_load(kVoltage, kResistance, 0);
-  EXPECT_NEAR(idle.voltage, kVoltage - kResistance * kIdleCurrent, kRounding);
-  EXPECT_NEAR(idle.current, kIdleCurrent, kRounding);
+  EXPECT_NEAR(idle.voltage, kVoltage - kResistance * kIdleCurrent, kVoltRounding);
+  EXPECT_NEAR(idle.current, kIdleCurrent, kVoltRounding);
 }
 
 TEST(Battery, SagsByItsResistanceTimesItsCurrent) {
@@ -32,13 +32,13 @@ TEST(Battery, IsChargedByMotorsThatBrake) {
 }
 
 TEST(Battery, WithoutResistanceKeepsItsVoltage) {
-  EXPECT_NEAR(battery_under_load(kVoltage, 0, 1000).voltage, kVoltage, kRounding);
+  EXPECT_NEAR(battery_under_load(kVoltage, 0, 1000).voltage, kVoltage, kVoltRounding);
 }
 
 TEST(Battery, GivesHalfItsVoltageAtItsGreatestPowerAndBeyond) {
   const double half = (kVoltage - kResistance * kIdleCurrent) / 2;
   EXPECT_NEAR(battery_under_load(kVoltage, kResistance, half * half / kResistance).voltage, half, 1e-6);
-  EXPECT_NEAR(battery_under_load(kVoltage, kResistance, 1e6).voltage, half, kRounding);
+  EXPECT_NEAR(battery_under_load(kVoltage, kResistance, 1e6).voltage, half, kVoltRounding);
 }
 
 class BatteryOfThePlant : public PlantTest {

@@ -8,14 +8,14 @@
 #include <set>
 #include <vector>
 
+#include "drivers/constants.h"
 #include "support/allocation_guard.h"
 #include "two_wheels.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kStep = 0.001;  // s
-constexpr double kLimit = 3.5;   // N·m, as two_wheels has it
+constexpr double kLimit = 3.5;  // N·m, as two_wheels has it
 
 class MotorFaultsTest : public testing::Test {
  protected:

@@ -8,7 +8,7 @@ namespace {
 constexpr double kStall = 4;     // N·m
 constexpr double kNoLoad = 200;  // rad/s, of the shaft
 constexpr double kGear = 10;     // 20 rad/s at the wheel
-constexpr double kRounding = 1e-14;
+constexpr double kTorqueRounding = 1e-14;
 
 const Motor kMotor{kStall, kNoLoad, kGear};
 
@@ -20,8 +20,8 @@ TEST(MotorTest, HasItsWholeTorqueAtStandstill) {
 
 TEST(MotorTest, LosesTorqueLinearlyWithSpeed) {
   for (const double speed : {2.0, 5.0, 10.0, 15.0}) {
-    EXPECT_NEAR(kMotor.limited(10, speed), kStall * (1 - speed / 20), kRounding);
-    EXPECT_NEAR(kMotor.limited(-10, -speed), -kStall * (1 - speed / 20), kRounding) << "backwards, too";
+    EXPECT_NEAR(kMotor.limited(10, speed), kStall * (1 - speed / 20), kTorqueRounding);
+    EXPECT_NEAR(kMotor.limited(-10, -speed), -kStall * (1 - speed / 20), kTorqueRounding) << "backwards, too";
   }
 }
 
@@ -44,7 +44,7 @@ TEST(MotorTest, PassesWhatItCanGive) {
 }
 
 TEST(MotorTest, IsSlowerBehindAGreaterGear) {
-  EXPECT_NEAR(Motor(kStall, kNoLoad, 20).limited(10, 5), kStall / 2, kRounding);
+  EXPECT_NEAR(Motor(kStall, kNoLoad, 20).limited(10, 5), kStall / 2, kTorqueRounding);
 }
 
 TEST(MotorTest, WithoutANoLoadSpeedIsLimitedOnlyByItsStallTorque) {

@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include "drivers/brake_limits.h"
+#include "drivers/constants.h"
 #include "hal/driver.h"
 #include "made_robot.h"
 #include "support/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kGravity = 9.81;  // m/s²
-constexpr double kStep = 0.001;    // s
 
 // Centre of gravity 0.2 m above the ground, axles 0.15 m before and behind it.
 MadeRobot four_wheels() {
@@ -24,28 +22,28 @@ MadeRobot four_wheels() {
 }
 
 TEST(LiftingDeceleration, IsTheLeverOfTheWeightOverThatOfTheInertia) {
-  EXPECT_NEAR(lifting_deceleration(four_wheels().model()), kGravity * 0.15 / 0.2, 1e-9);
+  EXPECT_NEAR(lifting_deceleration(four_wheels().model()), kEarthGravity * 0.15 / 0.2, 1e-9);
 }
 
 TEST(LiftingDeceleration, CountsABallBehindTheAxleAsASupport) {
   MadeRobot robot;
   robot.body_x = -0.12;  // 10 of 12 kg: centre of gravity at −0.1 m
   robot.ball_x = -0.3;
-  EXPECT_NEAR(lifting_deceleration(robot.model()), kGravity * 0.1 / 0.1, 1e-9);
+  EXPECT_NEAR(lifting_deceleration(robot.model()), kEarthGravity * 0.1 / 0.1, 1e-9);
 }
 
 TEST(BrakeOf, BrakesWithHalfTheLiftingDeceleration) {
   const MadeRobot robot = four_wheels();
   const Brake brake = brake_of(robot.model(), 0, {}, kStep);
   const double moved = 20 + 4 * robot.wheel_inertia() / std::pow(robot.radius, 2);
-  EXPECT_NEAR(brake.effort, moved * 0.5 * kGravity * 0.75 * robot.radius / 4, 1e-9);
+  EXPECT_NEAR(brake.effort, moved * 0.5 * kEarthGravity * 0.75 * robot.radius / 4, 1e-9);
 }
 
 TEST(BrakeOf, HoldsATopHeavyRobotOnASlopeOfTenDegrees) {
   MadeRobot robot = four_wheels();
   robot.body_z = 3;
   EXPECT_NEAR(brake_of(robot.model(), 0, {}, kStep).hold_effort,
-              20 * kGravity * std::sin(10 * M_PI / 180) * robot.radius / 4, 1e-9);
+              20 * kEarthGravity * std::sin(10 * M_PI / 180) * robot.radius / 4, 1e-9);
 }
 
 // Half of what lifts it is less than the slope takes, all of it is not.
@@ -54,14 +52,14 @@ TEST(BrakeOf, SlowsATopHeavyRobotAlmostUntilItTips) {
   robot.body_z = 1.0;  // centre of gravity at (16 · 1.1 + 4 · 0.1)/20 = 0.9 m, lifts at g/6
   const Brake brake = brake_of(robot.model(), 0, {}, kStep);
   const double moved = 20 + 4 * robot.wheel_inertia() / std::pow(robot.radius, 2);
-  EXPECT_NEAR(brake.effort, moved * 0.9 * kGravity * 0.15 / 0.9 * robot.radius / 4, 1e-9);
+  EXPECT_NEAR(brake.effort, moved * 0.9 * kEarthGravity * 0.15 / 0.9 * robot.radius / 4, 1e-9);
   EXPECT_GT(brake.hold_effort, brake.effort);
 }
 
 // Right above its only axle the centre of gravity has no lever at all.
 TEST(BrakeOf, SlowsOnASlopeOfFiveDegreesWhateverTips) {
-  EXPECT_NEAR(brake_of(MadeRobot{}.model(), 0, {}, kStep).effort, 12 * kGravity * std::sin(5 * M_PI / 180) * 0.1 / 2,
-              1e-9);
+  EXPECT_NEAR(brake_of(MadeRobot{}.model(), 0, {}, kStep).effort,
+              12 * kEarthGravity * std::sin(5 * M_PI / 180) * 0.1 / 2, 1e-9);
 }
 
 TEST(BrakeOf, LeavesToTheMotorsFrictionWhatThatBrakes) {

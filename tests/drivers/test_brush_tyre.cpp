@@ -4,13 +4,12 @@
 
 #include <cmath>
 
+#include "drivers/constants.h"
 #include "made_robot.h"
 #include "plant_fixture.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kGravity = 9.81;
 
 class BrushTyreTest : public PlantTest {
  protected:
@@ -100,7 +99,7 @@ TEST_P(LockedWheels, SlideWithTheFrictionOfTheGround) {
   const double before = truth(*plant).twist_base.linear[0];
   for (int k = 0; k < 150; ++k) plant->write(locked);
   const double deceleration = (before - truth(*plant).twist_base.linear[0]) / 0.150;
-  EXPECT_NEAR(deceleration, GetParam() * kGravity, 0.02 * GetParam() * kGravity);
+  EXPECT_NEAR(deceleration, GetParam() * kEarthGravity, 0.02 * GetParam() * kEarthGravity);
 }
 
 INSTANTIATE_TEST_SUITE_P(BrushTyre, LockedWheels, testing::Values(0.3, 0.6, 1.0));

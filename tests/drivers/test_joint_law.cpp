@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/constants.h"
 #include "drivers/joint_law.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kStep = 0.001;          // s
 constexpr double kFreeInertia = 0.005;   // kg·m², a wheel off the ground
 constexpr double kRobotInertia = 0.065;  // kg·m², a wheel that moves its half of 12 kg
 constexpr double kEffortLimit = 3.5;     // N·m

@@ -4,13 +4,13 @@
 
 #include <cstring>
 
+#include "drivers/constants.h"
 #include "plant_fixture.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kGravity = 9.81;
 constexpr double kRadius = 0.1;
 constexpr double kBase = 0.5;
 const double kSlopeAngle = 5 * M_PI / 180;
@@ -42,7 +42,7 @@ TEST_F(MujocoPlantTest, WheelsCarryTheirShareOfTheWeight) {
   const RobotModel robot = read_robot(diffbot_urdf(), {});
   const double share = (0.25 + robot.centre_of_gravity_base[0]) / 0.25;
   const TruthFrame frame = truth(*started());
-  EXPECT_NEAR(frame.normal_force[0] + frame.normal_force[1], share * 12 * kGravity, 0.001 * 12 * kGravity);
+  EXPECT_NEAR(frame.normal_force[0] + frame.normal_force[1], share * 12 * kEarthGravity, 0.001 * 12 * kEarthGravity);
 }
 
 // The whole frame is as at rest: 1e-4 m/s² is 1e-5 of g.
@@ -50,18 +50,19 @@ TEST_F(MujocoPlantTest, AccelerometerShowsGravityUpwardsAtRest) {
   const ImuSample flat = sensors(*started()).imu;
   EXPECT_NEAR(flat.linear_acceleration[0], 0, 1e-4);
   EXPECT_NEAR(flat.linear_acceleration[1], 0, 1e-4);
-  EXPECT_NEAR(flat.linear_acceleration[2], kGravity, 1e-4);
+  EXPECT_NEAR(flat.linear_acceleration[2], kEarthGravity, 1e-4);
 }
 
 TEST_F(MujocoPlantTest, AccelerometerShowsTheSlope) {
   const ImuSample slope = sensors(*started(kSlope)).imu;
-  EXPECT_NEAR(slope.linear_acceleration[0], kGravity * std::sin(kSlopeAngle), 1e-3) << "facing uphill";
-  EXPECT_NEAR(slope.linear_acceleration[2], kGravity * std::cos(kSlopeAngle), 1e-3);
+  EXPECT_NEAR(slope.linear_acceleration[0], kEarthGravity * std::sin(kSlopeAngle), 1e-3) << "facing uphill";
+  EXPECT_NEAR(slope.linear_acceleration[2], kEarthGravity * std::cos(kSlopeAngle), 1e-3);
 }
 
 TEST_F(MujocoPlantTest, BrakeTorqueHoldsTheWeightDownTheSlope) {
   const SensorFrame frame = sensors(*started(kSlope));
-  EXPECT_NEAR(frame.joints[0].effort + frame.joints[1].effort, 12 * kGravity * std::sin(kSlopeAngle) * kRadius, 1e-3);
+  EXPECT_NEAR(frame.joints[0].effort + frame.joints[1].effort, 12 * kEarthGravity * std::sin(kSlopeAngle) * kRadius,
+              1e-3);
 }
 
 class BrakeHolds : public PlantTest, public testing::WithParamInterface<std::tuple<const char*, double>> {};
@@ -162,7 +163,7 @@ TEST_F(MujocoPlantTest, GyroShowsTheYawRateInItsOwnAxes) {
   const ImuSample imu = sensors(*plant).imu;
   EXPECT_NEAR(imu.angular_velocity[1], yaw_rate, 1e-6);
   EXPECT_NEAR(imu.angular_velocity[2], 0, 1e-6);
-  EXPECT_NEAR(imu.linear_acceleration[1], kGravity, 0.01);
+  EXPECT_NEAR(imu.linear_acceleration[1], kEarthGravity, 0.01);
 }
 
 // SensorFrame: velocity at t_k, acceleration of [t_k-1, t_k). Under a torque that changes every tick the two only

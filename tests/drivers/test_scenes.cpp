@@ -3,13 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/constants.h"
 #include "made_robot.h"
 #include "plant_fixture.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kGravity = 9.81;
 
 class SceneTest : public PlantTest {
  protected:
@@ -82,8 +81,8 @@ TEST_F(SceneTest, WallsStopTheRobot) {
 TEST_F(SceneTest, ASlopeByParameterIsASlope) {
   parameters_.slope = 5 * M_PI / 180;
   const ImuSample imu = sensors(*in("flat.xml")).imu;
-  EXPECT_NEAR(imu.linear_acceleration[0], kGravity * std::sin(parameters_.slope), 1e-3) << "facing uphill";
-  EXPECT_NEAR(imu.linear_acceleration[2], kGravity * std::cos(parameters_.slope), 1e-3);
+  EXPECT_NEAR(imu.linear_acceleration[0], kEarthGravity * std::sin(parameters_.slope), 1e-3) << "facing uphill";
+  EXPECT_NEAR(imu.linear_acceleration[2], kEarthGravity * std::cos(parameters_.slope), 1e-3);
 }
 
 // tan 5° = 0.087: less than that does not hold.

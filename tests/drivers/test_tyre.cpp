@@ -3,18 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "drivers/constants.h"
 #include "drivers/tyre.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kStep = 0.001;  // s
-constexpr double kMass = 0.5;    // kg
-constexpr double kRadius = 0.1;  // m
-constexpr double kLoad = 50;     // N
+constexpr double kMass = 0.5;        // kg
+constexpr double kTyreRadius = 0.1;  // m
+constexpr double kLoad = 50;         // N
 
 class TyreTest : public testing::Test {
  protected:
@@ -35,7 +34,7 @@ class TyreTest : public testing::Test {
     return force;
   }
 
-  TyreParameters tyre_ = tyre_parameters(kMass, kRadius, kLoad, kStep);
+  TyreParameters tyre_ = tyre_parameters(kMass, kTyreRadius, kLoad, kStep);
   TyreState state_;
   double grip_ = kLoad;
   double velocity_ = 0;
@@ -50,7 +49,7 @@ TEST_F(TyreTest, HasTheNumbersThatWereMeasured) {
 }
 
 TEST_F(TyreTest, OfAHeavyRobotOnALightWheelRelaxesOverALongerWay) {
-  const TyreParameters heavy = tyre_parameters(kMass, kRadius, 5000, kStep);
+  const TyreParameters heavy = tyre_parameters(kMass, kTyreRadius, 5000, kStep);
   EXPECT_NEAR(heavy.stiffness * heavy.relaxation_length, 20 * 5000, 1e-6);
 }
 
@@ -110,7 +109,7 @@ TEST_F(TyreTest, TurnSlipIsBoundedByTheGripToo) {
   input.grip = kLoad;
   double torque = 0;
   for (int i = 0; i < 100; ++i) torque = step_tyre(tyre_, state_, input, kStep).torque;
-  EXPECT_NEAR(torque, -kLoad * 0.01 * kRadius, 1e-12);
+  EXPECT_NEAR(torque, -kLoad * 0.01 * kTyreRadius, 1e-12);
 }
 
 TEST_F(TyreTest, WithoutNormalForceThereIsNone) {

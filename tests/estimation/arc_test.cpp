@@ -10,20 +10,20 @@ namespace robot_control {
 namespace {
 
 // Rounding of a handful of operations on numbers of order 1.
-constexpr double kRounding = 1e-15;
+constexpr double kArcRounding = 1e-15;
 
 TEST(Arc, QuarterCircleEndsOneRadiusAheadAndOneRadiusLeft) {
   const double radius = 2.0;
   const double turn = std::numbers::pi / 2;
   const Chord chord = chord_of({radius * turn, 0, turn}, 0);
-  EXPECT_NEAR(chord.x, radius, 4 * kRounding);
-  EXPECT_NEAR(chord.y, radius, 4 * kRounding);
+  EXPECT_NEAR(chord.x, radius, 4 * kArcRounding);
+  EXPECT_NEAR(chord.y, radius, 4 * kArcRounding);
 }
 
 TEST(Arc, FullCircleReturns) {
   const Chord chord = chord_of({3.0, 0, 2 * std::numbers::pi}, 0.7);
-  EXPECT_NEAR(chord.x, 0, kRounding);
-  EXPECT_NEAR(chord.y, 0, kRounding);
+  EXPECT_NEAR(chord.x, 0, kArcRounding);
+  EXPECT_NEAR(chord.y, 0, kArcRounding);
 }
 
 TEST(Arc, ZeroTurnIsTheStraightLine) {
@@ -35,8 +35,8 @@ TEST(Arc, ZeroTurnIsTheStraightLine) {
 TEST(Arc, ReverseIsTheMirrorOfForward) {
   const Chord forward = chord_of({1.0, 0, 0.4}, 0);
   const Chord back = chord_of({-1.0, 0, -0.4}, 0.4);
-  EXPECT_NEAR(forward.x + back.x, 0, kRounding);
-  EXPECT_NEAR(forward.y + back.y, 0, kRounding);
+  EXPECT_NEAR(forward.x + back.x, 0, kArcRounding);
+  EXPECT_NEAR(forward.y + back.y, 0, kArcRounding);
 }
 
 // Midpoint rule with n steps: its error falls with n²; at 20000 steps of a 1 rad turn below 1e-9.
@@ -64,7 +64,7 @@ TEST(Arc, EqualsFineIntegrationOfItsTwist) {
 TEST(Sinc, SeriesMeetsTheClosedForm) {
   for (const double h : {0.0079, 0.00799999, 0.0080001, -0.0079, -0.0081}) {
     const Sinc value = sinc(h);
-    EXPECT_NEAR(value.value, std::sin(h) / h, kRounding) << h;
+    EXPECT_NEAR(value.value, std::sin(h) / h, kArcRounding) << h;
     EXPECT_NEAR(value.slope, (h * std::cos(h) - std::sin(h)) / (h * h), 1e-11) << h;
   }
 }

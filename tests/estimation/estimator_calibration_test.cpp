@@ -1,11 +1,10 @@
 // What is learned of wheels, and what for.
 
 #include "estimation/estimator_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kPeriod = RollingRobot::kPeriod;
 
 EstimatorParameters held() {
   EstimatorParameters parameters;

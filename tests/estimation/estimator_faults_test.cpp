@@ -1,16 +1,13 @@
 // Samples that are missing, not finite or impossible, and sensors that are lost.
 
 #include <cstring>
-#include <limits>
 
 #include "estimation/estimator_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = RollingRobot::kPeriod;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kExact = 1e-4;  // m: two readings of an encoder, and what the end of rest left
 
 /// Healthy case: a second of standing, then 0.5 m/s straight ahead.

@@ -3,11 +3,10 @@
 #include <cstring>
 
 #include "estimation/estimator_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kPeriod = RollingRobot::kPeriod;
 
 /// Ten seconds of standing and driving. `biased`: constant errors in base axes, wherever the IMU sits.
 StateFrame drive_with(const RobotModel& model, RollingRobot& robot) {

@@ -4,11 +4,10 @@
 
 #include "estimation/estimator_fixture.h"
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kPeriod = RollingRobot::kPeriod;
 
 /// Ideal sensors leave what the first 20 ms leave: rest ends when a wheel has moved by its tolerance, and the filter
 /// finds the speed out of travel that it takes to be known to a reading's deviation, at either end of a way.
@@ -19,7 +18,7 @@ double reading_of_yaw() {
   return std::numbers::sqrt2 * reading() / two_wheeler().wheel_base;  // rad
 }
 
-constexpr double kExact = 1e-18;  // m², rad²: rounding
+constexpr double kExactVariance = 1e-18;  // m², rad²: rounding
 
 class EstimatorPoseTest : public EstimatorFixture {
  protected:
@@ -160,7 +159,7 @@ TEST_F(EstimatorPoseTest, ResetPoseIsZeroInTheNextFrameAndKeepsTheTwist) {
   EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
   EXPECT_NEAR(yaw(), 0, 1e-15);
   for (const std::size_t i : {0U, 1U, 5U, 6U, 7U, 11U, 30U, 31U, 35U}) {
-    EXPECT_NEAR(state_.pose_covariance[i], 0, kExact) << i;
+    EXPECT_NEAR(state_.pose_covariance[i], 0, kExactVariance) << i;
   }
   EXPECT_NEAR(speed(), 0.5, 1e-3);
   EXPECT_GT(state_.distance, distance);
@@ -182,7 +181,7 @@ TEST(EstimatorPoseOfOtherRobots, ResetPoseIsExactForBaseLinkUnderAnyImu) {
   EXPECT_NEAR(state.pose_odom.position[1], -4, 1e-15);
   EXPECT_NEAR(yaw_of(state.pose_odom), 1, 1e-15);
   for (const std::size_t i : {0U, 1U, 5U, 6U, 7U, 11U, 30U, 31U, 35U}) {
-    EXPECT_NEAR(state.pose_covariance[i], 0, kExact) << i;
+    EXPECT_NEAR(state.pose_covariance[i], 0, kExactVariance) << i;
   }
 }
 

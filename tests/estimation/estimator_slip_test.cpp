@@ -7,11 +7,10 @@
 
 #include "estimation/estimator_fixture.h"
 #include "estimation/slip_watch.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kPeriod = RollingRobot::kPeriod;
 
 /// Two seconds of standing, then 0.5 m/s; noise as of a consumer IMU.
 class EstimatorSlipTest : public EstimatorFixture {

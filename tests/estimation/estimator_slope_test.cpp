@@ -1,11 +1,11 @@
 // Ground that is not level: height, roll and pitch in three dimensions, or the horizontal projection.
 
 #include "estimation/estimator_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = RollingRobot::kPeriod;
 constexpr double kSlope = 0.1;  // rad, upwards
 constexpr double kTime = 1.0;   // s, in which the robot pitches
 constexpr double kSpeed = 0.5;

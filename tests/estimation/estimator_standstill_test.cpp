@@ -1,11 +1,11 @@
 // Standing: biases are learned, and nothing moves.
 
 #include "estimation/estimator_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = RollingRobot::kPeriod;
 constexpr int kWindow = 250;  // cycles, standstill_time
 
 class EstimatorStandstillTest : public EstimatorFixture {

@@ -1,11 +1,10 @@
 // What a run begins with is not always rest: in motion, anew in the midst of a drive, after a hole in all samples.
 
 #include "estimation/estimator_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kPeriod = RollingRobot::kPeriod;
 
 class EstimatorStartTest : public EstimatorFixture {
  protected:

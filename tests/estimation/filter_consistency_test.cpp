@@ -17,10 +17,10 @@ namespace {
 using Filter = ErrorStateFilter;
 using Eigen::Vector3d;
 
-constexpr double kPeriod = 0.01;
+constexpr double kLongPeriod = 0.01;
 constexpr int kSteps = 2000;
 constexpr unsigned kRuns = 100;
-const ContactGeometry kGeometry{
+const ContactGeometry kCentredGeometry{
     .wheel_base = 0.5, .middle_y = 0, .middle_x = -0.1, .height = -0.2, .imu_in_base = {0.1, 0, 0.2}};
 // Small enough for a linear error, large enough to be learned.
 const FilterPrior kPrior{.tilt = 0.005,
@@ -46,60 +46,60 @@ class Trial {
     for (int i = 0; i < Filter::kSize; ++i) error[i] = std::sqrt(filter_.covariance(i, i)) * normal();
     const FilterPrior exact{
         .tilt = 0, .gyro_bias = 0, .accelerometer_bias = 0, .radius_ratio = 0, .wheel_base = 0, .gyro_scale = 0};
-    truth_ = Filter(kGeometry, filter_.noise(), exact);
+    truth_ = Filter(kCentredGeometry, filter_.noise(), exact);
     filter_.velocity = truth_.velocity = rolling(0);
     truth_.inject(error);
     contact_ = contact(truth_, rate(0));
   }
 
   void step() {
-    const double t = kPeriod * ++k_;
+    const double t = kLongPeriod * ++k_;
     const Vector3d omega = rate(t);
-    truth_.gyro_bias += std::sqrt(kPeriod) * filter_.noise().gyro_bias_walk * vector();
-    truth_.accelerometer_bias += std::sqrt(kPeriod) * filter_.noise().accelerometer_bias_walk * vector();
+    truth_.gyro_bias += std::sqrt(kLongPeriod) * filter_.noise().gyro_bias_walk * vector();
+    truth_.accelerometer_bias += std::sqrt(kLongPeriod) * filter_.noise().accelerometer_bias_walk * vector();
 
     // The contact slides by what the filter takes for noise.
-    const double slide = filter_.noise().lateral / std::sqrt(kPeriod) * normal();
-    const double jump = filter_.noise().vertical / std::sqrt(kPeriod) * normal();
+    const double slide = filter_.noise().lateral / std::sqrt(kLongPeriod) * normal();
+    const double jump = filter_.noise().vertical / std::sqrt(kLongPeriod) * normal();
     Vector3d wanted = rolling(t);
     wanted.y() += slide;
     wanted.z() += jump;
     Filter::Motion exact = motion(omega);
-    Vector3d steady = (wanted - truth_.velocity) / kPeriod;
+    Vector3d steady = (wanted - truth_.velocity) / kLongPeriod;
     for (int i = 0; i < 4; ++i) {  // what accelerates from velocity to wanted; converges by ω dt/2 each time
-      const Vector3d u = truth_.velocity + kPeriod / 2 * (steady - omega.cross(truth_.velocity));
-      steady = (wanted - truth_.velocity) / kPeriod + omega.cross(u);
+      const Vector3d u = truth_.velocity + kLongPeriod / 2 * (steady - omega.cross(truth_.velocity));
+      steady = (wanted - truth_.velocity) / kLongPeriod + omega.cross(u);
     }
     const Eigen::Matrix3d middle =
-        truth_.rotation * Eigen::AngleAxisd(omega.norm() * kPeriod / 2, omega.normalized()).toRotationMatrix();
+        truth_.rotation * Eigen::AngleAxisd(omega.norm() * kLongPeriod / 2, omega.normalized()).toRotationMatrix();
     const Vector3d force = steady + middle.transpose() * Vector3d(0, 0, Filter::kGravity);
 
     Filter::Motion measured = exact;
     exact.gyro = omega / (1 + truth_.gyro_scale) + truth_.gyro_bias;
     exact.accelerometer = force + truth_.accelerometer_bias;
-    measured.gyro = *exact.gyro + filter_.noise().gyro / std::sqrt(kPeriod) * vector();
-    measured.accelerometer = *exact.accelerometer + filter_.noise().accelerometer / std::sqrt(kPeriod) * vector();
+    measured.gyro = *exact.gyro + filter_.noise().gyro / std::sqrt(kLongPeriod) * vector();
+    measured.accelerometer = *exact.accelerometer + filter_.noise().accelerometer / std::sqrt(kLongPeriod) * vector();
     truth_.predict(exact);
-    const double path = (std::abs(exact.left_speed) + std::abs(exact.right_speed)) / 2 * kPeriod;
+    const double path = (std::abs(exact.left_speed) + std::abs(exact.right_speed)) / 2 * kLongPeriod;
     truth_.radius_ratio += filter_.noise().radius_ratio_walk * std::sqrt(path) * normal();
     truth_.wheel_base += filter_.noise().wheel_base_walk * std::sqrt(path) * normal();
     const double wound = std::abs(truth_.smooth_rate - truth_.slow_rate) / Filter::kWindUp;
     const double turning = algebra::square(filter_.noise().turn_slip) * std::abs(omega.z()) +
                            algebra::square(filter_.noise().wind_up) * wound;
-    const double twist = kGeometry.wheel_base / 2 * std::sqrt(turning * kPeriod) * normal();
+    const double twist = kCentredGeometry.wheel_base / 2 * std::sqrt(turning * kLongPeriod) * normal();
     truth_.travel += Eigen::Vector2d(twist, -twist);
     truth_.travel.array() += filter_.noise().common_slip * std::sqrt(path) * normal();
     for (const int side : {0, 1}) {
       const double speed = side == 0 ? exact.left_speed : exact.right_speed;
-      truth_.travel[side] += filter_.noise().wheel_slip * std::sqrt(std::abs(speed) * kPeriod) * normal();
+      truth_.travel[side] += filter_.noise().wheel_slip * std::sqrt(std::abs(speed) * kLongPeriod) * normal();
     }
 
     filter_.predict(measured);
     for (const int side : {0, 1}) {
       filter_.correct_travel(side, truth_.travel[side] + filter_.noise().encoder * normal());
     }
-    filter_.correct_lateral(kPeriod);
-    filter_.correct_vertical(kPeriod);
+    filter_.correct_lateral(kLongPeriod);
+    filter_.correct_vertical(kLongPeriod);
   }
 
   double nees(const std::vector<int>& indices) const {
@@ -126,14 +126,16 @@ class Trial {
   static Vector3d rate(double t) { return {0, 0, 0.4 * std::sin(0.7 * t) + 0.1}; }
   static Vector3d rolling(double t) {
     const double speed = 0.5 + 0.3 * std::sin(0.4 * t);
-    return Vector3d(speed, 0, 0) - rate(t).cross(Vector3d(kGeometry.middle_x, kGeometry.middle_y, kGeometry.height));
+    return Vector3d(speed, 0, 0) -
+           rate(t).cross(Vector3d(kCentredGeometry.middle_x, kCentredGeometry.middle_y, kCentredGeometry.height));
   }
   static Vector3d contact(const Filter& filter, const Vector3d& rate) {
-    return filter.velocity + rate.cross(Vector3d(kGeometry.middle_x, kGeometry.middle_y, kGeometry.height));
+    return filter.velocity +
+           rate.cross(Vector3d(kCentredGeometry.middle_x, kCentredGeometry.middle_y, kCentredGeometry.height));
   }
   Filter::Motion motion(const Vector3d& omega) const {
     Filter::Motion motion;
-    motion.dt = kPeriod;
+    motion.dt = kLongPeriod;
     motion.left_speed = (truth_.velocity.x() - omega.z() * truth_.lever(0)) / (1 - truth_.radius_ratio / 2);
     motion.right_speed = (truth_.velocity.x() - omega.z() * truth_.lever(1)) / (1 + truth_.radius_ratio / 2);
     return motion;
@@ -141,8 +143,8 @@ class Trial {
 
   std::mt19937 random_;
   std::normal_distribution<double> normal_{0, 1};
-  Filter filter_{kGeometry, {}, kPrior};
-  Filter truth_{kGeometry, {}, kPrior};
+  Filter filter_{kCentredGeometry, {}, kPrior};
+  Filter truth_{kCentredGeometry, {}, kPrior};
   Vector3d contact_;
   int k_ = 0;
 };

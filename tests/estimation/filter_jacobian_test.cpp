@@ -16,7 +16,7 @@ using Filter = ErrorStateFilter;
 using Eigen::Vector3d;
 constexpr double kStep = 1e-4;  // of a central difference: 1e-16/1e-4 rounding, 1e-8 curvature
 
-const ContactGeometry kGeometry{
+const ContactGeometry kMirroredGeometry{
     .wheel_base = 0.5, .middle_y = -0.05, .middle_x = -0.2, .height = -0.3, .imu_in_base = {0.2, 0.05, 0.3}};
 
 FilterNoise no_noise() {
@@ -39,7 +39,7 @@ Filter state(std::mt19937& random, bool calibrated) {
     const double x = any(random), y = any(random), z = any(random);
     return Vector3d(size * x, size * y, size * z);
   };
-  Filter filter(kGeometry, no_noise(), {});
+  Filter filter(kMirroredGeometry, no_noise(), {});
   filter.position = vector(5);
   const Vector3d tilt = vector(0.4);
   filter.rotation = Eigen::AngleAxisd(3 * any(random), Vector3d::UnitZ()).toRotationMatrix() *
@@ -84,7 +84,7 @@ class TransitionJacobian : public testing::TestWithParam<Sensors> {
 
   /// Wheels that turn as the gyro says.
   static void roll(Filter::Motion& motion, const Filter& filter, double rate) {
-    const double half = rate * kGeometry.wheel_base * (1 + filter.wheel_base) / 2;
+    const double half = rate * kMirroredGeometry.wheel_base * (1 + filter.wheel_base) / 2;
     motion.left_speed = (0.5 - half) / (1 - filter.radius_ratio / 2);
     motion.right_speed = (0.5 + half) / (1 + filter.radius_ratio / 2);
     motion.left_travel = motion.left_speed * kPeriod;
@@ -201,14 +201,15 @@ class MeasurementJacobian : public testing::Test {
     filter_.rate = {0.3, -0.2, 0.7};
     rate_ = filter_.rate;
     bias_ = filter_.gyro_bias;
-    const Vector3d contact{kGeometry.middle_x, kGeometry.middle_y, kGeometry.height};
+    const Vector3d contact{kMirroredGeometry.middle_x, kMirroredGeometry.middle_y, kMirroredGeometry.height};
     filter_.velocity = Vector3d(0.5, 1e-4, 2e-4) - rate_.cross(contact);  // almost rolls: the gate accepts it
     filter_.velocity.x() = 0.5;
   }
   /// Velocity of the middle of the contacts; the gyro's bias turns the rate.
   Vector3d contact(const Filter& filter) const {
     const Vector3d rate = rate_ - (filter.gyro_bias - bias_);
-    return filter.velocity + rate.cross(Vector3d(kGeometry.middle_x, kGeometry.middle_y, kGeometry.height));
+    return filter.velocity +
+           rate.cross(Vector3d(kMirroredGeometry.middle_x, kMirroredGeometry.middle_y, kMirroredGeometry.height));
   }
   std::mt19937 random_{17};
   Filter filter_;

@@ -8,13 +8,13 @@
 
 #include "estimation/filter_errors.h"
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
 using Filter = ErrorStateFilter;
 using Eigen::Vector3d;
-constexpr double kPeriod = 1e-3;
 const ContactGeometry kGeometry{
     .wheel_base = 0.5, .middle_y = 0.02, .middle_x = -0.2, .height = -0.3, .imu_in_base = {0.2, -0.02, 0.3}};
 

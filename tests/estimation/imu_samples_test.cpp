@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <limits>
 #include <random>
+
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPeriod = 1e-3;
 
 /// A gyro and an accelerometer that brought their first samples: 0.1 rad/s and 1 m/s² along z.
 class ImuSamplesTest : public testing::Test {

@@ -2,15 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "estimation/rolling_robot.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kPeriod = 1e-3;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The left wheel of a robot that stands at 12.5 rad.
 class SideEncoderTest : public testing::Test {

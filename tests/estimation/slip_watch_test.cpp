@@ -9,19 +9,19 @@
 
 #include "signals/state_frame.h"
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
 using Filter = ErrorStateFilter;
-constexpr double kPeriod = 1e-3;
-constexpr double kSpeed = 0.5;
+constexpr double kWheelSpeed = 0.5;
 
 /// A filter that goes at 0.5 m/s on a level floor and is corrected by wheels and contacts, as the estimator does it.
 class SlipWatchTest : public testing::Test {
  protected:
   SlipWatchTest() {
-    filter_.velocity = {kSpeed, 0, 0};
+    filter_.velocity = {kWheelSpeed, 0, 0};
     for (const int i : {0, 1, 2}) filter_.covariance(Filter::kVelocity + i, Filter::kVelocity + i) = 1e-6;
     for (const int i : {3, 4}) filter_.covariance(i, i) = 1e-4 * 1e-4;
     for (const int i : {11, 12, 13}) filter_.covariance(i, i) = 1e-8;
@@ -31,7 +31,7 @@ class SlipWatchTest : public testing::Test {
   }
 
   /// Cycles in which the treads move at `left`, `right` m/s, and the body at what the accelerometer says.
-  void go(int cycles, double left = kSpeed, double right = kSpeed) {
+  void go(int cycles, double left = kWheelSpeed, double right = kWheelSpeed) {
     for (int i = 0; i < cycles; ++i) {
       Filter::Motion motion;
       motion.dt = kPeriod;
@@ -95,17 +95,17 @@ TEST_F(SlipWatchTest, NoticesBothWheelsSpinningWithinAWindow) {
 TEST_F(SlipWatchTest, TakesBackWhatWasBelieved) {
   int cycles = 0;
   while (watch_.believed(Contact::kLeft) && cycles++ < 200) go(1, 1.0, 1.0);
-  EXPECT_NEAR(filter_.velocity.x(), kSpeed, 3 * deviation());
+  EXPECT_NEAR(filter_.velocity.x(), kWheelSpeed, 3 * deviation());
   EXPECT_GT(deviation(), 1e-3) << "and it says that it has been in doubt";
   go(1000, 1.0, 1.0);
-  EXPECT_NEAR(filter_.velocity.x(), kSpeed, 3 * deviation());
+  EXPECT_NEAR(filter_.velocity.x(), kWheelSpeed, 3 * deviation());
 }
 
 TEST_F(SlipWatchTest, ALockedWheelStalls) {
-  go(200, 0, kSpeed);
+  go(200, 0, kWheelSpeed);
   EXPECT_FALSE(watch_.believed(Contact::kLeft));
   EXPECT_EQ(watch_.reasons() & (kSlipLeft | kSlipSpinning | kSlipStalled), std::uint64_t{kSlipLeft | kSlipStalled});
-  go(800, 0, kSpeed);
+  go(800, 0, kWheelSpeed);
   EXPECT_TRUE(watch_.believed(Contact::kRight)) << "it rolls, and is believed again";
   EXPECT_NE(watch_.reasons() & kSlipTurn, 0u);
 }
@@ -126,7 +126,7 @@ TEST_F(SlipWatchTest, BeingLiftedIsTheVerticalContactsMatter) {
 }
 
 TEST_F(SlipWatchTest, CreepIsNotSlip) {
-  go(5000, kSpeed * (1 + 0.9 * SlipWatch::kCreep), kSpeed * (1 + 0.9 * SlipWatch::kCreep));
+  go(5000, kWheelSpeed * (1 + 0.9 * SlipWatch::kCreep), kWheelSpeed * (1 + 0.9 * SlipWatch::kCreep));
   EXPECT_TRUE(watch_.believed(Contact::kLeft));
   EXPECT_TRUE(watch_.believed(Contact::kRight));
 }

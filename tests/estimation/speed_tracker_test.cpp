@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/constants.h"
+
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 1e-3;
 constexpr double kBandwidth = 20;
 
 TEST(SpeedTracker, StaysAtAConstantSpeed) {

@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "support/constants.h"
+
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 1e-3;
 constexpr int kLength = 250;  // cycles, StandstillLimits::time
 
 /// Stands, in cycles of 1 ms; the gyro reads 0.01, 0.02, 0.03 rad/s, the accelerometer gravity.

@@ -14,6 +14,7 @@
 #include <fstream>
 
 #include "hal/bus.h"
+#include "hal/bus_refusal.h"
 #include "support/anonymous_memory.h"
 #include "support/child_process.h"
 #include "support/scoped_bus.h"
@@ -28,17 +29,6 @@ using Frames = LatestFrames<TestFrame>;
 
 constexpr uid_t kNobody = 65534;
 constexpr unsigned kAlarm = 10;  // s; who waits that long on a pipe waits for ever
-
-/// The message of the BusError that the call throws; empty: none.
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const BusError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 class BusAccessTest : public testing::Test {
  protected:

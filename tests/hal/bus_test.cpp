@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "hal/bus_refusal.h"
 #include "support/scoped_bus.h"
 #include "support/test_frame.h"
 
@@ -25,17 +26,6 @@ struct WideFrame {
 struct Row {
   std::uint64_t number = 0;
 };
-
-/// The message of the BusError that the call throws; empty: none.
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const BusError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 class BusTest : public testing::Test {
  protected:

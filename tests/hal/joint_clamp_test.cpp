@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kRounding = 1e-14;  // of numbers of order ten
+constexpr double kClampRounding = 1e-14;  // of numbers of order ten
 
 /// 4 N·m, 20 rad/s, −1 … 3 rad with 0.5 rad before either end stop.
 constexpr JointLimits kJoint{.effort = 4, .velocity = 20, .lower = -1, .upper = 3, .soft_zone = 0.5};
@@ -37,7 +37,8 @@ TEST_P(SpeedClamp, TapersTheEffortTowardsMoreSpeed) {
   for (const auto& [speed, left] : {std::pair{18.5, 3.0}, {19.0, 2.0}, {19.5, 1.0}}) {
     JointCommand command = effort(4);
     EXPECT_EQ(clamp_speed(kWheel, 0, sign * speed, command), std::uint64_t{kGateSpeedClamped});
-    EXPECT_NEAR(command.effort, sign * left, 10 * kRounding) << speed;  // differences of 1 − x, ten times as coarse
+    // Differences of 1 − x, ten times as coarse.
+    EXPECT_NEAR(command.effort, sign * left, 10 * kClampRounding) << speed;
   }
 }
 
@@ -78,7 +79,7 @@ TEST_P(SpeedClamp, InEffortModeTheVelocityIsForDisplay) {
 TEST_P(SpeedClamp, ASpringThatPullsOnIsSlackedOneThatPullsBackIsNot) {
   JointCommand command{.mode = JointMode::kImpedance, .position = sign * 2, .stiffness = 8};
   EXPECT_EQ(clamp_speed(kWheel, sign * 1, sign * 19, command), std::uint64_t{kGateSpeedClamped});
-  EXPECT_NEAR(command.stiffness, 4, 10 * kRounding);
+  EXPECT_NEAR(command.stiffness, 4, 10 * kClampRounding);
   command.stiffness = 8;
   EXPECT_EQ(clamp_speed(kWheel, sign * 3, sign * 19, command), 0u);
   EXPECT_EQ(command.stiffness, 8);

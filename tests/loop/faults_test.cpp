@@ -10,6 +10,7 @@
 #include "runtime/simulation_services.h"
 #include "signals/names.h"
 #include "simulation/closed_loop.h"
+#include "support/file_content.h"
 #include "support/four_nodes.h"
 #include "support/temporary_folder.h"
 #include "telemetry/columns.h"
@@ -26,12 +27,6 @@ constexpr std::uint64_t kFails = 400;
 constexpr std::uint64_t kRecovers = 460;
 constexpr std::uint64_t kStops = 500;
 constexpr std::uint64_t kResets = 1190;
-
-std::string content(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 struct Fault {
   std::string component, kind;

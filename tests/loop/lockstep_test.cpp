@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "simulation/closed_loop.h"
+#include "support/file_content.h"
 #include "support/four_nodes.h"
 #include "telemetry/columns.h"
 #include "telemetry/csv_writer.h"
@@ -20,13 +21,7 @@ namespace robot_control {
 namespace {
 
 constexpr std::uint64_t kCycles = 6000;
-constexpr double kPatience = 120;  // s
-
-std::string content(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
+constexpr double kLockstepPatience = 120;  // s
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -59,7 +54,7 @@ class Lockstep : public ::testing::Test {
     Parameters parameters = parameters_;
     parameters.loop.clock = clock;
     parameters.telemetry.directory = (folder_ / name).string();
-    FourNodes(parameters, robot_, true).run(kPatience);
+    FourNodes(parameters, robot_, true).run(kLockstepPatience);
     return content(folder_ / name / "run.csv");
   }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "simulation/closed_loop.h"
+#include "support/file_content.h"
 #include "support/four_nodes.h"
 #include "telemetry/columns.h"
 #include "telemetry/csv_writer.h"
@@ -21,13 +22,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPatience = 120;                // s
+constexpr double kServicePatience = 120;         // s
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Two logs, line by line: where they part, in words; "" where they do not.
 std::string parting(const std::string& first, const std::string& second) {
@@ -67,7 +63,7 @@ class Services : public ::testing::Test {
   /// run.csv of four processes under these hands.
   std::string four_processes(ClockMode clock, const FourNodes::Operator& operate) {
     parameters_.loop.clock = clock;
-    FourNodes(parameters_, robot_, true).run(kPatience, operate);
+    FourNodes(parameters_, robot_, true).run(kServicePatience, operate);
     return content(folder_ / "log" / "run.csv");
   }
 

@@ -31,10 +31,6 @@ class ReadConditions : public ::testing::Test {
   ParameterFile file;
 };
 
-std::size_t problems_in(const std::string& message) {
-  return static_cast<std::size_t>(std::count(message.begin(), message.end(), '\n'));
-}
-
 TEST_F(ReadConditions, ReadsAMapOnOneLineOrOnMany) {
   set("tilt", "{limit: 0.3, persistence: 0.2, reaction: ramp}");
   EXPECT_THAT(tilt().limit, Optional(0.3));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -21,6 +22,11 @@ inline std::string shipped_text() {
   std::ostringstream text;
   text << std::ifstream(shipped_path()).rdbuf();
   return text.str();
+}
+
+/// One a line.
+inline std::size_t problems_in(const std::string& message) {
+  return static_cast<std::size_t>(std::count(message.begin(), message.end(), '\n'));
 }
 
 class ParameterFile {

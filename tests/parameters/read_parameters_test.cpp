@@ -29,10 +29,6 @@ class ReadParameters : public ::testing::Test {
   ParameterFile file;
 };
 
-std::size_t problems_in(const std::string& message) {
-  return static_cast<std::size_t>(std::count(message.begin(), message.end(), '\n'));
-}
-
 TEST_F(ReadParameters, AcceptsTheShippedFile) {
   EXPECT_EQ(file.refusal(), "");
 }

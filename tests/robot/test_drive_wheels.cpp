@@ -12,8 +12,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double kRounding = 1e-12;
-
 std::string joint_name(const RobotModel& robot, std::size_t wheel) {
   return robot.joints[robot.wheels[wheel].joint].name;
 }

@@ -17,8 +17,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double kRounding = 1e-12;
-
 const JointModel& joint_of(const RobotModel& robot, const std::string& name) {
   for (const JointModel& each : robot.joints) {
     if (each.name == name) return each;

@@ -4,13 +4,13 @@
 
 #include "robot/rigid_bodies.h"
 #include "robot/robot_model.h"
+#include "robot/urdf_text.h"
 #include "support/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {
 
 // Decimal numbers of the file, a few dozen operations: rounding only.
-constexpr double kRounding = 1e-12;
 
 const std::string kLeftJoint = "<joint name=\"left_wheel_joint\"";
 const std::string kRightJoint = "<joint name=\"right_wheel_joint\"";

@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kLeftJoint = "<joint name=\"left_wheel_joint\"";
+const std::string kFirstJoint = "<joint name=\"left_wheel_joint\"";
 const std::string kLeftLink = "<link name=\"left_wheel_link\">";
 
 std::string refusal(const RobotDescription& description, const RobotParameters& parameters = {}) {
@@ -67,7 +67,7 @@ TEST(RobotRefusals, XmlThatIsNoRobot) {
 }
 
 TEST(RobotRefusals, WhatUrdfdomRefusesInItsOwnWords) {
-  EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "<child link=\"left_wheel_link\"/>", "<child link=\"nowhere\"/>")),
+  EXPECT_THAT(refusal(diffbot_with(kFirstJoint, "<child link=\"left_wheel_link\"/>", "<child link=\"nowhere\"/>")),
               names("<robot>", "nowhere"));
 }
 
@@ -98,25 +98,26 @@ TEST(RobotRefusals, LeftAndRightExchanged) {
 }
 
 TEST(RobotRefusals, AFixedWheelJoint) {
-  const RobotDescription description = diffbot_with(kLeftJoint, "continuous", "fixed");
+  const RobotDescription description = diffbot_with(kFirstJoint, "continuous", "fixed");
   EXPECT_THAT(refusal(description), names("left_wheel_joint", "fixed"));
   EXPECT_THAT(refusal(description, named()), names("left_wheel_joint", "fixed"));
 }
 
 TEST(RobotRefusals, ASlidingWheelJoint) {
-  RobotDescription description = diffbot_with(kLeftJoint, "continuous", "prismatic");
-  description.text = replaced(description.text, kLeftJoint, "effort=\"3.5\"", "lower=\"0\" upper=\"1\" effort=\"3.5\"");
+  RobotDescription description = diffbot_with(kFirstJoint, "continuous", "prismatic");
+  description.text =
+      replaced(description.text, kFirstJoint, "effort=\"3.5\"", "lower=\"0\" upper=\"1\" effort=\"3.5\"");
   EXPECT_THAT(refusal(description), names("left_wheel_joint", "slides"));
   EXPECT_THAT(refusal(description, named()), names("left_wheel_joint", "slides"));
 }
 
 // tan 0.3° = 0.0052, tan 0.1° = 0.0017: either side of the 0.2° that are allowed.
 TEST(RobotRefusals, AnAxisThatIsNotLateral) {
-  EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0.0052 1 0\"/>")),
+  EXPECT_THAT(refusal(diffbot_with(kFirstJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0.0052 1 0\"/>")),
               names("left_wheel_joint", "0.2°"));
-  EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0.0052 1 0\"/>"), named()),
+  EXPECT_THAT(refusal(diffbot_with(kFirstJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0.0052 1 0\"/>"), named()),
               names("left_wheel_joint", "0.2°"));
-  EXPECT_EQ(refusal(diffbot_with(kLeftJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0.0017 1 0\"/>")), "accepted");
+  EXPECT_EQ(refusal(diffbot_with(kFirstJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0.0017 1 0\"/>")), "accepted");
 }
 
 TEST(RobotRefusals, AWheelWithoutAnyShape) {
@@ -140,7 +141,7 @@ TEST(RobotRefusals, AWheelShapeBesideItsAxle) {
 }
 
 TEST(RobotRefusals, WheelsOnTwoAxles) {
-  EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "<origin xyz=\"0 0.25 0\"/>", "<origin xyz=\"0.1 0.25 0\"/>")),
+  EXPECT_THAT(refusal(diffbot_with(kFirstJoint, "<origin xyz=\"0 0.25 0\"/>", "<origin xyz=\"0.1 0.25 0\"/>")),
               names("left_wheel_joint", "one axle"));
 }
 
@@ -242,7 +243,7 @@ TEST(RobotRefusals, AChainOfTooManyLinks) {
 }
 
 TEST(RobotRefusals, AnAxisWithoutDirection) {
-  EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>")),
+  EXPECT_THAT(refusal(diffbot_with(kFirstJoint, "<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>")),
               names("left_wheel_joint", "axis"));
 }
 
@@ -256,7 +257,7 @@ TEST(RobotRefusals, ANegativeSize) {
 
 TEST(RobotRefusals, NumbersBeyondAllBounds) {
   EXPECT_THAT(refusal(diffbot_with("<robot", "<mass value=\"3.45\"/>", "<mass value=\"1e308\"/>")), Not("accepted"));
-  EXPECT_THAT(refusal(diffbot_with(kLeftJoint, "xyz=\"0 0.25 0\"", "xyz=\"0 1e200 0\"")), Not("accepted"));
+  EXPECT_THAT(refusal(diffbot_with(kFirstJoint, "xyz=\"0 0.25 0\"", "xyz=\"0 1e200 0\"")), Not("accepted"));
 }
 
 TEST(RobotRefusals, MoreJointsThanAFrameHolds) {

@@ -14,8 +14,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double kRounding = 1e-12;
-
 /// A wheel of 0.1 m below an upright swivel, which it follows by `trail`.
 std::string swivel(const std::string& trail) {
   return link("fork", inertial("0.2")) +

@@ -8,6 +8,8 @@
 
 namespace robot_control {
 
+inline constexpr double kRounding = 1e-12;  ///< of masses and lengths of order one
+
 inline const std::string kBall = "ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
 
 inline std::string inertial(const std::string& mass, const std::string& inertia = kBall) {

@@ -14,14 +14,14 @@ namespace {
 constexpr int kLooks = 100'000;
 
 Damage hostile(1);
-std::uint64_t loads = 0;
+std::uint64_t counted_loads = 0;
 
 template <class T>
 struct HostileAtomic {
   HostileAtomic() = default;
   HostileAtomic(T) {}  // NOLINT: as std::atomic
   T load(std::memory_order) const noexcept {
-    ++loads;
+    ++counted_loads;
     return static_cast<T>(hostile.number());
   }
   void store(T, std::memory_order) noexcept {}
@@ -40,9 +40,9 @@ template <class Look>
 std::uint64_t most_loads(Look look) {
   std::uint64_t most = 0;
   for (int i = 0; i < kLooks; ++i) {
-    loads = 0;
+    counted_loads = 0;
     look();
-    most = std::max(most, loads);
+    most = std::max(most, counted_loads);
   }
   return most;
 }

@@ -16,7 +16,7 @@ namespace robot_control {
 namespace {
 
 constexpr std::uint64_t kMutants = 100'000;
-constexpr std::uint64_t kRun = 7;
+constexpr std::uint64_t kDamagedRun = 7;
 constexpr std::uint64_t kCycles = 10;
 
 template <class Object>
@@ -33,7 +33,7 @@ class DamagedFrames : public testing::Test {
   DamagedFrames() {
     FrameWriter<TestFrame> writer(healthy_.get());
     for (std::uint64_t cycle = 0; cycle < kCycles; ++cycle) {
-      TestFrame frame = test_frame(kRun, cycle);
+      TestFrame frame = test_frame(kDamagedRun, cycle);
       writer.publish(frame);
     }
   }
@@ -48,7 +48,7 @@ class DamagedFrames : public testing::Test {
     TestFrame frame;
     if (is_frame(reader_.newest(frame))) check(frame);
     for (const std::uint64_t cycle : {kCycles - 1, kCycles - kFrameSlots, damage.number()}) {
-      const std::uint64_t run = damage.below(4) == 0 ? damage.number() : kRun;
+      const std::uint64_t run = damage.below(4) == 0 ? damage.number() : kDamagedRun;
       if (!is_frame(reader_.at(run, cycle, frame))) continue;
       EXPECT_EQ(frame.head.run, run);
       EXPECT_EQ(frame.head.cycle, cycle);
@@ -56,7 +56,7 @@ class DamagedFrames : public testing::Test {
     }
     const std::uint64_t first = damage.number();
     const std::uint64_t last = damage.number();
-    if (!is_frame(reader_.newest_within(kRun, first, last, frame))) return;
+    if (!is_frame(reader_.newest_within(kDamagedRun, first, last, frame))) return;
     EXPECT_GE(frame.head.cycle, first);
     EXPECT_LE(frame.head.cycle, last);
     check(frame);
@@ -78,7 +78,7 @@ TEST_F(DamagedFrames, NothingIsTakenForAFrameThatWasNotPublished) {
       ++accepted;
       EXPECT_TRUE(intact(frame));
       EXPECT_TRUE(whole(frame));
-      EXPECT_EQ(frame.head.run, kRun);
+      EXPECT_EQ(frame.head.run, kDamagedRun);
     });
   }
   EXPECT_GT(accepted, kMutants / 2);  // most damage leaves most frames alone
@@ -95,13 +95,13 @@ TEST_F(DamagedFrames, HeadsThatLookRightOverWrongContentAreCorrupt) {
     slot.words[word].fetch_xor(flipped);
     TestFrame frame;
     EXPECT_EQ(reader_.newest(frame), Lookup::kCorrupt);
-    EXPECT_EQ(reader_.at(kRun, kCycles - 1, frame), Lookup::kCorrupt);
+    EXPECT_EQ(reader_.at(kDamagedRun, kCycles - 1, frame), Lookup::kCorrupt);
   }
 }
 
 TEST_F(DamagedFrames, AFrameOfNoKnownKindIsCorrupt) {
   FrameWriter<TestFrame> writer(damaged_.get());
-  TestFrame frame = test_frame(kRun, 3);
+  TestFrame frame = test_frame(kDamagedRun, 3);
   frame.head.kind = static_cast<FrameKind>(3);
   writer.publish(frame);
   EXPECT_EQ(reader_.newest(frame), Lookup::kCorrupt);
@@ -113,7 +113,7 @@ TEST_F(DamagedFrames, TheNextPublicationIsFoundWhateverLayThere) {
     Damage damage(seed);
     heal();
     damage.strike(bytes_of(*damaged_));
-    TestFrame frame = test_frame(kRun, kCycles);
+    TestFrame frame = test_frame(kDamagedRun, kCycles);
     FrameWriter<TestFrame>(damaged_.get(), Wake::kNobody).publish(frame);
     TestFrame found;
     ASSERT_EQ(reader_.newest(found), Lookup::kFrame);
@@ -121,21 +121,21 @@ TEST_F(DamagedFrames, TheNextPublicationIsFoundWhateverLayThere) {
   }
 }
 
-struct Row {
+struct SmallRow {
   std::array<std::uint64_t, 4> values{};
 };
 
 TEST(DamagedRing, AReaderEndsAndAfterTheNextRowsItIsInStepAgain) {
   constexpr std::size_t kRows = 16;
-  using Rows = Ring<Row, std::atomic, kRows>;
+  using Rows = Ring<SmallRow, std::atomic, kRows>;
   const auto memory = std::make_unique<Rows>();
   for (std::uint64_t seed = 0; seed < kMutants && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Damage damage(seed);
     damage.strike(bytes_of(*memory));
-    RingReader<Row, std::atomic, kRows> reader(memory.get(), damage.number());
-    RingWriter<Row, std::atomic, kRows> writer(memory.get());
-    Row row;
+    RingReader<SmallRow, std::atomic, kRows> reader(memory.get(), damage.number());
+    RingWriter<SmallRow, std::atomic, kRows> writer(memory.get());
+    SmallRow row;
     for (std::size_t i = 0; i < 2 * kRows; ++i) reader.take(row);
     for (std::size_t i = 0; i < kRows; ++i) writer.append({}, nullptr);
     for (std::size_t i = 0; i < 2 * kRows; ++i) reader.take(row);

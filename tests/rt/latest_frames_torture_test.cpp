@@ -13,7 +13,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kRun = 7;
+constexpr std::uint64_t kTorturedRun = 7;
 constexpr std::int64_t kDuration = 700'000'000;     // ns, at least
 constexpr std::int64_t kPatience = 60'000'000'000;  // ns; how many frames fit into a time is the machine's affair
 constexpr std::uint64_t kFrames = 100;              // at least
@@ -21,7 +21,7 @@ constexpr std::uint64_t kFrames = 100;              // at least
 void write_until(const std::atomic<bool>& stop, LatestFrames<TestFrame>* memory, std::uint64_t first = 0) {
   FrameWriter<TestFrame> writer(memory);
   for (std::uint64_t cycle = first; !stop.load(std::memory_order_relaxed); ++cycle) {
-    TestFrame frame = test_frame(kRun, cycle);
+    TestFrame frame = test_frame(kTorturedRun, cycle);
     writer.publish(frame);
   }
 }
@@ -42,7 +42,7 @@ std::uint64_t read_and_check(const LatestFrames<TestFrame>* memory) {
     last = frame.head.cycle;
     ++seen;
     const std::uint64_t asked = last > 3 ? last - 3 : 0;
-    const Lookup older = reader.at(kRun, asked, frame);
+    const Lookup older = reader.at(kTorturedRun, asked, frame);
     EXPECT_NE(older, Lookup::kCorrupt);
     if (older == Lookup::kFrame) {
       EXPECT_TRUE(whole(frame));
@@ -93,7 +93,7 @@ TEST(LatestFramesTorture, WritersKilledAnywhereLeaveWholeFrames) {
       EXPECT_TRUE(whole(frame));
     }
     FrameWriter<TestFrame> successor(memory.get());
-    TestFrame next = test_frame(kRun, frame.head.cycle + 1);
+    TestFrame next = test_frame(kTorturedRun, frame.head.cycle + 1);
     successor.publish(next);
     ASSERT_EQ(reader.newest(frame), Lookup::kFrame);
     EXPECT_TRUE(whole(frame));
@@ -118,7 +118,7 @@ TEST(LatestFramesTorture, AReaderThatWaitsForEverMissesNoWakeUp) {
   const FrameReader<TestFrame> in(pong.get());
   FrameWriter<TestFrame> out(ping.get());
   for (std::uint64_t round = 0; round < kRounds; ++round) {
-    TestFrame frame = test_frame(kRun, round);
+    TestFrame frame = test_frame(kTorturedRun, round);
     out.publish(frame);
     ASSERT_TRUE(in.wait(static_cast<std::uint32_t>(round), 10'000'000'000)) << round;
   }

@@ -11,17 +11,17 @@
 namespace robot_control {
 namespace {
 
-struct Row {
+struct WideRow {
   std::array<std::uint64_t, 40> values{};
 };
 
-Row row_of(std::uint64_t number) {
-  Row row;
+WideRow row_of(std::uint64_t number) {
+  WideRow row;
   row.values.fill(number);
   return row;
 }
 
-bool is_row(const Row& row, std::uint64_t number) {
+bool is_row(const WideRow& row, std::uint64_t number) {
   for (const std::uint64_t value : row.values) {
     if (value != number) return false;
   }
@@ -34,10 +34,10 @@ class RingTest : public testing::Test {
     for (std::uint64_t i = 0; i < count; ++i) writer_.append(row_of(first + i), read);
   }
 
-  AnonymousMemory<Ring<Row>> memory_;
-  RingWriter<Row> writer_{memory_.get()};
-  RingReader<Row> reader_{memory_.get()};
-  Row row_;
+  AnonymousMemory<Ring<WideRow>> memory_;
+  RingWriter<WideRow> writer_{memory_.get()};
+  RingReader<WideRow> reader_{memory_.get()};
+  WideRow row_;
 };
 
 TEST_F(RingTest, GivesEveryRowOnceAndInOrder) {
@@ -60,7 +60,7 @@ TEST_F(RingTest, WrapsAround) {
 
 TEST_F(RingTest, AReaderStartsAtTheRowThatComesNext) {
   append(0, 10);
-  RingReader<Row> late(memory_.get());
+  RingReader<WideRow> late(memory_.get());
   EXPECT_FALSE(late.take(row_));
   append(10, 1);
   ASSERT_TRUE(late.take(row_));
@@ -69,14 +69,14 @@ TEST_F(RingTest, AReaderStartsAtTheRowThatComesNext) {
 
 TEST_F(RingTest, AReaderMayStartWhereAnEarlierOneEnded) {
   append(0, 10);
-  RingReader<Row> successor(memory_.get(), 4);
+  RingReader<WideRow> successor(memory_.get(), 4);
   ASSERT_TRUE(successor.take(row_));
   EXPECT_TRUE(is_row(row_, 4));
 }
 
 TEST_F(RingTest, APositionOfAnotherObjectIsBroughtBack) {
   append(0, 10);
-  RingReader<Row> stranger(memory_.get(), 5000);
+  RingReader<WideRow> stranger(memory_.get(), 5000);
   EXPECT_FALSE(stranger.take(row_));
   append(10, 1);
   ASSERT_TRUE(stranger.take(row_));
@@ -127,7 +127,7 @@ TEST_F(RingTest, ARowThatIsBeingOverwrittenIsSkippedAndCounted) {
 TEST_F(RingTest, AWriterKilledHalfWayLosesNoRowBeforeIt) {
   append(0, 3);
   memory_->slots[3].version.store(2 * 3 + 1);
-  RingWriter<Row> successor(memory_.get());
+  RingWriter<WideRow> successor(memory_.get());
   successor.append(row_of(33), nullptr);
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(reader_.take(row_));
   EXPECT_TRUE(is_row(row_, 33));

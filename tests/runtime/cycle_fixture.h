@@ -15,6 +15,7 @@ namespace robot_control {
 
 inline constexpr double kPeriod = 0.001;
 inline constexpr std::int64_t kPeriodNs = 1'000'000;
+inline constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
 
 inline RobotModel two_wheels() {
   RobotModel robot;

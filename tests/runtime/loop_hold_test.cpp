@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kMoment = 1'000'000;         // ns
+constexpr std::int64_t kMillisecond = 1'000'000;    // ns
 constexpr std::int64_t kPatience = 10'000'000'000;  // ns; never reached where the loop answers
 
 TEST(LoopHold, TicksWhenNothingIsAsked) {
@@ -46,7 +46,7 @@ TEST(LoopHold, AnswersWithTheAskingUnderWhichItStands) {
   const std::uint64_t first = hold.ask({.paused = 1});
   EXPECT_FALSE(hold.stands(first)) << "nobody has looked";
   ASSERT_FALSE(hold.may_tick(3));
-  hold.stand(kMoment, stopping);
+  hold.stand(kMillisecond, stopping);
   EXPECT_TRUE(hold.stands(first));
   EXPECT_EQ(hold.next_cycle(), 3u);
   EXPECT_FALSE(hold.stands(hold.ask({.paused = 1, .step_until = 5})));
@@ -74,7 +74,7 @@ TEST(LoopHold, WhoeverParksTheLoopHasTheMachineForItself) {
   std::thread loop([&] {
     hold.begin();
     for (std::uint64_t cycle = 0; !stopping.load(); ++cycle) {
-      while (!hold.may_tick(cycle) && !stopping.load()) hold.stand(kMoment, stopping);
+      while (!hold.may_tick(cycle) && !stopping.load()) hold.stand(kMillisecond, stopping);
       if (!stopping.load()) ++guarded;
     }
     hold.end();
@@ -99,7 +99,7 @@ TEST(LoopHold, TheLoopsSideDoesNotAllocate) {
   hold.ask({.paused = 1});
   const AllocationGuard guard;
   hold.begin();
-  if (!hold.may_tick(0)) hold.stand(kMoment, stopping);
+  if (!hold.may_tick(0)) hold.stand(kMillisecond, stopping);
   hold.park_asked();
   hold.end();
   EXPECT_EQ(guard.count(), 0u);

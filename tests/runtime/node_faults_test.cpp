@@ -15,7 +15,6 @@
 namespace robot_control {
 namespace {
 
-constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
 constexpr FaultComponent kNodes[]{FaultComponent::kController, FaultComponent::kEstimator, FaultComponent::kMonitor};
 
 /// A loop in DRIVE whose controller pushes ever harder at wheels that never turn.

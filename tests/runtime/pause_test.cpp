@@ -8,8 +8,6 @@
 namespace robot_control {
 namespace {
 
-constexpr Twist kForward{.linear = {0.5, 0, 0}, .angular = {0, 0, 0}};
-
 /// A loop in DRIVE with a standing command.
 class PausedLoop : public ::testing::Test {
  protected:

@@ -12,14 +12,12 @@
 
 #include "robot/gravity.h"
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kPeriod = 1e-3;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Vector3 plain(const Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};

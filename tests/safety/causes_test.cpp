@@ -7,11 +7,10 @@
 #include "safety/finite.h"
 #include "safety/monitor_fixture.h"
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class CausesTest : public MonitorTest {
  protected:

@@ -5,12 +5,11 @@
 #include <limits>
 
 #include "safety/monitor_fixture.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDelay = 0.05;
 constexpr double kDeceleration = 2;
 

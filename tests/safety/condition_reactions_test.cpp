@@ -18,7 +18,6 @@ namespace robot_control {
 namespace {
 
 constexpr std::uint64_t kWindow = 20;
-constexpr std::uint64_t kToMotors = 3;  // cycles from a cause to what the gate does about it
 
 /// What a row may change in each cycle.
 struct Robot {

@@ -9,8 +9,6 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kToMotors = 3;  // cycles from a cause to what the gate does about it
-
 /// Driving at full speed, a heartbeat in the last cycle.
 class FixedCauses : public MonitorTest, public testing::WithParamInterface<StopRule> {
  protected:

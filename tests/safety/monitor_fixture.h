@@ -17,6 +17,8 @@
 
 namespace robot_control {
 
+inline constexpr std::uint64_t kToMotors = 3;  ///< cycles from a cause to what the gate does about it
+
 /// Healthy case: standing in READY at cycle kStart, nothing asked for, encoders of 4096 counts. Heartbeat timeout 0.3
 /// s, ramp at most 0.3 s. Two wheels of 0.1 m radius, 0.5 m apart, of at most 15 rad/s.
 class MonitorTest : public testing::Test {

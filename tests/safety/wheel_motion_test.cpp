@@ -7,13 +7,13 @@
 #include <numbers>
 
 #include "safety/standstill.h"
+#include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kPeriod = 1e-3;
-constexpr std::uint64_t kWindow = 20;  // cycles
-constexpr double kRounding = 1e-9;     // of angles of some rad, over 20 ms
+constexpr std::uint64_t kSpeedWindow = 20;  // cycles
+constexpr double kAngleRounding = 1e-9;     // of angles of some rad, over 20 ms
 
 /// One wheel with an encoder.
 class WheelMotionTest : public testing::Test {
@@ -42,22 +42,22 @@ class WheelMotionTest : public testing::Test {
 };
 
 TEST_F(WheelMotionTest, IsKnownAfterOneWindowAndItsAccelerationAfterTwo) {
-  turn(3, kWindow);
+  turn(3, kSpeedWindow);
   EXPECT_FALSE(motion_.speed_known());
   turn(3, 1);
   EXPECT_TRUE(motion_.speed_known());
   EXPECT_FALSE(motion_.acceleration_known());
-  turn(3, kWindow);
+  turn(3, kSpeedWindow);
   EXPECT_TRUE(motion_.acceleration_known());
-  EXPECT_NEAR(motion_.speed(0), 3, kRounding);
-  EXPECT_NEAR(motion_.acceleration(0), 0, kRounding / 0.02);
+  EXPECT_NEAR(motion_.speed(0), 3, kAngleRounding);
+  EXPECT_NEAR(motion_.acceleration(0), 0, kAngleRounding / 0.02);
 }
 
 TEST_F(WheelMotionTest, MeasuresASteadyAcceleration) {
   double speed = 0;
   for (int i = 0; i < 100; ++i) turn(speed += 8 * kPeriod, 1);
-  EXPECT_NEAR(motion_.acceleration(0), 8, kRounding / 0.0004);
-  EXPECT_NEAR(motion_.speed(0), speed - 8 * 0.0095, kRounding) << "the mean of 20 steps is 9.5 steps old";
+  EXPECT_NEAR(motion_.acceleration(0), 8, kAngleRounding / 0.0004);
+  EXPECT_NEAR(motion_.speed(0), speed - 8 * 0.0095, kAngleRounding) << "the mean of 20 steps is 9.5 steps old";
 }
 
 TEST_F(WheelMotionTest, ASpeedOfCountsIsWithinItsTolerance) {
@@ -69,8 +69,8 @@ TEST_F(WheelMotionTest, ASpeedOfCountsIsWithinItsTolerance) {
     EXPECT_NEAR(motion_.speed_tolerance(0), quantum() / 0.02, 1e-6);
     for (int i = 0; i < 2000; ++i) {
       turn(0.3, 1);
-      ASSERT_LE(std::abs(motion_.speed(0) - 0.3), motion_.speed_tolerance(0) + kRounding);
-      ASSERT_LE(std::abs(motion_.acceleration(0)), motion_.acceleration_tolerance(0) + kRounding / 0.0004);
+      ASSERT_LE(std::abs(motion_.speed(0) - 0.3), motion_.speed_tolerance(0) + kAngleRounding);
+      ASSERT_LE(std::abs(motion_.acceleration(0)), motion_.acceleration_tolerance(0) + kAngleRounding / 0.0004);
     }
   }
 }
@@ -92,8 +92,8 @@ TEST_F(WheelMotionTest, AnExactEncoderNeedsNoTolerance) {
 TEST_F(WheelMotionTest, SkippedCyclesMakeTheWindowLongerNotTheSpeedWrong) {
   for (int i = 0; i < 50; ++i) step(angle_ += 7 * 3 * kPeriod, 7);
   EXPECT_TRUE(motion_.speed_known());
-  EXPECT_NEAR(motion_.speed(0), 3, kRounding);
-  EXPECT_NEAR(motion_.acceleration(0), 0, kRounding / 0.0004);
+  EXPECT_NEAR(motion_.speed(0), 3, kAngleRounding);
+  EXPECT_NEAR(motion_.acceleration(0), 0, kAngleRounding / 0.0004);
 }
 
 TEST_F(WheelMotionTest, KnowsNothingAfterAGapOfMoreThanTwoWindows) {
@@ -113,7 +113,7 @@ TEST_F(WheelMotionTest, ASampleThatIsMissingOrNotFiniteIsNone) {
   EXPECT_FALSE(motion_.sampled());
   sensors_.valid = kValidJoints;
   turn(3, 1);
-  EXPECT_NEAR(motion_.speed(0), 3, kRounding);
+  EXPECT_NEAR(motion_.speed(0), 3, kAngleRounding);
 }
 
 // Standstill.

@@ -14,8 +14,6 @@ namespace {
 
 using ::testing::IsSupersetOf;
 
-const std::vector<std::string> kJoints{"left_wheel_joint", "right_wheel_joint"};
-
 std::vector<std::string> names_of(const std::vector<Column>& columns) {
   std::vector<std::string> names;
   for (const Column& column : columns) names.push_back(column.name);

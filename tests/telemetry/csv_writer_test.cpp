@@ -22,8 +22,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kJoints{"left_wheel_joint", "right_wheel_joint"};
-
 class Csv : public ::testing::Test {
  protected:
   Csv() {

@@ -1,9 +1,14 @@
 #pragma once
 /// Rows as four healthy nodes would write them.
 
+#include <string>
+#include <vector>
+
 #include "signals/trace.h"
 
 namespace robot_control {
+
+inline const std::vector<std::string> kJoints{"left_wheel_joint", "right_wheel_joint"};
 
 /// Run starts lie far apart, so that stamps order runs as a driver's do.
 inline FrameHead head_at(std::uint64_t run, std::uint64_t cycle) {

@@ -1,0 +1,15 @@
+#pragma once
+/// Variables of the process's environment.
+
+#include <cstdlib>
+#include <string>
+
+namespace robot_control {
+
+/// "" where it is not set.
+inline std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+}  // namespace robot_control
