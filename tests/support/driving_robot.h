@@ -43,11 +43,13 @@ class DrivingRobot {
     nodes_.start_loop();
   }
 
-  /// The users' parameters, but for an acceleration that a test has time for: what motors of 2 · 3.5 N·m on wheels of
-  /// 0.1 m give 12 kg is 5.8 m/s².
+  /// The users' parameters, but for accelerations that a test has time for: what motors of 2 · 3.5 N·m on wheels of
+  /// 0.1 m give 12 kg is 5.8 m/s²; brakes of 2 · 2.2 N·m, 3.7 m/s². What is believed of brakes on ice would make every
+  /// reset wait for 2 s.
   static Parameters quick(const std::string& params) {
     Parameters parameters = read_parameters(params);
     parameters.controller.max_linear_acceleration = 5.0;
+    parameters.safety.stop_deceleration = 2.5;
     return parameters;
   }
 
