@@ -1,14 +1,17 @@
 """The odometry on three simulated robots, held to its promises; `scripts/bench odometry` tries fifty.
 
 A promise that fifty robots keep is asserted as promised. What three cannot tell is looser, and why stands beside it:
-LOOSER holds the factor by which a figure may miss its bound. A promise that fifty robots do not keep is in MISSED: the
-figure of these three, which are the same in every build, may become worse by a quarter to a third, no more; the
-benchmark's table and its exit code go on saying that it is missed.
+LOOSER holds the factor by which a figure may miss its bound. What fifty robots miss, or
+three that are the same in every build, is in MISSED: their figure may become worse by a quarter, no more; the
+benchmark's table and its exit code go on saying what is missed.
 """
 
+import numpy as np
 import pytest
 from robot_control.odometry_bench import all_runs
-from robot_control.odometry_promises import all_promises
+from robot_control.odometry_judge import run
+from robot_control.odometry_ours import OURS
+from robot_control.odometry_promises import CALIBRATED, all_promises
 from robot_control.odometry_scenarios import SCENARIOS
 from robot_control.odometry_table import table
 
@@ -22,6 +25,8 @@ LOOSER = {
     "random drive, yaw, mean": 1.5,
     "slip, 5 × better than wheels": 1.25,  # two of three
     "false alarms, kerb": 2,  # of three robots; they come in bursts of a second after a bump
+    "false alarms, slip": 1.25,  # 2.96 with fifty, 3.4 here
+    "slip, mean NEES of the pose": 2,  # 4.5 with fifty; here 18 samples, of which one slide makes half
     # The middle one of three |errors|, over that of another method: a lucky draw of either is a factor of 2, of the
     # heading, in which both are often a few hundredths of a degree, of 4.
     **{f"{scenario}, position over simple part's": 2 for scenario in SCENARIOS},
@@ -33,16 +38,15 @@ UNTOLD = {  # by one run
     "waves, position over simple part's",
     "waves, yaw over simple part's",
 }
-MISSED = {  # and, by robots that are none of these: UMBmark's worst, 46 of 40 mm; slip, worst over wheels, 1.74 of 1.1
-    # Promised at 90 % of the times; 0 % with fifty: the covariance is too large, NEES 1.9 (ideal 3). Here 40 %.
-    "NEES of the pose in its band": 30,
-    # Promised at 90 %; 60 % with fifty, below the band in the rest: mean 1.5 (ideal 2). Here 90 %.
-    "NEES of the twist in its band": 69,
-    # At most 10; 34 with fifty, 8.8 without two of them. Here 415: one sample of 18, of the run that is worst of all.
-    "slip, mean NEES of the pose": 540,
-    # At most 1.1; 1.24 with fifty. Here 1.35.
-    "slope, yaw over simple part's": 1.75,
+MISSED = {
+    # Promised at 90 % of the times; 88.3 % with fifty, on either side of the band. Here 92 %.
+    "NEES of the twist in its band": 75,
+    # Kept with fifty, 90 %. Three robots share their luck of 60 times in a row: here 73 %.
+    "NEES of the pose in its band": 55,
 }
+# Robots whose estimate once was lost: tilt and bias pried apart by a body that rocked, calibration pulled off before a
+# slide was found, gravity learned amid a slide, a window that for ever was too large to teach.
+LOST_ONCE = [("standstill", 18), ("slip", 2), ("slip", 28), ("slip", 31), ("slope", 3)]
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +68,19 @@ def test_the_odometry_keeps_its_promises_and_what_is_missed_becomes_no_worse(run
         if not kept:
             broken.append(f"{promise}; here {bound:.4g}")
     assert not broken
+
+
+@pytest.mark.parametrize(("scenario", "seed"), LOST_ONCE)
+def test_robots_that_were_lost_once_know_where_they_are(scenario, seed):
+    outcome = run(scenario, seed)
+    yaw = np.rad2deg(outcome.yaw[OURS])
+    assert yaw < 1, f"{yaw} °"
+    if scenario == "slip":
+        assert outcome.position[OURS] < 0.4 * outcome.position[CALIBRATED]
+        assert np.nanmean(outcome.pose_nees) < 40
+    else:
+        assert outcome.notice.alarms == 0
+        assert outcome.position[OURS] < 0.01 * outcome.distance + 0.001
 
 
 def test_no_run_was_stopped_and_the_state_was_always_valid(runs):
