@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.patches import Ellipse
 
 from robot_control.offline_estimator import FLAGS, Estimate
+from robot_control.picture_style import STYLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,19 +28,6 @@ ELLIPSES = 14
 NINETY_FIVE = 2.4477
 """standard deviations of a circle that holds 95 % of a two-dimensional normal distribution: √(−2 ln 0.05)"""
 DEGREES = 180 / np.pi
-STYLE = {
-    "font.size": 11,
-    "axes.titlesize": 12,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e3e3e3",
-    "axes.axisbelow": True,
-    "legend.frameon": False,
-    "savefig.dpi": 110,
-}
 
 
 class Picture:

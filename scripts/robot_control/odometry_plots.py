@@ -17,7 +17,7 @@ from robot_control.odometry_judge import SAMPLE, Run
 from robot_control.odometry_ours import OURS
 from robot_control.odometry_picture import Picture
 from robot_control.odometry_promises import CALIBRATED, RAW, SIMPLE, mean_nees, of
-from robot_control.run_picture import STYLE
+from robot_control.picture_style import STYLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from robot_control.run_log import Log, joint_names
+from robot_control.picture_style import STYLE
 from robot_control.run_summary import RunSummary
 from robot_control.tracking import CYCLE_TOLERANCE, commanded_path
 
@@ -20,19 +21,6 @@ if TYPE_CHECKING:
 
 COMMANDED, TRUE, ESTIMATED = "#9a9a9a", "#1f5fa8", "#e07b00"
 JOINTS = ("#1f5fa8", "#c0392b", "#2e8b57", "#7d3c98")
-STYLE = {
-    "font.size": 11,
-    "axes.titlesize": 12,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e3e3e3",
-    "axes.axisbelow": True,
-    "legend.frameon": False,
-    "savefig.dpi": 110,
-}
 
 
 def draw_run(log: Log, summary: RunSummary, title: str, path: Path) -> None:
