@@ -11,8 +11,8 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from robot_control.run_log import Log, joint_names
 from robot_control.picture_style import STYLE
+from robot_control.run_log import Log, joint_names
 from robot_control.run_summary import RunSummary
 from robot_control.tracking import CYCLE_TOLERANCE, commanded_path
 
