@@ -136,7 +136,7 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
     place(*pose_pending_, filter_);
     held_ = {};
     pose_pending_.reset();
-    slip_.begin(filter_);
+    slip_.renew(filter_);
   }
 }
 

@@ -41,6 +41,10 @@ void SlipWatch::reset() noexcept {
 
 void SlipWatch::begin(const Filter& filter) noexcept {
   reset();
+  renew(filter);
+}
+
+void SlipWatch::renew(const Filter& filter) noexcept {
   for (Window& window : windows_) open(window, filter);
 }
 

@@ -57,6 +57,7 @@ class SlipWatch {
 
   void reset() noexcept;                                ///< all contacts are believed
   void begin(const ErrorStateFilter& filter) noexcept;  ///< the same, and windows begin anew
+  void renew(const ErrorStateFilter& filter) noexcept;  ///< windows begin anew; what is doubted stays so
 
   /// After the filter's prediction and corrections of this cycle. Takes back corrections from the filter where a
   /// contact is found to slip.

@@ -153,7 +153,7 @@ using Wheels = WheelCalibration;
 constexpr auto kStateEstimator = std::to_array<Key>({
     {"wheel_slip_noise", in<&P::estimator, &EstimatorParameters::wheel_slip_noise>, "m/√m", 1.0e-6, 1},
     {"gyro_noise", in<&P::estimator, &EstimatorParameters::gyro_noise>, "rad/s/√Hz", 1.0e-9, 1},
-    {"standstill_speed", in<&P::estimator, &EstimatorParameters::standstill_speed>, "rad/s", 0, 1},
+    {"standstill_speed", in<&P::estimator, &EstimatorParameters::standstill_speed>, "rad/s", 1.0e-6, 1},
     {"standstill_time", in<&P::estimator, &EstimatorParameters::standstill_time>, "s", 0.01, 60},
     {"standstill_acceleration", in<&P::estimator, &EstimatorParameters::standstill_acceleration>, "m/s²", 0.001, 10},
     {"encoder_noise", in<&P::estimator, &EstimatorParameters::encoder_noise>, "rad", 1.0e-6, 1},

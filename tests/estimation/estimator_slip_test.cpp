@@ -135,6 +135,20 @@ TEST_F(EstimatorSlipTest, TheVelocityAfterDetectionIsTheInertialOne) {
 }
 
 // However long it spun.
+// The pose moves, the wheels go on spinning.
+TEST_F(EstimatorSlipTest, IsNotForgottenWhereThePoseIsSet) {
+  robot_.tread = {1.0, 1.0};
+  drive(0.5, 0, 500);
+  ASSERT_TRUE(has(kStateSlip));
+  const double forward = speed();
+  estimator_.set_pose({3, 2, 1});
+  for (int i = 0; i < 50; ++i) {
+    drive(0.5, 0, 1);
+    ASSERT_TRUE(says(kSlipLeft | kSlipRight)) << i;
+  }
+  EXPECT_NEAR(speed(), forward, 0.05);
+}
+
 TEST_F(EstimatorSlipTest, ADeadlockEnds) {
   robot_.tread[0] = 1.0;
   const int cycles = static_cast<int>(1.5 * SlipWatch::kDeadlock / kPeriod);
