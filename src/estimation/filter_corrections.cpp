@@ -14,39 +14,20 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Filter = ErrorStateFilter;
 
-// Considered and not corrected. An uneven floor breaks the vertical contact all the time.
-constexpr int kNotByRolling[] = {Filter::kOrientation,           Filter::kOrientation + 1,
-                                 Filter::kAccelerometerBias,     Filter::kAccelerometerBias + 1,
-                                 Filter::kAccelerometerBias + 2, Filter::kGyroScale};
-constexpr int kNotBySliding[] = {Filter::kOrientation,
-                                 Filter::kOrientation + 1,
-                                 Filter::kGyroBias,
-                                 Filter::kGyroBias + 1,
-                                 Filter::kGyroBias + 2,
-                                 Filter::kAccelerometerBias,
-                                 Filter::kAccelerometerBias + 1,
-                                 Filter::kAccelerometerBias + 2,
-                                 Filter::kRadiusRatio,
-                                 Filter::kWheelBase,
-                                 Filter::kGyroScale};
-constexpr int kNotByTheVertical[] = {Filter::kPosition,
-                                     Filter::kPosition + 1,
-                                     Filter::kPosition + 2,
-                                     Filter::kOrientation,
-                                     Filter::kOrientation + 1,
-                                     Filter::kOrientation + 2,
-                                     Filter::kGyroBias,
-                                     Filter::kGyroBias + 1,
-                                     Filter::kGyroBias + 2,
-                                     Filter::kAccelerometerBias,
-                                     Filter::kAccelerometerBias + 1,
-                                     Filter::kAccelerometerBias + 2,
-                                     Filter::kRadiusRatio,
-                                     Filter::kWheelBase,
-                                     Filter::kGyroScale};
-constexpr int kNotByAWindow[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosition + 2,
-                                 Filter::kOrientation + 2};
-constexpr int kNotAtRest[] = {Filter::kOrientation + 2};
+// What a correction considers and does not correct: parts of one list. An uneven floor breaks the vertical contact all
+// the time.
+constexpr int kStill[] = {Filter::kPosition, Filter::kPosition + 1, Filter::kPosition + 2, Filter::kOrientation + 2,
+                          // from here on, by wheels that slide
+                          Filter::kOrientation, Filter::kOrientation + 1, Filter::kAccelerometerBias,
+                          Filter::kAccelerometerBias + 1, Filter::kAccelerometerBias + 2, Filter::kGyroScale,
+                          // to here, by wheels that roll
+                          Filter::kGyroBias, Filter::kGyroBias + 1, Filter::kGyroBias + 2, Filter::kRadiusRatio,
+                          Filter::kWheelBase};
+constexpr std::span<const int> kNotByTheVertical = kStill;
+constexpr std::span<const int> kNotBySliding = kNotByTheVertical.subspan(4);
+constexpr std::span<const int> kNotByRolling = kNotBySliding.first(6);
+constexpr std::span<const int> kNotByAWindow = kNotByTheVertical.first(4);
+constexpr std::span<const int> kNotAtRest = kNotByAWindow.last(1);
 
 constexpr double kHuber = 1.5;          // σ: 96 % efficient where the noise is normal
 constexpr double kTravelSlack = 0.002;  // m: a reading that is less wrong is no outlier; sliding, the slip watch sees
@@ -103,9 +84,8 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_rolling(const Column& ph,
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_travel(int side, double measured, Scope scope) noexcept {
   const Column ph = covariance.col(kTravel + side);
-  return correct_rolling(
-      ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder), square(kTravelSlack),
-      scope == Scope::kAll ? std::span<const int>(kNotByRolling) : std::span<const int>(kNotBySliding));
+  return correct_rolling(ph, measured - travel[side], ph[kTravel + side] + square(noise_.encoder), square(kTravelSlack),
+                         scope == Scope::kAll ? kNotByRolling : kNotBySliding);
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexcept {
@@ -148,7 +128,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_gyro_at_rest(int axis, do
                                                                     Rest rest) noexcept {
   const Column ph = covariance.col(kGyroBias + axis);
   return learn(ph, mean - gyro_bias[axis], ph[kGyroBias + axis] + variance,
-               rest == Rest::kBegins ? std::span<const int>() : std::span<const int>(kNotAtRest));
+               rest == Rest::kBegins ? std::span<const int>() : kNotAtRest);
 }
 
 ErrorStateFilter::Innovation ErrorStateFilter::correct_accelerometer_at_rest(int axis, double mean,
