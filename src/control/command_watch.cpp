@@ -21,12 +21,6 @@ std::uint64_t cycles_left(double timeout, std::int64_t age_ns, double period) no
   return static_cast<std::uint64_t>(std::max(0.0, std::floor(left / period + kMargin)));
 }
 
-bool finite(const Twist& twist) noexcept {
-  const auto is_finite = [](double value) { return std::isfinite(value); };
-  return std::all_of(twist.linear.begin(), twist.linear.end(), is_finite) &&
-         std::all_of(twist.angular.begin(), twist.angular.end(), is_finite);
-}
-
 }  // namespace
 
 CommandWatch::CommandWatch(double timeout, double period) : timeout_(timeout), period_(period) {

@@ -12,10 +12,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Filter = ErrorStateFilter;
 
-bool finite(const Vector3& vector) noexcept {
-  return std::isfinite(vector[0]) && std::isfinite(vector[1]) && std::isfinite(vector[2]);
-}
-
 }  // namespace
 
 void place(const Vector3& pose, ErrorStateFilter& filter) noexcept {

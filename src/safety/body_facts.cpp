@@ -22,10 +22,6 @@ Eigen::Vector3d imu_from_axles(const RobotModel& robot) {
   return Vector(robot.imu_in_base.position.data()) - middle;
 }
 
-bool all_finite(const Vector3& axes) noexcept {
-  return std::isfinite(axes[0]) && std::isfinite(axes[1]) && std::isfinite(axes[2]);
-}
-
 }  // namespace
 
 BodyFacts::BodyFacts(const SafetyParameters& parameters, const RobotModel& robot, double period)
@@ -68,7 +64,7 @@ void BodyFacts::enter_run() noexcept {
 
 bool BodyFacts::sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
                        Eigen::Vector3d& base) const noexcept {
-  if ((sensors.valid & validity) == 0 || !all_finite(axes)) return false;
+  if ((sensors.valid & validity) == 0 || !finite(axes)) return false;
   base = to_base_ * Vector(axes.data());
   return true;
 }

@@ -6,14 +6,6 @@
 namespace robot_control {
 namespace {
 
-bool finite(const Vector3& vector) noexcept {
-  return std::isfinite(vector[0]) && std::isfinite(vector[1]) && std::isfinite(vector[2]);
-}
-
-bool finite(const Twist& twist) noexcept {
-  return finite(twist.linear) && finite(twist.angular);
-}
-
 bool finite(const JointSample& joint) noexcept {
   return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.effort);
 }

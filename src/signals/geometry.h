@@ -2,12 +2,17 @@
 /// Plain geometric values; no algebra here (that is Eigen's, inside the laws).
 
 #include <array>
+#include <cmath>
 
 namespace robot_control {
 
 using Vector3 = std::array<double, 3>;     ///< x, y, z
 using Quaternion = std::array<double, 4>;  ///< x, y, z, w (the order of geometry_msgs); unit norm
 using Matrix6 = std::array<double, 36>;    ///< row-major over x, y, z, roll, pitch, yaw
+
+inline bool finite(const Vector3& vector) noexcept {
+  return std::isfinite(vector[0]) && std::isfinite(vector[1]) && std::isfinite(vector[2]);
+}
 
 struct Pose {
   Vector3 position{};                  ///< m
@@ -18,5 +23,9 @@ struct Twist {
   Vector3 linear{};   ///< m/s
   Vector3 angular{};  ///< rad/s
 };
+
+inline bool finite(const Twist& twist) noexcept {
+  return finite(twist.linear) && finite(twist.angular);
+}
 
 }  // namespace robot_control
