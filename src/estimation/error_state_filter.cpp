@@ -1,3 +1,5 @@
+// The nominal state and how it is predicted.
+
 #include "estimation/error_state_filter.h"
 
 #include <algorithm>

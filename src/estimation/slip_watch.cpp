@@ -19,10 +19,10 @@ constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
 constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
 constexpr int kTurning[4] = {Filter::kGyroBias + 2, Filter::kRadiusRatio, Filter::kWheelBase, Filter::kGyroScale};
 constexpr double kSigmas = 4;
-constexpr double kDoubt = 3;        // deviations of the window's end speed: it was a slide that made the window
-constexpr double kYoungest = 0.04;  // s
-constexpr double kShaken = 0.4;
-constexpr double kEase = 0.3;
+constexpr double kDoubt = 3;          // deviations of the window's end speed: it was a slide that made the window
+constexpr double kYoungest = 0.04;    // s
+constexpr double kShaken = 0.4;       // share of its limit from which a residual shakes the belief in a contact
+constexpr double kEase = 0.3;         // share of its limit up to which there is no caution
 constexpr std::size_t kLearning = 2;  // index of the window that bias and tilt learn from
 constexpr double kSame = 0.3;         // part of the acceleration by which two of them differ at most
 

@@ -200,6 +200,18 @@ TEST_F(FilterUpdate, AWheelInDoubtCorrectsMotionAlone) {
   }
 }
 
+// An uneven floor breaks this contact all the time: position, orientation and what is learned stay.
+TEST_F(FilterUpdate, TheVerticalContactCorrectsVelocityAndTravelAlone) {
+  filter_.predict(motion_at(cycle_));
+  filter_.velocity.z() += 1e-3;
+  ASSERT_TRUE(filter_.correct_vertical(kPeriod).used);
+  EXPECT_NE(filter_.corrections()[Filter::kVelocity + 2], 0);
+  for (int i = 0; i < Filter::kSize; ++i) {
+    if (i >= Filter::kVelocity && i <= Filter::kTravel + 1) continue;
+    EXPECT_EQ(filter_.corrections()[i], 0) << i;
+  }
+}
+
 // At rest the tilt is learned about base_link: the IMU moves on its lever, base_link does not.
 TEST_F(FilterUpdate, WhatIsLearnedAtRestLeavesTheBaseWhereItIs) {
   const auto base = [&] { return Vector3d(filter_.position - filter_.rotation * kGeometry.imu_in_base); };
