@@ -34,6 +34,7 @@ void ErrorStateFilter::reset() noexcept {
   rate.setZero();
   smooth_rate = slow_rate = 0;
   radius_ratio = wheel_base = gyro_scale = 0;
+  force.setZero();
   corrections_.setZero();
   covariance.setZero();
   const auto prior = [&](int index, double deviation) { covariance(index, index) = square(deviation); };
@@ -48,6 +49,14 @@ void ErrorStateFilter::reset() noexcept {
 
 double ErrorStateFilter::lever(int side) const noexcept {
   return geometry_.middle_y + (side == 0 ? 0.5 : -0.5) * geometry_.wheel_base * (1 + wheel_base);
+}
+
+double ErrorStateFilter::creep_along(double speed) const noexcept {
+  return geometry_.creep * std::abs(speed) * force.x();
+}
+
+double ErrorStateFilter::creep_across() const noexcept {
+  return -geometry_.creep * std::abs(velocity.x()) * force.y();
 }
 
 void ErrorStateFilter::predict(const Motion& motion) noexcept {
@@ -71,13 +80,15 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
   }
   smooth_rate += dt / (kSmoothing + dt) * (omega.z() - smooth_rate);
   slow_rate += dt / (kWindUp + dt) * (smooth_rate - slow_rate);
+  force.setZero();
+  if (motion.accelerometer) force = (*motion.accelerometer - accelerometer_bias).head<2>();
   transport(motion, middle, turn, u, omega);
 
   position += dt * (middle * u);
   const double scale[2] = {1 / (1 - radius_ratio / 2), 1 / (1 + radius_ratio / 2)};
   for (const int side : {0, 1}) {
     const double contact = u.x() + omega.y() * geometry_.height - omega.z() * lever(side);
-    travel[side] += dt * scale[side] * contact;
+    travel[side] += dt * scale[side] * (contact + creep_along(contact));
   }
   rotation = rotation * turn;
   orthonormalise(rotation);
@@ -99,7 +110,7 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   const double height = geometry_.height;
   const double base = geometry_.wheel_base * (1 + wheel_base);
   double contact[2];
-  for (const int side : {0, 1}) contact[side] = u.x() - smooth_rate * lever(side);
+  for (const int side : {0, 1}) contact[side] = u.x() - slow_rate * lever(side);
 
   const auto pass = [&](Covariance& p) {
     for (const int i : {0, 1, 2}) {  // position
@@ -116,8 +127,8 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
       if (!gyro) continue;  // the turn is the wheels' own: a wrong ratio turns the robot, and contradicts no encoder
       column += scale[side] * sign * contact[side] * p.col(kRadiusRatio);
       column += scale[side] * (lever(side) * p.col(kGyroBias + 2) - height * p.col(kGyroBias + 1));
-      column -= scale[side] * smooth_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
-      column -= scale[side] * smooth_rate * lever(side) * p.col(kGyroScale);
+      column -= scale[side] * slow_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
+      column -= scale[side] * slow_rate * lever(side) * p.col(kGyroScale);
     }
     if (motion.accelerometer) {  // velocity
       const Column x = p.col(kVelocity);

@@ -18,18 +18,23 @@
 ///
 /// Prediction, with ω = (1 + κ)(gyro − bg) and f = accelerometer − ba, gravity g:
 ///   ṗ = R u      Ṙ = R [ω]×      u̇ = f + Rᵀ g − ω × u
-///   ṡ_left = c_left / (1 − ε/2)     ṡ_right = c_right / (1 + ε/2)     c_i = (u + ω × r_i)_x
+///   ṡ_i = (c_i + χ |c_i| f_x) / (1 ∓ ε/2), left −, right +     c_i = (u + ω × r_i)_x
 /// r_i from the IMU to where wheel i touches the ground: the encoder measures the wheel against the body, so that a
 /// pitching body enters with the height of the contact. Its lateral component is ±(1 + β)/2 of the effective wheel
-/// base. The columns of ε, β and κ take the gyro's rate smoothed over kSmoothing: its noise, in both the column and the
-/// innovation, would bias them (errors in variables; W. Fuller, Measurement Error Models, 1987, section 1.1).
+/// base. A tyre that pulls or holds creeps: its tread slides by χ f per speed, against the specific force f on the
+/// robot, along as across (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3, linear range).
+///
+/// The columns of ε, β and κ take the gyro's rate of a while ago, smoothed over kSmoothing and again over kWindUp: its
+/// noise, in both the column and the innovation, would bias them (errors in variables; W. Fuller, Measurement Error
+/// Models, 1987, section 1.1). Smoothed once it took β off by 0.1 in 20 s straight on.
 ///
 /// Measurements, one scalar after another (Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to
 /// Tracking and Navigation, 2001, sections 5.4 and 10.2: gate and normalised innovation squared):
 ///   encoder angles         s_i = travel measured: angles, so that a count is an error once, not once per cycle
-///   contact                (u + ω × r_c)_y = 0, (u + ω × r_c)_z = 0 at the middle c of the contacts (non-holonomic
-///                          constraint; G. Dissanayake et al., The aiding of a low-cost strapdown inertial measurement
-///                          unit using vehicle model constraints, IEEE T-RA 17(5), 2001, section III)
+///   contact                (u + ω × r_c)_y = −χ |u_x| f_y, (u + ω × r_c)_z = 0 at the middle c of the contacts
+///                          (non-holonomic constraint; G. Dissanayake et al., The aiding of a low-cost strapdown
+///                          inertial measurement unit using vehicle model constraints, IEEE T-RA 17(5), 2001,
+///                          section III)
 ///   standstill             gyro = bg; accelerometer = ba − Rᵀ g (zero rotation and zero velocity; P. D. Groves,
 ///                          Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2013, 15.3)
 ///   rolling                acceleration = accelerometer − ba + Rᵀ g, over a window in which everything rolled
@@ -38,8 +43,8 @@
 /// alone. What is learned at rest leaves base_link where it is. Encoders and contact pull no harder than Huber's bound.
 ///
 /// A tyre winds up before it rolls, 0.4 mm by 20 N at 50 kN/m, and on wheels 0.5 m apart 1.6 mrad: noise of the wheels'
-/// turn where its rate changes. On a slope tyres creep under load: beyond what the tilt is known to (3 σ), each wheel's
-/// travel gets slope_creep times the slope as noise.
+/// turn where its rate changes. On a slope χ matters, and no two tyres have the same: beyond what the tilt is known to
+/// (3 σ), each wheel's travel gets slope_creep times the slope as noise.
 ///
 /// Without a gyro sample the robot turns as the calibrated wheels do, and level; without an accelerometer sample its
 /// velocity is carried on, with an acceleration of kUnknownAcceleration as noise.
@@ -58,6 +63,7 @@ struct ContactGeometry {
   double middle_x = 0;                   ///< m, middle of the axles
   double height = 0;                     ///< m, of the contacts; below the IMU negative
   Eigen::Vector3d imu_in_base{0, 0, 0};  ///< m
+  double creep = 0;                      ///< s²/m, χ of the tyres
 };
 
 /// White noises are densities, walks per √s; deviations are standard deviations.
@@ -66,11 +72,11 @@ struct FilterNoise {
   double gyro_bias_walk = 1e-5;           ///< rad/s/√s
   double accelerometer = 2e-3;            ///< m/s²/√Hz
   double accelerometer_bias_walk = 1e-4;  ///< m/s²/√s
-  double wheel_slip = 3e-4;               ///< m/√m of each side's travel, of either wheel alone
-  double common_slip = 1e-4;              ///< m/√m, of both together; up to kCautious times that near sliding
+  double wheel_slip = 8e-5;               ///< m/√m of each side's travel, of either wheel alone
+  double common_slip = 5e-5;              ///< m/√m, of both together; up to kCautious times that near sliding
   double encoder = 4.4e-5;                ///< m, of one reading
   double turn_slip = 5e-4;                ///< rad/√rad, of the wheels' turn: a contact patch twists before it turns
-  double slope_creep = 0.2;               ///< m/√m per sine of the slope, of either wheel alone
+  double slope_creep = 0.01;              ///< m/√m per sine of the slope, of either wheel alone
   double wind_up = 1.6e-3;                ///< rad/√(rad/s), of the wheels' turn where its rate changes
   double radius_ratio_walk = 3e-6;        ///< 1/√m
   double wheel_base_walk = 2e-5;          ///< 1/√m: load and floor change how a tyre turns
@@ -154,6 +160,8 @@ class ErrorStateFilter {
 
   /// The robot stands: the velocity is zero, known to `deviation` m/s.
   void stand(double deviation) noexcept;
+  /// The wheels stand, the body turns about their contacts by `turning` rad/s, base axes: that is the velocity.
+  void rock(const Eigen::Vector3d& turning) noexcept;
   /// The robot has come to rest: the velocity is measured to be zero, which tells where it went wrong on the way.
   void halt(double deviation) noexcept;
   /// Biases walk for `dt` s while nothing is predicted.
@@ -189,10 +197,15 @@ class ErrorStateFilter {
   Eigen::Vector3d rate{0, 0, 0};  ///< rad/s, bias-free, of the last prediction
   double smooth_rate = 0;         ///< rad/s, about the base's z axis, over kSmoothing
   double slow_rate = 0;           ///< rad/s, smooth_rate over kWindUp
+  Eigen::Vector2d force{0, 0};    ///< m/s², f along and across, of the last prediction; without accelerometer 0
 
   const ContactGeometry& geometry() const noexcept { return geometry_; }
   const FilterNoise& noise() const noexcept { return noise_; }
   double lever(int side) const noexcept;  ///< m, lateral, of the contact from the IMU
+  /// m/s: by how much a wheel is faster than its contact, which has `speed` m/s.
+  double creep_along(double speed) const noexcept;
+  /// m/s: by how much the contacts drift to the left.
+  double creep_across() const noexcept;
 
  private:
   Innovation correct(const Column& ph, double innovation, double variance, std::span<const int> considered) noexcept;

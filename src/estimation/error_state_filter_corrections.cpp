@@ -91,7 +91,7 @@ ErrorStateFilter::Innovation ErrorStateFilter::correct_travel(int side, double m
 ErrorStateFilter::Innovation ErrorStateFilter::correct_lateral(double dt) noexcept {
   const double x = geometry_.middle_x;
   const double z = geometry_.height;
-  const double speed = velocity.y() + rate.z() * x - rate.x() * z;
+  const double speed = velocity.y() + rate.z() * x - rate.x() * z - creep_across();
   const Column ph = covariance.col(kVelocity + 1) - x * covariance.col(kGyroBias + 2) + z * covariance.col(kGyroBias);
   const double own = ph[kVelocity + 1] - x * ph[kGyroBias + 2] + z * ph[kGyroBias];
   const double noise = square(noise_.lateral) / dt + square(noise_.gyro) / dt * (x * x + z * z);
@@ -146,9 +146,14 @@ void ErrorStateFilter::stand(double deviation) noexcept {
   velocity.setZero();
   rate.setZero();
   smooth_rate = slow_rate = 0;
+  force.setZero();
   covariance.middleCols<3>(kVelocity).setZero();
   covariance.middleRows<3>(kVelocity).setZero();
   for (const int i : {0, 1, 2}) covariance(kVelocity + i, kVelocity + i) = square(deviation);
+}
+
+void ErrorStateFilter::rock(const Vector3d& turning) noexcept {
+  velocity = -turning.cross(Vector3d(geometry_.middle_x, geometry_.middle_y, geometry_.height));
 }
 
 void ErrorStateFilter::halt(double deviation) noexcept {

@@ -30,6 +30,7 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
   }
   for (const WheelModel& wheel : robot.wheels) positive(wheel.radius, "radius of a wheel must be > 0 m");
   no_less(parameters.wheel_slip_noise, "wheel_slip_noise must be >= 0 m/√m");
+  no_less(parameters.tyre_creep, "tyre_creep must be >= 0 s²/m");
   positive(parameters.encoder_noise, "encoder_noise must be > 0 rad");
   positive(parameters.gyro_noise, "gyro_noise must be > 0 rad/s/√Hz");
   positive(parameters.accelerometer_noise, "accelerometer_noise must be > 0 m/s²/√Hz");
@@ -47,13 +48,14 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
   return parameters;
 }
 
-ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot) {
+ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot, double creep) {
   const Vector3& imu = robot.imu_in_base.position;
   return {.wheel_base = wheels.wheel_base,
           .middle_y = wheels.axle_y - imu[1],
           .middle_x = wheels.axle_x - imu[0],
           .height = wheels.ground - imu[2],
-          .imu_in_base = algebra::vector(imu)};
+          .imu_in_base = algebra::vector(imu),
+          .creep = creep};
 }
 
 FilterNoise filter_noise(const EstimatorParameters& parameters, const RobotModel& robot) {

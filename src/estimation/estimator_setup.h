@@ -13,7 +13,7 @@ namespace robot_control {
 /// orientation of the IMU that is no rotation.
 const EstimatorParameters& checked(const EstimatorParameters& parameters, const RobotModel& robot, double period);
 
-ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot);
+ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot, double creep);
 FilterNoise filter_noise(const EstimatorParameters& parameters, const RobotModel& robot);
 
 /// Without self_calibration ratio and wheel base are known for ever.

@@ -46,7 +46,7 @@ class SlipWatch {
   static constexpr double kAgreeSpeed = 0.02;         ///< m/s
   static constexpr double kCalm = 1.0;                ///< s
   static constexpr double kDeadlock = 10.0;           ///< s
-  static constexpr double kRoughness = 0.1;           ///< m/s², of a window's mean: floor and tyres go on shaking it
+  static constexpr double kRoughness = 0.05;          ///< m/s², of a window's mean: floor and tyres go on shaking it
   static constexpr std::uint64_t kSteady = 5;         ///< windows
 
   struct Sample {

@@ -152,6 +152,7 @@ Field in_wheels(Parameters& parameters) {
 using Wheels = WheelCalibration;
 constexpr auto kStateEstimator = std::to_array<Key>({
     {"wheel_slip_noise", in<&P::estimator, &EstimatorParameters::wheel_slip_noise>, "m/√m", 1.0e-6, 1},
+    {"tyre_creep", in<&P::estimator, &EstimatorParameters::tyre_creep>, "s²/m", 0, 0.05},
     {"gyro_noise", in<&P::estimator, &EstimatorParameters::gyro_noise>, "rad/s/√Hz", 1.0e-9, 1},
     {"standstill_speed", in<&P::estimator, &EstimatorParameters::standstill_speed>, "rad/s", 1.0e-6, 1},
     {"standstill_time", in<&P::estimator, &EstimatorParameters::standstill_time>, "s", 0.01, 60},

@@ -64,7 +64,7 @@ TEST_F(EstimatorFaultsTest, EncodersThatComeBackBringTheWholeTravel) {
 }
 
 TEST_F(EstimatorFaultsTest, NoEncoderEverIsNoValidState) {
-  Estimator estimator(EstimatorParameters{}, two_wheeler(), kPeriod);
+  Estimator estimator(rigid_tyres(), two_wheeler(), kPeriod);
   RollingRobot robot;
   robot.frame().joint_count = 0;
   for (int i = 0; i < 100; ++i) {

@@ -10,7 +10,7 @@ namespace {
 
 /// Ten seconds of standing and driving. `biased`: constant errors in base axes, wherever the IMU sits.
 StateFrame drive_with(const RobotModel& model, RollingRobot& robot) {
-  Estimator estimator(EstimatorParameters{}, model, kPeriod);
+  Estimator estimator(rigid_tyres(), model, kPeriod);
   StateFrame state;
   for (int i = 0; i < 10000; ++i) {
     robot.drive(i < 2000 ? 0 : 0.5, i < 2000 ? 0 : 0.6 * std::sin(i * 1e-3));
@@ -78,8 +78,8 @@ TEST(EstimatorMounting, AnyPlaceFindsTheTruth) {
 TEST(EstimatorRates, BothStepsAgree) {
   RollingRobot robot;
   robot.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
-  Estimator by_cycle(EstimatorParameters{}, two_wheeler(), kPeriod);
-  Estimator by_time(EstimatorParameters{}, two_wheeler(), kPeriod);
+  Estimator by_cycle(rigid_tyres(), two_wheeler(), kPeriod);
+  Estimator by_time(rigid_tyres(), two_wheeler(), kPeriod);
   StateFrame one;
   StateFrame two;
   for (int i = 0; i < 5000; ++i) {
@@ -102,7 +102,7 @@ class EstimatorRatesTest : public testing::TestWithParam<Rates> {};
 // less than α/(8 f²) rad per sample, which is nothing; a late gyro sample turns the robot late by one gap.
 TEST_P(EstimatorRatesTest, FindTheTruth) {
   RollingRobot robot;
-  Estimator estimator(EstimatorParameters{}, two_wheeler(), kPeriod);
+  Estimator estimator(rigid_tyres(), two_wheeler(), kPeriod);
   StateFrame state;
   int flagged = 0;
   double since = 0;

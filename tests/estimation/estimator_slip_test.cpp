@@ -200,7 +200,7 @@ class EstimatorRollingTest : public testing::Test {
     robot.accelerometer_bias = {0.05, -0.05, 0.1};
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> any(-1, 1);
-    Estimator estimator(EstimatorParameters{}, model, kPeriod);
+    Estimator estimator(rigid_tyres(), model, kPeriod);
     StateFrame state;
     double linear = 0;
     double angular = 0;

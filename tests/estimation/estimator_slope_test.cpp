@@ -32,7 +32,7 @@ class EstimatorSlopeTest : public testing::TestWithParam<bool> {
     estimator.step(robot.frame(), state_);
   }
   RobotModel model_ = two_wheeler();
-  EstimatorParameters parameters_;
+  EstimatorParameters parameters_ = rigid_tyres();
   StateFrame state_;
 };
 

@@ -143,7 +143,7 @@ TEST_P(TransitionJacobian, IsThatOfTheNominalState) {
     // The columns of ε, β and κ take the smoothed rate, as it is in a steady turn.
     Filter turned = filter;
     turned.predict(motion);
-    filter.smooth_rate = turned.rate.z();
+    filter.smooth_rate = filter.slow_rate = turned.rate.z();
     const Filter::Covariance identity = Filter::Covariance::Identity();
     const Filter::Covariance expected = differences(filter, motion) - identity;
     const Filter::Covariance f = transition(filter, motion) - identity;

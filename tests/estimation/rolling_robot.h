@@ -18,6 +18,7 @@
 #include <optional>
 #include <random>
 
+#include "estimation/estimator_parameters.h"
 #include "estimation/wheel_geometry.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
@@ -51,6 +52,11 @@ inline RobotModel four_wheeler() {
   }
   robot.wheel_base_multiplier = 1.64;
   return robot;
+}
+
+/// For a RollingRobot whose tyres do not creep.
+inline EstimatorParameters rigid_tyres() {
+  return {.tyre_creep = 0};
 }
 
 /// Of the middle between the contacts. Base axes.
@@ -99,7 +105,7 @@ class RollingRobot {
     distance += std::abs((motion.velocity.x() + end.velocity.x()) / 2) * period_;
     const Eigen::Vector3d gained = rotation * of_point(end, imu_) - before * of_point(motion, imu_);
     const Eigen::Vector3d force = middle.transpose() * (gained / period_ + Eigen::Vector3d(0, 0, kGravity));
-    roll(motion, end);
+    roll(motion, end, force.x());
     motion = end;
     ++frame_.head.cycle;
     read_imu(force);
@@ -114,6 +120,7 @@ class RollingRobot {
     end.velocity.x() = towards(motion.velocity.x(), linear, kAcceleration);
     end.rate.z() = towards(motion.rate.z(), angular, kTurnAcceleration);
     end.rate.y() = pitch_rate;
+    end.velocity.y() = -creep * std::abs(end.velocity.x()) * end.velocity.x() * end.rate.z();
     go(end);
   }
 
@@ -131,6 +138,7 @@ class RollingRobot {
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();  ///< m/s², IMU axes
   double radius_ratio = 0;                                       ///< right over left radius, beyond 1
   double wheel_base = 0;                                         ///< effective wheel base over the model's, beyond 1
+  double creep = 0;                                              ///< s²/m, of the tyres, while driven on even ground
   SensorNoise noise;
   std::array<std::optional<double>, 2> tread;  ///< m/s, of a side's treads that do not roll
 
@@ -145,13 +153,14 @@ class RollingRobot {
     return m.velocity + m.rate.cross(point - Eigen::Vector3d(wheels_.axle_x, wheels_.axle_y, wheels_.ground));
   }
 
-  void roll(const Rolling& from, const Rolling& to) {
+  void roll(const Rolling& from, const Rolling& to, double force) {
     const double half = wheels_.wheel_base * (1 + wheel_base) / 2;
     for (const std::size_t side : {0U, 1U}) {
       const double sign = side == 0 ? 1 : -1;
       const Eigen::Vector3d contact{wheels_.axle_x, wheels_.axle_y + sign * half, wheels_.ground};
       const double rolling = (of_point(from, contact).x() + of_point(to, contact).x()) / 2;
-      turn_[side] += period_ * tread[side].value_or(rolling) / (1 - sign * radius_ratio / 2);
+      const double turning = rolling + creep * std::abs(rolling) * force;
+      turn_[side] += period_ * tread[side].value_or(turning) / (1 - sign * radius_ratio / 2);
     }
     for (const WheelModel& wheel : model_.wheels) {
       double angle = wheel.sign * turn_[wheel.side == Side::kLeft ? 0 : 1] / wheel.radius;
