@@ -19,6 +19,7 @@ constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
 constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
 constexpr int kTurning[4] = {Filter::kGyroBias + 2, Filter::kRadiusRatio, Filter::kWheelBase, Filter::kGyroScale};
 constexpr double kSigmas = 4;
+
 constexpr double kDoubt = 3;          // deviations of the window's end speed: it was a slide that made the window
 constexpr double kYoungest = 0.04;    // s
 constexpr double kShaken = 0.4;       // share of its limit from which a residual shakes the belief in a contact
@@ -102,6 +103,9 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
   const auto believed = [](const State& state) { return state.believed; };
   calm_ = std::ranges::all_of(states_, believed) ? calm_ + sample.dt : 0;
   if (calm_ == 0) shaken_ = 0;
+  if (calm_ >= kCalm) {
+    for (State& state : states_) state.unsure = 0;
+  }
 
   since_judged_ += sample.dt;
   if (since_judged_ >= kJudgeEvery) {
@@ -176,9 +180,10 @@ bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
   for (std::size_t c = 0; c < kContacts; ++c) {
     // What shakes the belief in one contact shakes that in the others: two wheels on ice rarely begin together.
     if (!states_[c].believed || !(slides[c] || excess(window, c, filter) > kShaken)) continue;
+    const double unsure = states_[c].unsure;
     states_[c] = {.believed = false, .excess = residual(window, c) / window.age};
     way[static_cast<std::size_t>(kAxis[c])] = residual(whole, c);
-    doubt[static_cast<std::size_t>(kAxis[c])] = kDoubt * std::sqrt(variance(whole, c, filter)) / age;
+    doubt[static_cast<std::size_t>(kAxis[c])] = std::max(kDoubt * std::sqrt(variance(whole, c, filter)) / age, unsure);
   }
   take_back(whole, {doubt[0] > 0, doubt[1] > 0, doubt[2] > 0}, filter);
   for (int axis = 0; axis < 3; ++axis) {
@@ -245,14 +250,16 @@ void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
     if (state.believed) continue;
     const int axis = kAxis[c];
     const double excess = residual(window, c) / window.age;
-    const double known = 3 * std::sqrt(filter.covariance(Filter::kVelocity + axis, Filter::kVelocity + axis));
+    const double deviation = std::sqrt(filter.covariance(Filter::kVelocity + axis, Filter::kVelocity + axis));
+    const double known = 3 * deviation;
     const double speed = window.path[c] / window.age;
     const double cap = std::max(0.05, 0.3 * speed);
     const bool agrees = std::abs(excess) <= kAgreeSpeed + kCreep * speed + std::min(known, cap);
     const bool steady = std::abs(excess - state.excess) <= kAgreeSpeed;
     state.excess = excess;
     state.agreed = agrees && steady ? state.agreed + 1 : 0;
-    if (state.agreed >= (c == kVertical ? kLanded : kAgree) || state.doubted > kDeadlock) state = {};
+    const double enough = c == kVertical ? kLanded : kAgree * std::clamp(deviation / kSure, 1.0, kLonger);
+    if (static_cast<double>(state.agreed) >= enough || state.doubted > kDeadlock) state = {.unsure = deviation};
   }
 }
 
@@ -306,15 +313,15 @@ void SlipWatch::judge(Filter& filter) noexcept {
 void SlipWatch::tell(const Filter& filter) noexcept {
   reasons_ = 0;
   for (const std::size_t c : {kLeft, kRight}) {
-    if (states_[c].believed) continue;
+    if (states_[c].believed || states_[c].agreed >= kTold) continue;
     reasons_ |= c == kLeft ? kSlipLeft : kSlipRight;
     const double forward = filter.velocity.x();
     const bool faster = std::abs(forward + states_[c].excess) > std::abs(forward);
     reasons_ |= faster ? kSlipSpinning : kSlipStalled;
   }
   if (turn_slips_) reasons_ |= kSlipTurn;
-  if (!states_[kLateral].believed) reasons_ |= kSlipSideways;
-  if (!states_[kVertical].believed) reasons_ |= kSlipLifted;
+  if (!states_[kLateral].believed && states_[kLateral].agreed < kTold) reasons_ |= kSlipSideways;
+  if (!states_[kVertical].believed && states_[kVertical].agreed < kLanded) reasons_ |= kSlipLifted;
 }
 
 }  // namespace robot_control

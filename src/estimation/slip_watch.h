@@ -14,7 +14,9 @@
 /// those of 0.3 s and 1 s what happens slowly; two of each length, half of it apart. What the sliding contact has made
 /// of velocity, way and acceleration is taken back from the oldest window that saw it come, and the velocity is
 /// doubted. A contact is believed again when its speed agrees with the filter's for kAgree judgements in a row, or
-/// after kDeadlock seconds.
+/// after kDeadlock seconds. Where the velocity is known less, agreement says less and must last longer, for a wheel that
+/// still slides would take the velocity with it; so it is told to slip for kTold judgements of agreement alone. If it is
+/// doubted again within kCalm, the velocity is known no better than before.
 ///
 /// What the accelerometer's bias and the tilt are together is learned here, from windows of 0.3 s in which everything
 /// rolled, kCalm seconds after the last doubt: a wheel that only begins to slide would else be believed to be a bias. A
@@ -41,7 +43,10 @@ class SlipWatch {
   static constexpr double kLeastAcceleration = 0.02;  ///< m/s², what no inertial sensor on a moving robot knows better
   static constexpr double kSlack = 0.0005;            ///< m
   static constexpr double kJudgeEvery = 0.01;         ///< s
-  static constexpr std::uint64_t kAgree = 4;          ///< judgements
+  static constexpr double kAgree = 4;                 ///< judgements, where the velocity is known to kSure
+  static constexpr double kSure = 0.01;               ///< m/s; where it is known less, as many times longer
+  static constexpr double kLonger = 10;               ///< times at most
+  static constexpr std::uint64_t kTold = 5;           ///< judgements after which a contact is no longer told to slip
   static constexpr std::uint64_t kLanded = 2;         ///< the same, of the vertical: what lands stays on the ground
   static constexpr double kAgreeSpeed = 0.02;         ///< m/s
   static constexpr double kCalm = 1.0;                ///< s
@@ -100,6 +105,7 @@ class SlipWatch {
     std::uint64_t agreed = 0;
     double doubted = 0;  ///< s
     double excess = 0;   ///< m/s, wheel faster than the ground
+    double unsure = 0;   ///< m/s, deviation of the velocity when it was believed again
   };
 
   void open(Window& window, const ErrorStateFilter& filter) const noexcept;
