@@ -12,6 +12,7 @@ namespace {
 
 using namespace algebra;
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kMaxRatio = 0.05;  // wheels of one type differ by less than a tenth of it
@@ -59,6 +60,13 @@ double ErrorStateFilter::creep_across() const noexcept {
   return -geometry_.creep * std::abs(velocity.x()) * force.y();
 }
 
+double ErrorStateFilter::tilt_beyond_doubt() const noexcept {
+  const double tilt = rotation.row(2).head<2>().norm();
+  const double doubt =
+      3 * std::sqrt(covariance(kOrientation, kOrientation) + covariance(kOrientation + 1, kOrientation + 1));
+  return tilt > doubt ? 1 - doubt / tilt : 0;
+}
+
 void ErrorStateFilter::predict(const Motion& motion) noexcept {
   const double dt = motion.dt;
   Vector3d omega{0, 0, 0};
@@ -80,8 +88,12 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
   }
   smooth_rate += dt / (kSmoothing + dt) * (omega.z() - smooth_rate);
   slow_rate += dt / (kWindUp + dt) * (smooth_rate - slow_rate);
+  const Vector2d tilt = rotation.row(2).head<2>();
+  const double known = tilt_beyond_doubt();
   force.setZero();
-  if (motion.accelerometer) force = (*motion.accelerometer - accelerometer_bias).head<2>();
+  if (motion.accelerometer) {
+    force = (*motion.accelerometer - accelerometer_bias).head<2>() - kGravity * (1 - known) * tilt;
+  }
   transport(motion, middle, turn, u, omega);
 
   position += dt * (middle * u);
@@ -187,8 +199,7 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   for (const int i : {0, 1, 2}) p(kVelocity + i, kVelocity + i) += shake;
   age(dt);
   const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) / 2 * dt;
-  const double level = 3 * std::sqrt(p(kOrientation, kOrientation) + p(kOrientation + 1, kOrientation + 1));
-  const double slope = std::max(0.0, rotation.row(2).head<2>().norm() - level);
+  const double slope = tilt_beyond_doubt() * rotation.row(2).head<2>().norm();
   const double slip = square(noise_.wheel_slip) + square(noise_.slope_creep * slope);
   p(kTravel, kTravel) += slip * std::abs(motion.left_speed) * dt;
   p(kTravel + 1, kTravel + 1) += slip * std::abs(motion.right_speed) * dt;

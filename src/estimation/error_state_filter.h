@@ -197,7 +197,8 @@ class ErrorStateFilter {
   Eigen::Vector3d rate{0, 0, 0};  ///< rad/s, bias-free, of the last prediction
   double smooth_rate = 0;         ///< rad/s, about the base's z axis, over kSmoothing
   double slow_rate = 0;           ///< rad/s, smooth_rate over kWindUp
-  Eigen::Vector2d force{0, 0};    ///< m/s², f along and across, of the last prediction; without accelerometer 0
+  Eigen::Vector2d force{0, 0};    ///< m/s², f along and across, of the last prediction, with as much of gravity as is
+                                  ///< beyond doubt; without accelerometer 0
 
   const ContactGeometry& geometry() const noexcept { return geometry_; }
   const FilterNoise& noise() const noexcept { return noise_; }
@@ -213,6 +214,8 @@ class ErrorStateFilter {
   Innovation learn(const Column& ph, double innovation, double variance, std::span<const int> considered) noexcept;
   Innovation correct_rolling(const Column& ph, double innovation, double variance, double slack,
                              std::span<const int> considered) noexcept;
+  /// Part of the tilt that is beyond 3 of its deviations, 0 … 1.
+  double tilt_beyond_doubt() const noexcept;
   void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Matrix3d& turn,
                  const Eigen::Vector3d& u, const Eigen::Vector3d& omega) noexcept;
 

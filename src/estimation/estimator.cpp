@@ -28,7 +28,8 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
       period_(period),
       geometry_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
-      filter_(contact_geometry(geometry_, robot, parameters.tyre_creep), filter_noise(parameters, robot), filter_prior(parameters)),
+      filter_(contact_geometry(geometry_, robot, parameters.tyre_creep), filter_noise(parameters, robot),
+              filter_prior(parameters)),
       standstill_(standstill_limits(parameters, robot)),
       sides_{Side{SideEncoder(robot, robot_control::Side::kLeft), SpeedTracker(parameters.speed_bandwidth, period)},
              Side{SideEncoder(robot, robot_control::Side::kRight), SpeedTracker(parameters.speed_bandwidth, period)}} {

@@ -14,9 +14,9 @@
 /// those of 0.3 s and 1 s what happens slowly; two of each length, half of it apart. What the sliding contact has made
 /// of velocity, way and acceleration is taken back from the oldest window that saw it come, and the velocity is
 /// doubted. A contact is believed again when its speed agrees with the filter's for kAgree judgements in a row, or
-/// after kDeadlock seconds. Where the velocity is known less, agreement says less and must last longer, for a wheel that
-/// still slides would take the velocity with it; so it is told to slip for kTold judgements of agreement alone. If it is
-/// doubted again within kCalm, the velocity is known no better than before.
+/// after kDeadlock seconds. Where the velocity is known less, agreement says less and must last longer, for a wheel
+/// that still slides would take the velocity with it; so it is told to slip for kTold judgements of agreement alone. If
+/// it is doubted again within kCalm, the velocity is known no better than before.
 ///
 /// What the accelerometer's bias and the tilt are together is learned here, from windows of 0.3 s in which everything
 /// rolled, kCalm seconds after the last doubt: a wheel that only begins to slide would else be believed to be a bias. A

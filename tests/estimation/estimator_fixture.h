@@ -45,7 +45,8 @@ inline double smallest_correlation(const Matrix6& published) {
 
 class EstimatorFixture : public testing::Test {
  protected:
-  explicit EstimatorFixture(const RobotModel& model = two_wheeler(), const EstimatorParameters& parameters = rigid_tyres(),
+  explicit EstimatorFixture(const RobotModel& model = two_wheeler(),
+                            const EstimatorParameters& parameters = rigid_tyres(),
                             double period = RollingRobot::kPeriod)
       : robot_(model, period), estimator_(parameters, model, period) {}
 

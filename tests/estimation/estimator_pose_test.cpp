@@ -437,8 +437,9 @@ TEST(EstimatorConstruction, RefusesWhatCannotBe) {
     }
   }
   for (double Parameters::*const no_less :
-       {&Parameters::wheel_slip_noise, &Parameters::tyre_creep, &Parameters::gyro_scale_deviation, &Parameters::gyro_bias_initial,
-        &Parameters::gyro_bias_walk, &Parameters::accelerometer_bias_initial, &Parameters::accelerometer_bias_walk}) {
+       {&Parameters::wheel_slip_noise, &Parameters::tyre_creep, &Parameters::gyro_scale_deviation,
+        &Parameters::gyro_bias_initial, &Parameters::gyro_bias_walk, &Parameters::accelerometer_bias_initial,
+        &Parameters::accelerometer_bias_walk}) {
     for (const double value : {-1.0, std::nan(""), HUGE_VAL}) {
       Parameters parameters;
       parameters.*no_less = value;
