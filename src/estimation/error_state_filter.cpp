@@ -121,8 +121,10 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   const double scale[2] = {dt / (1 - radius_ratio / 2), dt / (1 + radius_ratio / 2)};
   const double height = geometry_.height;
   const double base = geometry_.wheel_base * (1 + wheel_base);
+  const double still = kTurns * noise_.gyro / std::sqrt(2 * (kSmoothing + kWindUp));
+  const double turn_rate = std::abs(slow_rate) > still ? slow_rate : 0;
   double contact[2];
-  for (const int side : {0, 1}) contact[side] = u.x() - slow_rate * lever(side);
+  for (const int side : {0, 1}) contact[side] = u.x() - turn_rate * lever(side);
 
   const auto pass = [&](Covariance& p) {
     for (const int i : {0, 1, 2}) {  // position
@@ -139,8 +141,8 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
       if (!gyro) continue;  // the turn is the wheels' own: a wrong ratio turns the robot, and contradicts no encoder
       column += scale[side] * sign * contact[side] * p.col(kRadiusRatio);
       column += scale[side] * (lever(side) * p.col(kGyroBias + 2) - height * p.col(kGyroBias + 1));
-      column -= scale[side] * slow_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
-      column -= scale[side] * slow_rate * lever(side) * p.col(kGyroScale);
+      column -= scale[side] * turn_rate * sign * geometry_.wheel_base * p.col(kWheelBase);
+      column -= scale[side] * turn_rate * lever(side) * p.col(kGyroScale);
     }
     if (motion.accelerometer) {  // velocity
       const Column x = p.col(kVelocity);

@@ -26,7 +26,8 @@
 ///
 /// The columns of ε, β and κ take the gyro's rate of a while ago, smoothed over kSmoothing and again over kWindUp: its
 /// noise, in both the column and the innovation, would bias them (errors in variables; W. Fuller, Measurement Error
-/// Models, 1987, section 1.1). Smoothed once it took β off by 0.1 in 20 s straight on.
+/// Models, 1987, section 1.1). Smoothed once it took β off by 0.1 in 20 s straight on, smoothed twice by 0.05 in 60 s:
+/// a rate within kTurns deviations of its noise counts as none.
 ///
 /// Measurements, one scalar after another (Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to
 /// Tracking and Navigation, 2001, sections 5.4 and 10.2: gate and normalised innovation squared):
@@ -116,6 +117,7 @@ class ErrorStateFilter {
   static constexpr double kSliding = 0.03;             ///< m/s²/√Hz more, while no wheel holds the velocity
   static constexpr double kSmoothing = 0.05;           ///< s
   static constexpr double kWindUp = 0.1;               ///< s
+  static constexpr double kTurns = 10;                 ///< σ
   static constexpr double kPulledBias = 0.005;         ///< m/s²
   static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
 

@@ -49,6 +49,20 @@ TEST_F(EstimatorHeldCalibrationTest, HoldsWhatItStartedWith) {
   EXPECT_EQ(state_.calibration.wheel_base_deviation, 0);
 }
 
+// Straight on nothing tells the wheel base; noise of the gyro, in rate and innovation alike, must not.
+TEST(EstimatorCalibration, TheWheelBaseStaysWhereNothingTurns) {
+  RollingRobot robot;
+  robot.noise = {.gyro = 2.44e-4, .accelerometer = 1.7e-3, .counts = 4096};
+  Estimator estimator(rigid_tyres(), two_wheeler(), kPeriod);
+  StateFrame state;
+  for (int i = 0; i < 3000 + 60000; ++i) {
+    robot.drive(i < 3000 ? 0 : 0.5, 0);
+    estimator.step(robot.frame(), state);
+  }
+  EXPECT_NEAR(state.calibration.wheel_base_factor, 1, 0.003);
+  EXPECT_GT(state.calibration.wheel_base_deviation, 0.02);
+}
+
 TEST(EstimatorCalibration, StartsWithWhatIsGiven) {
   EstimatorParameters parameters;
   parameters.calibration = {

@@ -48,42 +48,6 @@ INSTANTIATE_TEST_SUITE_P(EstimatorPose, SteadyMotion,
                                          std::pair{-0.5, 0.0}, std::pair{0.0, 1.0}, std::pair{0.0, -1.0},
                                          std::pair{0.3, -2 * std::numbers::pi / 10}));
 
-// Pulled with 1 m/s², these tyres turn 1 % faster than they go; in curves they drift outwards.
-class CreepingTyres : public EstimatorFixture {
- protected:
-  static constexpr double kCreep = 0.01;  // s²/m
-  explicit CreepingTyres(double known = kCreep) : EstimatorFixture(two_wheeler(), {.tyre_creep = known}) {
-    robot_.creep = kCreep;
-    stand();
-  }
-  /// Largest error of the speed, m/s, from 0.1 s after the start of each ramp on.
-  double shuttle() {
-    double worst = 0;
-    for (const double speed : {0.8, 0.2, 0.7, -0.5, 0.4}) {
-      drive(speed, 0.5, 100);
-      for (int i = 0; i < 1500; ++i) {
-        drive(speed, 0.5, 1);
-        worst = std::max(worst, std::abs(this->speed() - robot_.motion.velocity.x()));
-      }
-    }
-    return worst;
-  }
-};
-class CreepingTyresTakenForRigid : public CreepingTyres {
- protected:
-  CreepingTyresTakenForRigid() : CreepingTyres(0) {}
-};
-
-TEST_F(CreepingTyres, SpeedAndWayAreThatOfTheGround) {
-  EXPECT_LT(shuttle(), 0.0005);
-  EXPECT_LT(position_error(), 2 * reading());
-}
-
-TEST_F(CreepingTyresTakenForRigid, SpeedIsThatOfTheTread) {
-  EXPECT_GT(shuttle(), 0.005);
-  EXPECT_GT(position_error(), 0.003);
-}
-
 // x = −r sin … of a circle run at constant twist after a ramp: the truth itself against its closed form.
 TEST_F(EstimatorPoseTest, AFullCircleEndsWhereItBegan) {
   const double rate = 2 * std::numbers::pi / 10;

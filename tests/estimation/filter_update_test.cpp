@@ -212,6 +212,14 @@ TEST_F(FilterUpdate, TheVerticalContactCorrectsVelocityAndTravelAlone) {
   }
 }
 
+TEST_F(FilterUpdate, ABodyThatRocksTurnsAboutItsContacts) {
+  const ContactGeometry& g = filter_.geometry();
+  const Vector3d turning{0.1, -0.2, 0.3};
+  filter_.rock(turning);
+  const Vector3d contact = filter_.velocity + turning.cross(Vector3d(g.middle_x, g.middle_y, g.height));
+  EXPECT_LT(contact.norm(), 1e-15);
+}
+
 // At rest the tilt is learned about base_link: the IMU moves on its lever, base_link does not.
 TEST_F(FilterUpdate, WhatIsLearnedAtRestLeavesTheBaseWhereItIs) {
   const auto base = [&] { return Vector3d(filter_.position - filter_.rotation * kGeometry.imu_in_base); };

@@ -139,6 +139,22 @@ TEST_F(SlipWatchTest, BelievesAgainWhenTheSpeedsAgree) {
   EXPECT_EQ(watch_.reasons(), 0u);
 }
 
+// Agreement with a velocity that nobody knows says little: told at once, believed later.
+TEST_F(SlipWatchTest, BelievesLaterWhereTheVelocityIsUnknown) {
+  go(100, 1.5, 1.5);
+  filter_.covariance(Filter::kVelocity, Filter::kVelocity) = 0.05 * 0.05;
+  int told = 0;
+  int believed = 0;
+  for (int i = 1; i <= 1000 && believed == 0; ++i) {
+    go(1, filter_.velocity.x(), filter_.velocity.x());
+    if (told == 0 && (watch_.reasons() & kSlipLeft) == 0) told = i;
+    if (watch_.believed(Contact::kLeft)) believed = i;
+  }
+  EXPECT_GT(told, 0);
+  EXPECT_LE(told, 200);
+  EXPECT_GE(believed, told + 100);
+}
+
 TEST_F(SlipWatchTest, WithoutInertialSensorsThereIsNothingToCompareWith) {
   go(500, 1.5, 1.5);
   ASSERT_FALSE(all_believed());
