@@ -112,13 +112,13 @@ class ErrorStateFilter {
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Column = Eigen::Matrix<double, kSize, 1>;
 
-  static constexpr double kGravity = 9.80665;          ///< m/s², standard gravity
-  static constexpr double kCautious = 15;              ///< times
-  static constexpr double kSliding = 0.03;             ///< m/s²/√Hz more, while no wheel holds the velocity
-  static constexpr double kSmoothing = 0.05;           ///< s
-  static constexpr double kWindUp = 0.1;               ///< s
-  static constexpr double kTurns = 10;                 ///< σ
-  static constexpr double kPulledBias = 0.005;         ///< m/s²
+  static constexpr double kGravity = 9.80665;   ///< m/s², standard gravity
+  static constexpr double kCautious = 15;       ///< times: 0.75 mm/√m, the creep of a wheel about to slide
+  static constexpr double kSliding = 0.03;      ///< m/s²/√Hz more, while no wheel holds the velocity: it shakes
+  static constexpr double kSmoothing = 0.05;    ///< s
+  static constexpr double kWindUp = 0.1;        ///< s
+  static constexpr double kTurns = 10;          ///< σ
+  static constexpr double kPulledBias = 0.005;  ///< m/s²
   static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
 
   /// What moved the robot over `dt`. Base axes.

@@ -72,6 +72,9 @@ void Estimator::resume(const StateFrame& last) noexcept {
   reset();
   if (!continuable(last)) return;
   continue_from(last, base_from_imu_, filter_);
+  if (!parameters_.self_calibration) {
+    for (const int held : {Filter::kRadiusRatio, Filter::kWheelBase}) filter_.covariance(held, held) = 0;
+  }
   const double turn = last.twist_base.angular[2] * geometry_.wheel_base / 2;
   const double speed = last.twist_base.linear[0] - last.twist_base.angular[2] * geometry_.axle_y;
   sides_[kLeft].speed.reset(speed - turn);

@@ -53,6 +53,7 @@ bool continuable(const StateFrame& last) noexcept {
 void continue_from(const StateFrame& last, const Matrix3d& base_from_imu, ErrorStateFilter& filter) noexcept {
   filter.rotation = rotation_of(last.attitude);
   place({last.pose_odom.position[0], last.pose_odom.position[1], yaw_of(last.pose_odom.orientation)}, filter);
+  filter.position.z() = last.pose_odom.position[2] + (filter.rotation * filter.geometry().imu_in_base).z();
   filter.gyro_bias = base_from_imu * vector(last.gyro_bias);
   filter.accelerometer_bias = base_from_imu * vector(last.accelerometer_bias);
   filter.radius_ratio = last.calibration.radius_ratio - 1;

@@ -16,8 +16,8 @@ void place(const Vector3& pose, ErrorStateFilter& filter) noexcept;
 /// Finite, and the state was valid.
 bool continuable(const StateFrame& last) noexcept;
 
-/// Pose, biases and calibration of a frame that is continuable, with their covariance; the velocity for what it is
-/// worth by now: kUnknownSpeed.
+/// Pose, height, biases and calibration of a frame that is continuable, with their covariance; the velocity for what it
+/// is worth by now: kUnknownSpeed.
 void continue_from(const StateFrame& last, const Eigen::Matrix3d& base_from_imu, ErrorStateFilter& filter) noexcept;
 
 }  // namespace robot_control

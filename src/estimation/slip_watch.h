@@ -48,11 +48,11 @@ class SlipWatch {
   static constexpr double kLonger = 10;               ///< times at most
   static constexpr std::uint64_t kTold = 5;           ///< judgements after which a contact is no longer told to slip
   static constexpr std::uint64_t kLanded = 2;         ///< the same, of the vertical: what lands stays on the ground
-  static constexpr double kAgreeSpeed = 0.02;         ///< m/s
+  static constexpr double kAgreeSpeed = 0.02;         ///< m/s, some counts of a usual encoder in the youngest window
   static constexpr double kCalm = 1.0;                ///< s
-  static constexpr double kDeadlock = 10.0;           ///< s
-  static constexpr double kRoughness = 0.05;          ///< m/s², of a window's mean: floor and tyres go on shaking it
-  static constexpr std::uint64_t kSteady = 5;         ///< windows
+  static constexpr double kDeadlock = 10.0;    ///< s; by then a tilt of 1 mrad has made 0.1 m/s: the wheels know better
+  static constexpr double kRoughness = 0.05;   ///< m/s², of a window's mean: floor and tyres go on shaking it
+  static constexpr std::uint64_t kSteady = 5;  ///< windows
 
   struct Sample {
     double dt = 0;

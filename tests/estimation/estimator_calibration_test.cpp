@@ -49,6 +49,20 @@ TEST_F(EstimatorHeldCalibrationTest, HoldsWhatItStartedWith) {
   EXPECT_EQ(state_.calibration.wheel_base_deviation, 0);
 }
 
+// Whoever switches learning off and starts again means it.
+TEST_F(EstimatorCalibrationTest, WhatARestartHoldsIsNotLearned) {
+  practise(30);
+  StateFrame last = state_;
+  last.head.cycle = robot_.frame().head.cycle;
+  ASSERT_GT(last.calibration.radius_ratio_deviation, 0);
+  estimator_ = Estimator(held(), two_wheeler(), kPeriod);
+  estimator_.resume(last);
+  practise(10);
+  EXPECT_EQ(state_.calibration.radius_ratio, last.calibration.radius_ratio);
+  EXPECT_EQ(state_.calibration.wheel_base_factor, last.calibration.wheel_base_factor);
+  EXPECT_EQ(state_.calibration.radius_ratio_deviation, 0);
+}
+
 // Straight on nothing tells the wheel base; noise of the gyro, in rate and innovation alike, must not.
 TEST(EstimatorCalibration, TheWheelBaseStaysWhereNothingTurns) {
   RollingRobot robot;

@@ -66,6 +66,20 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
   }
 }
 
+TEST_P(EstimatorSlopeTest, ARestartKeepsTheHeight) {
+  RollingRobot robot(model_);
+  Estimator estimator(parameters_, model_, kPeriod);
+  climb(robot, estimator);
+  for (int i = 0; i < 2000; ++i) step(robot, estimator, kSpeed);
+  StateFrame last = state_;
+  last.head.cycle = robot.frame().head.cycle;
+  ASSERT_TRUE(GetParam() || last.pose_odom.position[2] > 0.05);
+  Estimator restarted(parameters_, model_, kPeriod);
+  restarted.resume(last);
+  step(robot, restarted, kSpeed);
+  EXPECT_NEAR(state_.pose_odom.position[2], last.pose_odom.position[2], 1e-3);
+}
+
 INSTANTIATE_TEST_SUITE_P(Planar, EstimatorSlopeTest, testing::Bool(), [](const testing::TestParamInfo<bool>& planar) {
   return planar.param ? "Projected" : "InThreeDimensions";
 });
