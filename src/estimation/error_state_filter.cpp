@@ -57,7 +57,15 @@ double ErrorStateFilter::creep_along(double speed) const noexcept {
 }
 
 double ErrorStateFilter::creep_across() const noexcept {
-  return -geometry_.creep * std::abs(velocity.x()) * force.y();
+  const double speed = velocity.x() + rate.y() * geometry_.height - rate.z() * geometry_.middle_y;
+  return -geometry_.creep * std::abs(speed) * force.y();
+}
+
+Vector2d ErrorStateFilter::force_on_tyres(const Vector3d& accelerometer) const noexcept {
+  const Vector2d doubtful = kGravity * (1 - tilt_beyond_doubt()) * rotation.row(2).head<2>().transpose();
+  const Vector2d swung = square(smooth_rate) * Vector2d(geometry_.middle_x, geometry_.middle_y);
+  const Vector2d felt = (accelerometer - accelerometer_bias).head<2>() - doubtful - swung;
+  return felt.cwiseMax(-kGravity).cwiseMin(kGravity);
 }
 
 double ErrorStateFilter::tilt_beyond_doubt() const noexcept {
@@ -88,12 +96,7 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
   }
   smooth_rate += dt / (kSmoothing + dt) * (omega.z() - smooth_rate);
   slow_rate += dt / (kWindUp + dt) * (smooth_rate - slow_rate);
-  const Vector2d tilt = rotation.row(2).head<2>();
-  const double known = tilt_beyond_doubt();
-  force.setZero();
-  if (motion.accelerometer) {
-    force = (*motion.accelerometer - accelerometer_bias).head<2>() - kGravity * (1 - known) * tilt;
-  }
+  force = motion.accelerometer ? force_on_tyres(*motion.accelerometer) : Vector2d::Zero();
   transport(motion, middle, turn, u, omega);
 
   position += dt * (middle * u);
@@ -121,7 +124,8 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   const double scale[2] = {dt / (1 - radius_ratio / 2), dt / (1 + radius_ratio / 2)};
   const double height = geometry_.height;
   const double base = geometry_.wheel_base * (1 + wheel_base);
-  const double still = kTurns * noise_.gyro / std::sqrt(2 * (kSmoothing + kWindUp));
+  const double bias = std::sqrt(covariance(kGyroBias + 2, kGyroBias + 2));
+  const double still = kTurns * noise_.gyro / std::sqrt(2 * (kSmoothing + kWindUp)) + 3 * bias;
   const double turn_rate = std::abs(slow_rate) > still ? slow_rate : 0;
   double contact[2];
   for (const int side : {0, 1}) contact[side] = u.x() - turn_rate * lever(side);
@@ -202,11 +206,11 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   age(dt);
   const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) / 2 * dt;
   const double slope = tilt_beyond_doubt() * rotation.row(2).head<2>().norm();
-  const double slip = square(noise_.wheel_slip) + square(noise_.slope_creep * slope);
+  const double slip = square(noise_.wheel_slip) + square(noise_.slope_slip * slope);
   p(kTravel, kTravel) += slip * std::abs(motion.left_speed) * dt;
   p(kTravel + 1, kTravel + 1) += slip * std::abs(motion.right_speed) * dt;
   const double common = noise_.common_slip * (1 + kCautious * motion.caution);
-  p.block<2, 2>(kTravel, kTravel).array() += square(common) * path;
+  p.block<2, 2>(kTravel, kTravel).array() += (square(common) + square(noise_.slope_creep * slope)) * path;
   const double wound = std::abs(smooth_rate - slow_rate) / kWindUp;
   const double twist =
       square(base / 2) * (square(noise_.turn_slip) * std::abs(omega.z()) + square(noise_.wind_up) * wound) * dt;

@@ -22,17 +22,19 @@
 /// r_i from the IMU to where wheel i touches the ground: the encoder measures the wheel against the body, so that a
 /// pitching body enters with the height of the contact. Its lateral component is ±(1 + β)/2 of the effective wheel
 /// base. A tyre that pulls or holds creeps: its tread slides by χ f per speed, against the specific force f on the
-/// robot, along as across (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3, linear range).
+/// robot, along as across (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3, linear range). f is that of the
+/// middle between the contacts, without the part of gravity that is in doubt: a tilt within 3 σ makes no creep. The
+/// Jacobian leaves creep out, χ f is some thousandths.
 ///
 /// The columns of ε, β and κ take the gyro's rate of a while ago, smoothed over kSmoothing and again over kWindUp: its
 /// noise, in both the column and the innovation, would bias them (errors in variables; W. Fuller, Measurement Error
 /// Models, 1987, section 1.1). Smoothed once it took β off by 0.1 in 20 s straight on, smoothed twice by 0.05 in 60 s:
-/// a rate within kTurns deviations of its noise counts as none.
+/// a rate within kTurns deviations of its noise and 3 of the bias counts as none.
 ///
 /// Measurements, one scalar after another (Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to
 /// Tracking and Navigation, 2001, sections 5.4 and 10.2: gate and normalised innovation squared):
 ///   encoder angles         s_i = travel measured: angles, so that a count is an error once, not once per cycle
-///   contact                (u + ω × r_c)_y = −χ |u_x| f_y, (u + ω × r_c)_z = 0 at the middle c of the contacts
+///   contact                (u + ω × r_c)_y = −χ |c_x| f_y, (u + ω × r_c)_z = 0 at the middle c of the contacts
 ///                          (non-holonomic constraint; G. Dissanayake et al., The aiding of a low-cost strapdown
 ///                          inertial measurement unit using vehicle model constraints, IEEE T-RA 17(5), 2001,
 ///                          section III)
@@ -44,8 +46,9 @@
 /// alone. What is learned at rest leaves base_link where it is. Encoders and contact pull no harder than Huber's bound.
 ///
 /// A tyre winds up before it rolls, 0.4 mm by 20 N at 50 kN/m, and on wheels 0.5 m apart 1.6 mrad: noise of the wheels'
-/// turn where its rate changes. On a slope χ matters, and no two tyres have the same: beyond what the tilt is known to
-/// (3 σ), each wheel's travel gets slope_creep times the slope as noise.
+/// turn where its rate changes. On a slope χ matters, which nobody knows to better than a half, and no two tyres have
+/// the same: beyond what the tilt is known to (3 σ), the travel of both gets slope_creep times the slope as noise, that
+/// of either slope_slip.
 ///
 /// Without a gyro sample the robot turns as the calibrated wheels do, and level; without an accelerometer sample its
 /// velocity is carried on, with an acceleration of kUnknownAcceleration as noise.
@@ -77,7 +80,8 @@ struct FilterNoise {
   double common_slip = 5e-5;              ///< m/√m, of both together; up to kCautious times that near sliding
   double encoder = 4.4e-5;                ///< m, of one reading
   double turn_slip = 5e-4;                ///< rad/√rad, of the wheels' turn: a contact patch twists before it turns
-  double slope_creep = 0.01;              ///< m/√m per sine of the slope, of either wheel alone
+  double slope_slip = 0.01;               ///< m/√m per sine of the slope, of either wheel alone
+  double slope_creep = 0.05;              ///< m/√m per sine of the slope, of both together
   double wind_up = 1.6e-3;                ///< rad/√(rad/s), of the wheels' turn where its rate changes
   double radius_ratio_walk = 3e-6;        ///< 1/√m
   double wheel_base_walk = 2e-5;          ///< 1/√m: load and floor change how a tyre turns
@@ -116,7 +120,7 @@ class ErrorStateFilter {
   static constexpr double kCautious = 15;       ///< times: 0.75 mm/√m, the creep of a wheel about to slide
   static constexpr double kSliding = 0.03;      ///< m/s²/√Hz more, while no wheel holds the velocity: it shakes
   static constexpr double kSmoothing = 0.05;    ///< s
-  static constexpr double kWindUp = 0.1;        ///< s
+  static constexpr double kWindUp = 0.1;        ///< s; of the rate of a while ago, too
   static constexpr double kTurns = 10;          ///< σ
   static constexpr double kPulledBias = 0.005;  ///< m/s²
   static constexpr double kUnknownAcceleration = 1.0;  ///< m/s²/√Hz, of a robot without accelerometer
@@ -162,8 +166,9 @@ class ErrorStateFilter {
 
   /// The robot stands: the velocity is zero, known to `deviation` m/s.
   void stand(double deviation) noexcept;
-  /// The wheels stand, the body turns about their contacts by `turning` rad/s, base axes: that is the velocity.
-  void rock(const Eigen::Vector3d& turning) noexcept;
+  /// The wheels stand, the body turns about their contacts by `turning` rad/s, base axes, known to `deviation`: that is
+  /// the velocity.
+  void rock(const Eigen::Vector3d& turning, double deviation) noexcept;
   /// The robot has come to rest: the velocity is measured to be zero, which tells where it went wrong on the way.
   void halt(double deviation) noexcept;
   /// Biases walk for `dt` s while nothing is predicted.
@@ -216,6 +221,8 @@ class ErrorStateFilter {
   Innovation learn(const Column& ph, double innovation, double variance, std::span<const int> considered) noexcept;
   Innovation correct_rolling(const Column& ph, double innovation, double variance, double slack,
                              std::span<const int> considered) noexcept;
+  /// m/s², specific: of the middle between the contacts, with as much of gravity as is beyond doubt.
+  Eigen::Vector2d force_on_tyres(const Eigen::Vector3d& accelerometer) const noexcept;
   /// Part of the tilt that is beyond 3 of its deviations, 0 … 1.
   double tilt_beyond_doubt() const noexcept;
   void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Matrix3d& turn,

@@ -152,8 +152,11 @@ void ErrorStateFilter::stand(double deviation) noexcept {
   for (const int i : {0, 1, 2}) covariance(kVelocity + i, kVelocity + i) = square(deviation);
 }
 
-void ErrorStateFilter::rock(const Vector3d& turning) noexcept {
-  velocity = -turning.cross(Vector3d(geometry_.middle_x, geometry_.middle_y, geometry_.height));
+void ErrorStateFilter::rock(const Vector3d& turning, double deviation) noexcept {
+  const Vector3d lever{geometry_.middle_x, geometry_.middle_y, geometry_.height};
+  rate = turning;
+  velocity = -turning.cross(lever);
+  for (const int i : {0, 1, 2}) covariance(kVelocity + i, kVelocity + i) += square(deviation) * lever.squaredNorm();
 }
 
 void ErrorStateFilter::halt(double deviation) noexcept {

@@ -58,7 +58,10 @@ void Estimator::end_rest() noexcept {
   auto& p = filter_.covariance;
   p(Filter::kOrientation + 2, Filter::kOrientation + 2) += square(parameters_.gyro_noise) * held_.time;
   filter_.stand(rested_ > 0 ? kRestSpeed : kUnknownSpeed);  // a run may begin in motion
-  if (imu_.gyro()) filter_.rock(imu_.last_gyro() - filter_.gyro_bias);
+  if (imu_.gyro()) {
+    filter_.rock((1 + filter_.gyro_scale) * (imu_.last_gyro() - filter_.gyro_bias),
+                 parameters_.gyro_noise / std::sqrt(period_));
+  }
   for (const int i : {kLeft, kRight}) filter_.anchor_travel(i, sides_[static_cast<std::size_t>(i)].total);
   slip_.begin(filter_);
   held_ = {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "estimation/algebra.h"
 #include "signals/state_frame.h"
@@ -19,7 +20,6 @@ constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
 constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
 constexpr int kTurning[4] = {Filter::kGyroBias + 2, Filter::kRadiusRatio, Filter::kWheelBase, Filter::kGyroScale};
 constexpr double kSigmas = 4;
-
 constexpr double kDoubt = 3;          // deviations of the window's end speed: it was a slide that made the window
 constexpr double kYoungest = 0.04;    // s
 constexpr double kShaken = 0.4;       // share of its limit from which a residual shakes the belief in a contact
@@ -99,13 +99,13 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
     window.age += sample.dt;
     window.turn += sample.dt * w.z();
   }
-  for (State& state : states_) state.doubted += state.believed ? 0 : sample.dt;
+  for (State& state : states_) {
+    (state.believed ? state.trusted : state.doubted) += sample.dt;
+    if (state.trusted >= kCalm) state.unsure = 0;
+  }
   const auto believed = [](const State& state) { return state.believed; };
   calm_ = std::ranges::all_of(states_, believed) ? calm_ + sample.dt : 0;
   if (calm_ == 0) shaken_ = 0;
-  if (calm_ >= kCalm) {
-    for (State& state : states_) state.unsure = 0;
-  }
 
   since_judged_ += sample.dt;
   if (since_judged_ >= kJudgeEvery) {
@@ -182,8 +182,9 @@ bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
     if (!states_[c].believed || !(slides[c] || excess(window, c, filter) > kShaken)) continue;
     const double unsure = states_[c].unsure;
     states_[c] = {.believed = false, .excess = residual(window, c) / window.age};
-    way[static_cast<std::size_t>(kAxis[c])] = residual(whole, c);
-    doubt[static_cast<std::size_t>(kAxis[c])] = std::max(kDoubt * std::sqrt(variance(whole, c, filter)) / age, unsure);
+    const auto axis = static_cast<std::size_t>(kAxis[c]);
+    if (std::abs(residual(whole, c)) > std::abs(way[axis])) way[axis] = residual(whole, c);
+    doubt[axis] = std::max({doubt[axis], kDoubt * std::sqrt(variance(whole, c, filter)) / age, unsure});
   }
   take_back(whole, {doubt[0] > 0, doubt[1] > 0, doubt[2] > 0}, filter);
   for (int axis = 0; axis < 3; ++axis) {
@@ -254,12 +255,21 @@ void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
     const double known = 3 * deviation;
     const double speed = window.path[c] / window.age;
     const double cap = std::max(0.05, 0.3 * speed);
-    const bool agrees = std::abs(excess) <= kAgreeSpeed + kCreep * speed + std::min(known, cap);
-    const bool steady = std::abs(excess - state.excess) <= kAgreeSpeed;
+    const double read = c <= kRight ? kSigmas * std::numbers::sqrt2 * filter.noise().encoder / window.age : 0;
+    const double same = std::max(kAgreeSpeed, read);
+    const bool agrees = std::abs(excess) <= same + kCreep * speed + std::min(known, cap);
+    const bool steady = std::abs(excess - state.excess) <= same;
     state.excess = excess;
     state.agreed = agrees && steady ? state.agreed + 1 : 0;
     const double enough = c == kVertical ? kLanded : kAgree * std::clamp(deviation / kSure, 1.0, kLonger);
-    if (static_cast<double>(state.agreed) >= enough || state.doubted > kDeadlock) state = {.unsure = deviation};
+    if (static_cast<double>(state.agreed) >= enough || state.doubted > kDeadlock) {
+      state = {.unsure = deviation};
+      if (c == kVertical) continue;
+      for (Window& other : windows_) {
+        other.measured[c] -= residual(other, c);
+        other.path[c] = 0;
+      }
+    }
   }
 }
 
@@ -321,7 +331,7 @@ void SlipWatch::tell(const Filter& filter) noexcept {
   }
   if (turn_slips_) reasons_ |= kSlipTurn;
   if (!states_[kLateral].believed && states_[kLateral].agreed < kTold) reasons_ |= kSlipSideways;
-  if (!states_[kVertical].believed && states_[kVertical].agreed < kLanded) reasons_ |= kSlipLifted;
+  if (!states_[kVertical].believed) reasons_ |= kSlipLifted;
 }
 
 }  // namespace robot_control

@@ -14,9 +14,10 @@
 /// those of 0.3 s and 1 s what happens slowly; two of each length, half of it apart. What the sliding contact has made
 /// of velocity, way and acceleration is taken back from the oldest window that saw it come, and the velocity is
 /// doubted. A contact is believed again when its speed agrees with the filter's for kAgree judgements in a row, or
-/// after kDeadlock seconds. Where the velocity is known less, agreement says less and must last longer, for a wheel
-/// that still slides would take the velocity with it; so it is told to slip for kTold judgements of agreement alone. If
-/// it is doubted again within kCalm, the velocity is known no better than before.
+/// after kDeadlock seconds; its residuals begin anew. Where the velocity is known to less than kSure, agreement says
+/// less and must last as many times longer, up to kLonger, for a wheel that still slides would take the velocity with
+/// it; told to slip it is for kTold judgements of agreement at most: then it is on probation, with a confidence of 0.
+/// A contact that is doubted again within kCalm has told nothing: the velocity is known no better than before.
 ///
 /// What the accelerometer's bias and the tilt are together is learned here, from windows of 0.3 s in which everything
 /// rolled, kCalm seconds after the last doubt: a wheel that only begins to slide would else be believed to be a bias. A
@@ -44,14 +45,14 @@ class SlipWatch {
   static constexpr double kSlack = 0.0005;            ///< m
   static constexpr double kJudgeEvery = 0.01;         ///< s
   static constexpr double kAgree = 4;                 ///< judgements, where the velocity is known to kSure
-  static constexpr double kSure = 0.01;               ///< m/s; where it is known less, as many times longer
+  static constexpr double kSure = 0.007;              ///< m/s; 0.005 … 0.01 do in simulated slides
   static constexpr double kLonger = 10;               ///< times at most
-  static constexpr std::uint64_t kTold = 5;           ///< judgements after which a contact is no longer told to slip
+  static constexpr std::uint64_t kTold = 12;          ///< judgements after which a contact is no longer told to slip
   static constexpr std::uint64_t kLanded = 2;         ///< the same, of the vertical: what lands stays on the ground
   static constexpr double kAgreeSpeed = 0.02;         ///< m/s, some counts of a usual encoder in the youngest window
   static constexpr double kCalm = 1.0;                ///< s
   static constexpr double kDeadlock = 10.0;    ///< s; by then a tilt of 1 mrad has made 0.1 m/s: the wheels know better
-  static constexpr double kRoughness = 0.05;   ///< m/s², of a window's mean: floor and tyres go on shaking it
+  static constexpr double kRoughness = 0.05;   ///< m/s², of a window's mean: a body that stops rocks by as much
   static constexpr std::uint64_t kSteady = 5;  ///< windows
 
   struct Sample {
@@ -105,7 +106,8 @@ class SlipWatch {
     std::uint64_t agreed = 0;
     double doubted = 0;  ///< s
     double excess = 0;   ///< m/s, wheel faster than the ground
-    double unsure = 0;   ///< m/s, deviation of the velocity when it was believed again
+    double trusted = 0;  ///< s, since it was believed again
+    double unsure = 0;   ///< m/s, deviation of the velocity by then; for kCalm seconds
   };
 
   void open(Window& window, const ErrorStateFilter& filter) const noexcept;

@@ -10,7 +10,8 @@ namespace {
 class CreepingTyres : public EstimatorFixture {
  protected:
   static constexpr double kCreep = 0.01;  // s²/m
-  explicit CreepingTyres(double known = kCreep) : EstimatorFixture(two_wheeler(), {.tyre_creep = known}) {
+  explicit CreepingTyres(double known = kCreep, const RobotModel& model = two_wheeler())
+      : EstimatorFixture(model, {.tyre_creep = known}) {
     robot_.creep = kCreep;
     stand();
   }
@@ -32,14 +33,61 @@ class CreepingTyresTakenForRigid : public CreepingTyres {
   CreepingTyresTakenForRigid() : CreepingTyres(0) {}
 };
 
+/// The IMU swings in curves: what it feels is not what the tyres hold.
+class CreepingTyresUnderAFarImu : public CreepingTyres {
+ protected:
+  CreepingTyresUnderAFarImu() : CreepingTyres(kCreep, far()) {}
+  static RobotModel far() {
+    RobotModel model = two_wheeler();
+    model.imu_in_base.position = {0.5, 0.2, 0.2};
+    return model;
+  }
+};
+
 TEST_F(CreepingTyres, SpeedAndWayAreThatOfTheGround) {
   EXPECT_LT(shuttle(), 0.0005);
   EXPECT_LT(position_error(), 2e-4);
 }
 
+TEST_F(CreepingTyres, CurvesDriftOutwards) {
+  drive(0.8, 0.5, 3000);
+  EXPECT_NEAR(state_.twist_base.linear[1], -kCreep * 0.8 * 0.8 * 0.5, 3e-4);
+}
+
+TEST_F(CreepingTyresUnderAFarImu, SpeedIsThatOfTheGround) {
+  EXPECT_LT(shuttle(), 0.001);
+}
+
 TEST_F(CreepingTyresTakenForRigid, SpeedIsThatOfTheTread) {
   EXPECT_GT(shuttle(), 0.005);
   EXPECT_GT(position_error(), 0.003);
+}
+
+// Uphill the treads turn 1 % of a tenth of gravity more than the robot goes.
+TEST(EstimatorCreep, TheWayUphillIsThatOfTheGround) {
+  constexpr double kCreep = 0.01;
+  constexpr double kSlope = 0.1;  // rad
+  const auto error = [&](double known) {
+    RollingRobot robot;
+    robot.creep = kCreep;
+    Estimator estimator({.tyre_creep = known, .accelerometer_bias_initial = 0.005}, two_wheeler(), kPeriod);
+    StateFrame state;
+    const auto drive = [&](double speed, double pitch_rate, int cycles) {
+      for (int i = 0; i < cycles; ++i) {
+        robot.drive(speed, 0, pitch_rate);
+        estimator.step(robot.frame(), state);
+      }
+    };
+    drive(0, 0, 3000);
+    drive(0.5, 0, 1000);
+    for (int i = 0; i < 1000; ++i) drive(0.5, -kSlope * (i < 500 ? i : 1000 - i) / 250, 1);
+    const double began = robot.x() - state.pose_odom.position[0];
+    drive(0.5, 0, 6000);
+    return robot.x() - state.pose_odom.position[0] - began;
+  };
+  const double crept = kCreep * RollingRobot::kGravity * kSlope * 3.0;
+  EXPECT_NEAR(error(0), -crept, 0.1 * crept);
+  EXPECT_NEAR(error(kCreep), 0, 0.1 * crept);
 }
 
 // It stands on a slope that it takes for its accelerometer's bias, or the other way round: no force of which nobody is

@@ -215,9 +215,12 @@ TEST_F(FilterUpdate, TheVerticalContactCorrectsVelocityAndTravelAlone) {
 TEST_F(FilterUpdate, ABodyThatRocksTurnsAboutItsContacts) {
   const ContactGeometry& g = filter_.geometry();
   const Vector3d turning{0.1, -0.2, 0.3};
-  filter_.rock(turning);
+  const double before = filter_.covariance(Filter::kVelocity, Filter::kVelocity);
+  filter_.rock(turning, 0.01);
   const Vector3d contact = filter_.velocity + turning.cross(Vector3d(g.middle_x, g.middle_y, g.height));
   EXPECT_LT(contact.norm(), 1e-15);
+  EXPECT_EQ(filter_.rate, turning);
+  EXPECT_GT(filter_.covariance(Filter::kVelocity, Filter::kVelocity), before);
 }
 
 // At rest the tilt is learned about base_link: the IMU moves on its lever, base_link does not.

@@ -105,7 +105,9 @@ class RollingRobot {
     distance += std::abs((motion.velocity.x() + end.velocity.x()) / 2) * period_;
     const Eigen::Vector3d gained = rotation * of_point(end, imu_) - before * of_point(motion, imu_);
     const Eigen::Vector3d force = middle.transpose() * (gained / period_ + Eigen::Vector3d(0, 0, kGravity));
-    roll(motion, end, force.x());
+    const Eigen::Vector3d axle{wheels_.axle_x, wheels_.axle_y, wheels_.ground};
+    const Eigen::Vector3d pushed = rotation * of_point(end, axle) - before * of_point(motion, axle);
+    roll(motion, end, middle.col(0).dot(pushed / period_ + Eigen::Vector3d(0, 0, kGravity)));
     motion = end;
     ++frame_.head.cycle;
     read_imu(force);
@@ -138,7 +140,7 @@ class RollingRobot {
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();  ///< m/s², IMU axes
   double radius_ratio = 0;                                       ///< right over left radius, beyond 1
   double wheel_base = 0;                                         ///< effective wheel base over the model's, beyond 1
-  double creep = 0;                                              ///< s²/m, of the tyres, while driven on even ground
+  double creep = 0;                                              ///< s²/m, of the tyres; across, on even ground
   SensorNoise noise;
   std::array<std::optional<double>, 2> tread;  ///< m/s, of a side's treads that do not roll
 

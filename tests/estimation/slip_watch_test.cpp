@@ -155,6 +155,21 @@ TEST_F(SlipWatchTest, BelievesLaterWhereTheVelocityIsUnknown) {
   EXPECT_GE(believed, told + 100);
 }
 
+// What was believed in vain has told nothing of the velocity.
+TEST_F(SlipWatchTest, DoubtedAgainTheVelocityIsKnownNoBetter) {
+  go(100, 1.5, 1.5);
+  ASSERT_FALSE(watch_.believed(Contact::kLeft));
+  filter_.covariance(Filter::kVelocity, Filter::kVelocity) = 0.3 * 0.3;
+  const double speed = filter_.velocity.x();
+  for (int i = 0; i < 1000 && !all_believed(); ++i) go(1, speed, speed);
+  ASSERT_TRUE(all_believed());
+  go(30, speed, speed);
+  ASSERT_LT(deviation(), 0.01);
+  for (int i = 0; i < 200 && watch_.believed(Contact::kLeft); ++i) go(1, speed + 1, speed + 1);
+  ASSERT_FALSE(watch_.believed(Contact::kLeft));
+  EXPECT_GT(deviation(), 0.2);
+}
+
 TEST_F(SlipWatchTest, WithoutInertialSensorsThereIsNothingToCompareWith) {
   go(500, 1.5, 1.5);
   ASSERT_FALSE(all_believed());
