@@ -52,8 +52,9 @@ double ErrorStateFilter::lever(int side) const noexcept {
   return geometry_.middle_y + (side == 0 ? 0.5 : -0.5) * geometry_.wheel_base * (1 + wheel_base);
 }
 
-double ErrorStateFilter::creep_along(double speed) const noexcept {
-  return geometry_.creep * std::abs(speed) * force.x();
+double ErrorStateFilter::tread_speed(int side, const Vector3d& u, const Vector3d& omega) const noexcept {
+  const double contact = u.x() + omega.y() * geometry_.height - omega.z() * lever(side);
+  return contact + geometry_.creep * std::abs(contact) * force.x();
 }
 
 double ErrorStateFilter::creep_across() const noexcept {
@@ -101,10 +102,7 @@ void ErrorStateFilter::predict(const Motion& motion) noexcept {
 
   position += dt * (middle * u);
   const double scale[2] = {1 / (1 - radius_ratio / 2), 1 / (1 + radius_ratio / 2)};
-  for (const int side : {0, 1}) {
-    const double contact = u.x() + omega.y() * geometry_.height - omega.z() * lever(side);
-    travel[side] += dt * scale[side] * (contact + creep_along(contact));
-  }
+  for (const int side : {0, 1}) travel[side] += dt * scale[side] * tread_speed(side, u, omega);
   rotation = rotation * turn;
   orthonormalise(rotation);
   rate = omega;

@@ -210,8 +210,8 @@ class ErrorStateFilter {
   const ContactGeometry& geometry() const noexcept { return geometry_; }
   const FilterNoise& noise() const noexcept { return noise_; }
   double lever(int side) const noexcept;  ///< m, lateral, of the contact from the IMU
-  /// m/s: by how much a wheel is faster than its contact, which has `speed` m/s.
-  double creep_along(double speed) const noexcept;
+  /// m/s: c + χ |c| f_x of that side's contact, where the IMU goes at `u` m/s and turns by `omega` rad/s, base axes.
+  double tread_speed(int side, const Eigen::Vector3d& u, const Eigen::Vector3d& omega) const noexcept;
   /// m/s: by how much the contacts drift to the left.
   double creep_across() const noexcept;
 

@@ -69,8 +69,7 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
   const Vector4 measured{sample.left, sample.right, 0, 0};
   Vector4 predicted;
   for (const int side : {0, 1}) {
-    const double contact = u.x() + w.y() * g.height - w.z() * filter.lever(side);
-    predicted[static_cast<std::size_t>(side)] = sample.dt * scale[side] * (contact + filter.creep_along(contact));
+    predicted[static_cast<std::size_t>(side)] = sample.dt * scale[side] * filter.tread_speed(side, u, w);
   }
   predicted[kLateral] = sample.dt * (u.y() + w.z() * g.middle_x - w.x() * g.height - filter.creep_across());
   predicted[kVertical] = sample.dt * (u.z() + w.x() * g.middle_y - w.y() * g.middle_x);
