@@ -4,7 +4,7 @@
 set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "the Python that ROS was built for")
 
 find_package(catkin REQUIRED COMPONENTS
-  diagnostic_msgs geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs roslib sensor_msgs std_msgs std_srvs
+  diagnostic_msgs dynamic_reconfigure geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs roslib sensor_msgs std_msgs std_srvs
   tf2_msgs)
 
 catkin_python_setup()

@@ -2,7 +2,21 @@
 # Sourced by the scripts beside it: where the repository is, whose tools are meant, how ROS is reached.
 
 set -euo pipefail
+
+say() { printf '== %s\n' "$*"; }
+usage() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }  # the comment at the head of the script
+fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
+
+# Before anything is installed or built.
+for argument in "$@"; do
+  case $argument in -h | --help) usage; exit 0 ;; esac
+done
+
 REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+case $REPOSITORY in
+  *[][[:space:]\;:\'\"\$\&\(\)\<\>\|\*\?\#\{\}\\\`\!]*)
+    fail "the path of the checkout, '$REPOSITORY', has a blank or a special character in it, which catkin and make cannot bear; move it to a path without" ;;
+esac
 cd "$REPOSITORY"
 
 # Debian's ROS belongs to Debian's Python; another python3 or cmake may stand first on the caller's PATH.
@@ -12,9 +26,8 @@ unset PYTHONHOME
 LINTERS=$REPOSITORY/build/linters  # venv with ruff and mypy
 XACRO=$REPOSITORY/build/xacro      # venv with xacro; src/description/xacro.h looks for it
 
-say() { printf '== %s\n' "$*"; }
-usage() { sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"; }  # the comment at the head of the script
-fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
+# shellcheck source-path=SCRIPTDIR
+source "$REPOSITORY/scripts/build_progress.sh"
 
 # One compiler per processor, but no more than one per 2 GB: the optimiser needs about 1 GB on Eigen.
 compilers() {
@@ -47,9 +60,9 @@ build_workspace() {
   local started=$SECONDS log=build/colcon.log
   mkdir -p build
   touch build/COLCON_IGNORE
-  say "building (progress: $REPOSITORY/$log)"
-  if ! MAKEFLAGS="-j$(compilers)" colcon build --event-handlers console_direct+ \
-      --cmake-args -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=$PYTHON >"$log" 2>&1 </dev/null; then
+  say "building with $(compilers) compilers (all output: $REPOSITORY/$log)"
+  if ! MAKEFLAGS="-j$(compilers)" with_progress "$log" build/robot_control colcon build \
+      --event-handlers console_direct+ --cmake-args -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=$PYTHON; then
     grep -n -A6 -E 'error:|Error |CMake Error|undefined reference' "$log" | head -60 >&2 || tail -40 "$log" >&2
     fail "the build failed; all of it is in $REPOSITORY/$log"
   fi

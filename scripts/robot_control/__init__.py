@@ -2,6 +2,8 @@
 scripts are made of.
 """
 
+import sys
+from pathlib import Path
 from typing import Any
 
 __all__ = ["ClosedLoop", "DriverError", "Estimator", "ParameterError", "RobotError"]
@@ -9,6 +11,29 @@ __all__ = ["ClosedLoop", "DriverError", "Estimator", "ParameterError", "RobotErr
 
 def __getattr__(name: str) -> Any:
     """Loads the compiled loop when it is asked for: the ROS scripts do without it."""
+    try:
+        return _load(name)
+    except ModuleNotFoundError as error:
+        if error.name != "robot_control._robot_control":
+            raise
+        raise ImportError(_without_its_compiled_part()) from error
+
+
+def _without_its_compiled_part() -> str:
+    here = Path(__file__).resolve().parent
+    built = sorted(here.glob("_robot_control.*.so"))
+    if built:
+        return (
+            f"robot_control.{built[0].name} in {here} is not for this Python {sys.version_info[0]}."
+            f"{sys.version_info[1]}, {sys.executable}: call /usr/bin/python3, for which ROS is built"
+        )
+    return (
+        f"the compiled part of robot_control is not in {here}: build it (scripts/demo or colcon build in the "
+        "checkout), then `source install/setup.bash` in this terminal"
+    )
+
+
+def _load(name: str) -> Any:
     if name == "ClosedLoop":
         from robot_control.closed_loop import ClosedLoop
 

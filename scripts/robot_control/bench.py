@@ -4,8 +4,8 @@ Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
 Of the same form is what the trials give that judge, too: campaign.py, driving.py, drive_promises.py, odometry_bench.py,
-bench_limiter; "not_judged" beside the rows names the robots that had to be left out, "table" are lines to be shown
-above them.
+hostile.py, tuning.py, bench_limiter, bench_release; "not_judged" beside the rows names the robots left out, "table"
+are lines to be shown above them.
 """
 
 from __future__ import annotations
@@ -19,11 +19,13 @@ from pathlib import Path
 from typing import Any
 
 from robot_control.fault_sequence import ALL_RUNS
+from robot_control.files import write_text
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
-JUDGED = ("campaign", "driving", "limiter", "drive", "odometry")  # only when they are named
+# Only when they are named.
+JUDGED = ("campaign", "driving", "limiter", "release", "drive", "odometry", "hostile", "tuning")
 NAMES = MEASURED + JUDGED
-LIMITER_RUNS = 1_000_000  # sequences of 200 cycles, a minute on two cores
+SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000}  # sequences; a minute each on two cores
 
 
 def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
@@ -40,28 +42,45 @@ def tell(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    """What NAME measured, and whether that is as it has to be."""
+def run_seeds(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    """Those that need nothing but their seeds."""
     if name == "campaign":
         from robot_control import campaign
 
         return campaign.bench(given.first, given.runs or ALL_RUNS, tell)
+    from robot_control import hostile
+
+    return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, tell)
+
+
+def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    """What NAME measured, and whether that is as it has to be."""
+    if name in {"campaign", "hostile"}:
+        return run_seeds(name, given)
     if name == "driving":
         from robot_control import driving
 
         return driving.bench(given.share, tell)
-    if name == "limiter":
-        result = run_program(given.programs / "bench_limiter", str(given.first), str(given.runs or LIMITER_RUNS))
+    if name in SEED_PROGRAMS:
+        result = run_program(given.programs / f"bench_{name}", str(given.first), str(given.runs or SEED_PROGRAMS[name]))
         return result, all(row["value"] == 0 for row in result["rows"] if row["name"] == "sequences failed")
     if name == "drive":
         from robot_control import drive_promises
 
         return drive_promises.bench(tell)
+    if name in {"odometry", "tuning"}:
+        return _run_over_robots(name, given)
+    return run_program(given.programs / f"bench_{name}", given.params), True
+
+
+def _run_over_robots(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     if name == "odometry":
         from robot_control import odometry_bench
 
         return odometry_bench.bench(given.first, given.runs or odometry_bench.SEEDS, tell, plots=given.plots)
-    return run_program(given.programs / f"bench_{name}", given.params), True
+    from robot_control import tuning
+
+    return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, tell)
 
 
 def to_table(result: dict[str, Any]) -> str:
@@ -112,8 +131,9 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    parser.add_argument("--first", type=_whole(0), default=0, help="campaign, limiter, odometry: first seed")
-    parser.add_argument("--runs", type=_whole(1), help="campaign, limiter, odometry: number of seeds")
+    seeds = "campaign, limiter, release, odometry, hostile, tuning"
+    parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
+    parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
@@ -142,7 +162,7 @@ def main() -> int:
         failed += not good
         print(f"\n{to_table(result)}", flush=True)
     if given.json is not None:
-        given.json.write_text(json.dumps(results, indent=2) + "\n")
+        write_text(given.json, json.dumps(results, indent=2) + "\n")
     return 1 if failed else 0
 
 

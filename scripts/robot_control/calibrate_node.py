@@ -38,6 +38,8 @@ from robot_control.calibration_law import (
 )
 from robot_control.calibration_moves import Move, Pilot, square, straight
 from robot_control.excitation_watch import Pose, hindrance, ignored, moves, unattended
+from robot_control.file_errors import in_words
+from robot_control.files import fit_for_message, write_text
 from robot_control.identify import Settings
 from robot_control.questions import NoAnswerError, Questions
 from robot_control.topic_sender import Signals, ended_by_signals
@@ -241,10 +243,10 @@ def main() -> None:
         print(outcome.table)
         for sentence in outcome.warnings:
             print(f"! {sentence}")
-        options.out.write_text(outcome.yaml)
+        write_text(options.out, outcome.yaml)
         print(f"wrote {options.out}: rosparam load it (in the robot's namespace), then start every node anew")
     except REFUSALS as error:
-        sys.exit(f"calibrate.py: {error}")
+        sys.exit(f"calibrate.py: {fit_for_message(in_words(error))}")
 
 
 OTHERWISE = ("and let the robot stand where it may drive", "as a tape measure does")

@@ -127,7 +127,7 @@ class ClosedLoop:
         self._loop.inject_fault(component, kind)
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
-        """As `diff_drive_controller/set_parameters`: limits and gains from the next cycle on, kept over `reset()`.
+        """As `diff_drive_controller/set_parameter_map`: limits and gains from the next cycle on, kept over `reset()`.
 
         Args:
             values: keys of the block `diff_drive_controller` in SI units, such as

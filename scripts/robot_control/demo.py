@@ -17,6 +17,7 @@ from pathlib import Path
 from types import FrameType
 from typing import IO
 
+from robot_control.file_errors import in_words
 from robot_control.loop_timing import processor_time, stolen_share
 from robot_control.run_log import LogError, read_log
 from robot_control.run_picture import draw_run
@@ -93,7 +94,7 @@ def run_demo(seconds: float, out: Path) -> int:
     try:
         log = read_log(out / "run.csv")
     except (OSError, LogError) as error:
-        raise DemoError(f"no log of the run: {error}; see {out / 'launch.log'}") from error
+        raise DemoError(f"no log of the run: {in_words(error)}; see {out / 'launch.log'}") from error
     summary = summarize(log, LINEAR, ANGULAR, driven, stolen)
     (out / "summary.json").write_text(to_json(summary))
     verdict = "tracked" if summary.passed else "NOT TRACKED"
@@ -244,7 +245,7 @@ def main() -> int:
     try:
         return run_demo(given.seconds, given.out)
     except (DemoError, OSError) as error:
-        print(f"scripts/demo: {error}", file=sys.stderr)
+        print(f"scripts/demo: {in_words(error)}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("scripts/demo: interrupted", file=sys.stderr)

@@ -15,9 +15,11 @@ from robot_control._robot_control import ParameterError, RobotError
 from robot_control.estimate_bag import BagTopics, read_bag
 from robot_control.estimate_csv import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
 from robot_control.estimate_encoder import counts_per_turn
-from robot_control.estimate_files import BagSink, CsvSink, NewFiles, Sink
+from robot_control.estimate_files import BagSink, CsvSink, Sink
 from robot_control.estimate_report import Summary
 from robot_control.estimate_samples import InputError, IntArray, Samples
+from robot_control.file_errors import in_words
+from robot_control.files import NewFiles, fit_for_message
 from robot_control.offline_estimator import Estimate, Estimator
 
 if TYPE_CHECKING:
@@ -47,7 +49,9 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         print(estimate(options))
     except (InputError, ParameterError, RobotError, ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"estimate.py: {error}")
+        sys.exit(f"estimate.py: {fit_for_message(in_words(error))}")
+    except MemoryError:
+        sys.exit("estimate.py: the recording needs more memory than there is; cut it into pieces")
     for path in _outputs(options):
         print(f"wrote {path}", file=sys.stderr)
 
@@ -188,7 +192,7 @@ def _check_paths(options: argparse.Namespace) -> None:
             raise InputError(f"{path} cannot be written: there is no folder {path.parent}")
         if path.is_dir():
             raise InputError(f"{path} cannot be written: it is a folder")
-        if path.exists() and options.input.exists() and path.samefile(options.input):
+        if path.is_file() and options.input.exists() and path.samefile(options.input):
             raise InputError(f"{path} is the recording itself; give the estimate another name")
     if len({path.resolve() for path in outputs}) < len(outputs):
         raise InputError("two outputs have one name")

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from robot_control.bounded_bag import InflationError, open_bag
 from robot_control.estimate_samples import FloatArray, InputError, Robot, Samples, Stream, merged, wheel_joints
 from robot_control.estimate_wheels import wheel_angles
+from robot_control.files import LARGEST_TABLE, check_input, listed, printable
 
 JOINT_STATE, ODOMETRY, IMU = "sensor_msgs/JointState", "nav_msgs/Odometry", "sensor_msgs/Imu"
 NO_IMU = "none"  # of --imu
@@ -34,10 +36,11 @@ def read_bag(path: Path, robot: Robot, topics: BagTopics) -> Samples:
         OSError: it cannot be opened.
     """
     rosbag = _rosbag()
+    check_input(path, LARGEST_TABLE)
     with path.open("rb"):
         pass
     try:
-        with rosbag.Bag(str(path)) as bag:
+        with open_bag(path) as bag:
             reader = _Reader(path, bag)
             imu = None if topics.imu == NO_IMU else reader.imu_topic(topics.imu)
             wheels, type_of_wheels = reader.wheel_topic(topics.wheels, robot, topics.joints)
@@ -48,8 +51,12 @@ def read_bag(path: Path, robot: Robot, topics: BagTopics) -> Samples:
             streams = [left, right, *([] if imu is None else reader.imu(imu, robot))]
     except rosbag.ROSBagUnindexedException:
         raise InputError(f"{path} has no index, its recorder was killed: run `rosbag reindex` on it") from None
-    except rosbag.ROSBagException as error:
-        raise InputError(f"{path} is no ROS 1 bag that can be read: {error}") from None
+    except (InputError, InflationError, MemoryError):
+        raise
+    except Exception as error:  # rosbag and genpy raise whatever a broken record makes of them
+        raise InputError(
+            f"{path} is no ROS 1 bag that can be read: {printable(f'{type(error).__name__}: {error}')}"
+        ) from error
     time_ns, tables = merged(streams)
     gyro, accel = (tables[2], tables[3]) if imu is not None else (None, None)
     known = [None if table is None or np.all(np.isnan(table)) else table for table in (gyro, accel)]
@@ -83,7 +90,7 @@ class _Reader:
         # REP 145: imu/data is imu/data_raw with an orientation.
         there = [name for name in there if name.removesuffix("data") + "data_raw" not in raw or name in raw]
         if len(there) > 1:
-            raise InputError(f"{self._path} has several IMU topics: say --imu with one of {', '.join(there)}, or none")
+            raise InputError(f"{self._path} has several IMU topics: say --imu with one of {listed(there)}, or none")
         if not there:
             self.notes.append(f"no topic of {IMU}; the wheels are all there is")
             return None
@@ -101,10 +108,10 @@ class _Reader:
             (self._of_type(ODOMETRY), ODOMETRY),
         ):
             if len(candidates) > 1:
-                others = f"; none of {', '.join(states)} holds the wheels' positions" if states else ""
+                others = f"; none of {listed(states)} holds the wheels' positions" if states else ""
                 raise InputError(
                     f"{self._path} has several topics of {type_of}: say --wheels with one of "
-                    f"{', '.join(candidates)}{others if type_of == ODOMETRY else ''}"
+                    f"{listed(candidates)}{others if type_of == ODOMETRY else ''}"
                 )
             if candidates:
                 self.notes.append(f"wheels: {candidates[0]}")
@@ -112,7 +119,7 @@ class _Reader:
         self._refuse_joints(states, robot, joints)
         raise InputError(
             f"{self._path} has no topic of {JOINT_STATE} or {ODOMETRY}; it has "
-            f"{', '.join(f'{name} ({of})' for name, of in sorted(self._types.items())) or 'no topic at all'}"
+            f"{listed([f'{name} ({of})' for name, of in sorted(self._types.items())]) or 'no topic at all'}"
         )
 
     def joints(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> tuple[Stream, Stream]:
@@ -199,7 +206,7 @@ class _Reader:
         what = f"is of {self._types[names[0]]}" if names else "is not in it"
         there = sorted(name for name, of in self._types.items() if of in types)
         raise InputError(
-            f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {', '.join(there) or 'none at all'}"
+            f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {listed(there) or 'none at all'}"
         )
 
     def _names_of(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> dict[str, list[str]] | None:
@@ -223,8 +230,8 @@ class _Reader:
         if not states:
             return
         wanted = list(joints or (*wheel_joints(robot, "left"), *wheel_joints(robot, "right")))
-        there = "; ".join(f"{name}: {', '.join(sorted(self._positions_in(name))) or 'none'}" for name in states)
+        there = "; ".join(f"{name}: {listed(sorted(self._positions_in(name))) or 'none'}" for name in states)
         raise InputError(
-            f"{self._path}: no topic holds positions of the wheels {', '.join(wanted)}. Joints with a position: "
+            f"{self._path}: no topic holds positions of the wheels {listed(wanted)}. Joints with a position: "
             f"{there}. Name two of them: --joints left=…,right=…"
         )

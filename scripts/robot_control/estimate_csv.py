@@ -8,15 +8,19 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
 from robot_control.estimate_samples import FloatArray, InputError, IntArray, Robot, Samples, wheel_joints
+from robot_control.files import LARGEST_TABLE, check_input, listed
 
 AXES = ("x", "y", "z")
 GYRO = tuple(f"gyro_{axis}" for axis in AXES)
 ACCEL = tuple(f"accel_{axis}" for axis in AXES)
 NAMES = ("time", "left", "right", *GYRO, *ACCEL)
+LONGEST_LINE = 100_000
+"""characters; below the field limit of Python's csv, and a row of a log has some 3000"""
 TIME_UNITS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}  # in ns
 GYRO_UNITS = {"rad/s": 1.0, "deg/s": math.pi / 180}
 ACCEL_UNITS = {"m/s2": 1.0, "g": 9.80665}
@@ -41,11 +45,24 @@ def read_csv(path: Path, robot: Robot, form: CsvForm) -> Samples:
             the line.
         OSError: it cannot be opened.
     """
+    check_input(path, LARGEST_TABLE)
     with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
-        table = _Table(path, file)
+        table = _Table(path, _lines(path, file))
         if {"run", "cycle", "time"} <= set(table.header) and not form.columns:
             return _read_log(table, robot)
         return _read_table(table, form)
+
+
+def _lines(path: Path, file: TextIO) -> Iterator[str]:
+    """The lines of a text; a file without any is not read to its end."""
+    number = 0
+    while line := file.readline(LONGEST_LINE + 1):
+        number += 1
+        if len(line) > LONGEST_LINE:
+            raise InputError(f"{path}, line {number}: longer than {LONGEST_LINE} characters; is it a CSV?")
+        if "\0" in line:
+            raise InputError(f"{path}, line {number}: holds a NUL character; is it a CSV?")
+        yield line
 
 
 def _read_table(table: _Table, form: CsvForm) -> Samples:
@@ -78,7 +95,7 @@ def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
     missing += [columns[name] for name in ("time", "left", "right") if columns[name] not in table.header]
     if missing:
         raise InputError(
-            f"{table.path}: no column {', '.join(dict.fromkeys(missing))}; its header is {', '.join(table.header)}. "
+            f"{table.path}: no column {', '.join(dict.fromkeys(missing))}; its header is {listed(table.header)}. "
             "Say which ones are meant: --columns time=…,left=…,right=…,gyro_z=…"
         )
     found = {name: column for name, column in columns.items() if column in table.header}
@@ -98,7 +115,7 @@ def _read_log(table: _Table, robot: Robot) -> Samples:
     if missing:
         there = [name for name in table.header if name.endswith("_position")]
         raise InputError(
-            f"{table.path} is a log of another robot: no column {', '.join(missing)}; it has {', '.join(there)}. Give "
+            f"{table.path} is a log of another robot: no column {', '.join(missing)}; it has {listed(there)}. Give "
             "the --urdf or --params that it was recorded with, or --columns time=time,left=…,right=…"
         )
     names = [*wanted, *GYRO, *ACCEL]
@@ -127,7 +144,7 @@ class _Table:
             raise InputError(f"{path}: empty; the first line must name the columns")
         twice = sorted({name for name in self.header if self.header.count(name) > 1})
         if twice:
-            raise InputError(f"{path}: two columns are named {', '.join(twice)}")
+            raise InputError(f"{path}: two columns are named {listed(twice)}")
         self._file = file
 
     def read(self, time: str, unit: str, names: list[str], run: str | None = None) -> tuple[IntArray, FloatArray, int]:

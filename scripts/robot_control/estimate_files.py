@@ -1,13 +1,10 @@
-"""The estimate as files: CSV and rosbag, written row by row, and there only when all of it is."""
+"""The estimate as files: CSV and rosbag, written row by row."""
 
 from __future__ import annotations
 
-import contextlib
-import os
 from collections.abc import Iterator
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Protocol, Self
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -106,34 +103,6 @@ class BagSink:
     def close(self) -> None:
         """The bag has its index."""
         self._bag.close()
-
-
-class NewFiles:
-    """Files that get their names when the block ends well, all of them; otherwise nothing is left of them."""
-
-    def __init__(self) -> None:
-        self._names: list[tuple[Path, Path]] = []
-
-    def name(self, final: Path) -> Path:
-        """Where to write what will be `final`."""
-        partial = final.with_name(f".{final.stem}.{os.getpid()}.partial{final.suffix}")
-        self._names.append((partial, final))
-        return partial
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        try:
-            if kind is None:
-                for partial, final in self._names:
-                    partial.replace(final)
-        finally:
-            for partial, _ in self._names:
-                with contextlib.suppress(OSError):
-                    partial.unlink()
 
 
 def _seconds(time_ns: IntArray) -> Iterator[str]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from robot_control.estimate_samples import FloatArray, IntArray
 
-WHEELS, OURS, SLIP, ANGULAR = "#9a9a9a", "#1f5fa8", "#c0392b", "#e07b00"
+WHEELS, OURS, SLIP, ANGULAR = "#c4c4c4", "#1f5fa8", "#c0392b", "#e07b00"
 AXES = (("x", "#c0392b"), ("y", "#2e8b57"), ("z", "#1f5fa8"))
 POINTS = 4000
 """of a curve; the picture is 1760 pixels wide"""
@@ -28,6 +28,10 @@ ELLIPSES = 14
 NINETY_FIVE = 2.4477
 """standard deviations of a circle that holds 95 % of a two-dimensional normal distribution: √(−2 ln 0.05)"""
 DEGREES = 180 / np.pi
+SMOOTH = 0.05
+"""s over which speeds are drawn as their mean: counts of an encoder in one millisecond would be all there is to see"""
+UNDER = 5.0
+"""points; width of a curve that the estimate may cover: it stays visible on both sides"""
 
 
 class Picture:
@@ -43,7 +47,10 @@ class Picture:
         """Takes the rows in."""
         chosen = np.arange(-self._count % self._every, time_ns.size, self._every)
         self._count += time_ns.size
-        self._parts.append((time_ns[chosen] / 1e9, {name: values[chosen] for name, values in estimate.items()}))
+        rows = dict(estimate)
+        for name in ("linear", "angular"):
+            rows[name] = _mean_of_neighbours(rows[name], time_ns)
+        self._parts.append((time_ns[chosen] / 1e9, {name: values[chosen] for name, values in rows.items()}))
         self._slip.append((time_ns, (estimate["flags"] & FLAGS["slip"]) != 0))
 
     def draw(self, path: Path, title: str) -> None:
@@ -84,13 +91,27 @@ class Picture:
         return [(float(time[first]), float(time[last])) for first, last in zip(begins, ends, strict=True)]
 
 
+def _mean_of_neighbours(values: FloatArray, time_ns: IntArray) -> FloatArray:
+    """Over SMOOTH about each row of (rows, 3)."""
+    step = float(np.median(np.diff(time_ns))) / 1e9 if time_ns.size > 1 else np.inf
+    half = round(SMOOTH / 2 / step)
+    if half < 1:
+        return values
+    sums = np.cumsum(np.concatenate([np.zeros((1, values.shape[1])), values]), axis=0)
+    row = np.arange(len(values))
+    first, last = np.maximum(row - half, 0), np.minimum(row + half + 1, len(values))
+    mean: FloatArray = (sums[last] - sums[first]) / (last - first)[:, None]
+    return mean
+
+
 def _draw_path(axes: Axes, time: FloatArray, rows: Estimate, spans: list[tuple[float, float]]) -> None:
     axes.set_title("Path [m]")
-    axes.plot(rows["wheel_x"], rows["wheel_y"], color=WHEELS, linewidth=1.2, label="wheels alone")
+    axes.plot(rows["wheel_x"], rows["wheel_y"], color=WHEELS, linewidth=UNDER, label="wheels alone")
     axes.plot(rows["x"], rows["y"], color=OURS, linewidth=1.6, label="estimate")
     for i, row in enumerate(_along(rows["distance"])):
         ellipse = _ellipse(rows["x"][row], rows["y"][row], rows["pose_covariance"][row, :2, :2])
-        ellipse.set(edgecolor=OURS, facecolor=OURS, alpha=0.25, label="95 %" if i == 0 else None)
+        label = f"95 %, at the end ± {_last_half_axis(rows):.2g} m" if i == 0 else None  # which may be too small to see
+        ellipse.set(edgecolor=OURS, facecolor=OURS, alpha=0.25, label=label)
         axes.add_patch(ellipse)
     for i, (first, last) in enumerate(spans):
         inside = (time >= first) & (time <= last)
@@ -111,6 +132,11 @@ def _along(distance: FloatArray) -> IntArray:
     return rows
 
 
+def _last_half_axis(rows: Estimate) -> float:
+    """m, of the ellipse at the end."""
+    return float(NINETY_FIVE * np.sqrt(np.linalg.eigvalsh(rows["pose_covariance"][-1, :2, :2])[1]))
+
+
 def _ellipse(x: float, y: float, covariance: FloatArray) -> Ellipse:
     variances, axes = np.linalg.eigh(covariance)
     half = NINETY_FIVE * np.sqrt(np.maximum(variances, 0))
@@ -127,14 +153,15 @@ def _draw_yaw(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Yaw [°]")
     yaw = np.unwrap(rows["yaw"]) * DEGREES
     deviation = np.sqrt(np.maximum(rows["pose_covariance"][:, 5, 5], 0)) * DEGREES
-    axes.plot(time, np.unwrap(rows["wheel_yaw"]) * DEGREES, color=WHEELS, linewidth=1.2, label="wheels alone")
+    axes.plot(time, np.unwrap(rows["wheel_yaw"]) * DEGREES, color=WHEELS, linewidth=UNDER, label="wheels alone")
     axes.plot(time, yaw, color=OURS, linewidth=1.6, label="estimate")
-    axes.fill_between(time, yaw - 2 * deviation, yaw + 2 * deviation, color=OURS, alpha=0.2, linewidth=0, label="± 2 σ")
+    label = f"± 2 σ, at the end ± {2 * deviation[-1]:.2g}°"  # which may be too narrow to see
+    axes.fill_between(time, yaw - 2 * deviation, yaw + 2 * deviation, color=OURS, alpha=0.2, linewidth=0, label=label)
     _legend_above(axes)
 
 
 def _draw_speeds(axes: Axes, time: FloatArray, rows: Estimate) -> None:
-    axes.set_title("Speeds [m/s], [rad/s]")
+    axes.set_title(f"Speeds [m/s], [rad/s], mean of {SMOOTH * 1000:.0f} ms")
     axes.plot(time, rows["linear"][:, 0], color=OURS, linewidth=1.4, label="forward [m/s]")
     axes.plot(time, rows["angular"][:, 2], color=ANGULAR, linewidth=1.4, label="turn [rad/s]")
     _legend_above(axes)
@@ -142,12 +169,21 @@ def _draw_speeds(axes: Axes, time: FloatArray, rows: Estimate) -> None:
 
 def _draw_bias(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Gyro bias [°/s], IMU axes, ± 2 σ")
+    if (rows["flags"] & FLAGS["no_gyro"] != 0).all():
+        axes.set(yticks=[], ylim=(0, 1))
+        axes.text(0.5, 0.5, "no gyro in the recording: yaw comes from the wheels alone", ha="center", va="center",
+                  color="#666666", transform=axes.transAxes)  # fmt: skip
+        return
     spread = 2 * float(np.median(rows["gyro_bias_deviation"])) * DEGREES + 0.02  # that of the start would hide all else
     all_axes = rows["gyro_bias"] * DEGREES
-    axes.set_ylim(float(all_axes.min()) - 2 * spread, float(all_axes.max()) + 2 * spread)
+    low, high = float(all_axes.min()) - 2 * spread, float(all_axes.max()) + 2 * spread
+    axes.set_ylim(low, high)
     for i, (name, color) in enumerate(AXES):
         bias = rows["gyro_bias"][:, i] * DEGREES
         deviation = rows["gyro_bias_deviation"][:, i] * DEGREES
-        axes.plot(time, bias, color=color, linewidth=1.4, label=name)
-        axes.fill_between(time, bias - 2 * deviation, bias + 2 * deviation, color=color, alpha=0.12, linewidth=0)
+        known = 4 * deviation < high - low  # before, it is anything: no band of that fits the panel
+        axes.plot(time, np.where(known, bias, np.nan), color=color, linewidth=1.4, label=name)
+        axes.fill_between(
+            time, bias - 2 * deviation, bias + 2 * deviation, where=known, color=color, alpha=0.12, linewidth=0
+        )
     _legend_above(axes)

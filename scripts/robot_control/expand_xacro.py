@@ -4,12 +4,22 @@ PyPI's xacro asks ROS 2's package index for `$(find PACKAGE)`, through the modul
 that module is ours: rospkg answers, then the folders above the file.
 """
 
+import io
+import resource
 import sys
 import xml.parsers.expat  # noqa: F401  (xacro 2.1 uses it without importing it)
+from collections.abc import Sequence
+from contextlib import redirect_stderr
 from pathlib import Path
 from types import ModuleType
+from typing import IO
 
+from robot_control.files import check_input
+
+LARGEST_INCLUDED = 64 << 20  # bytes
 NOT_INSTALLED = 69  # EX_UNAVAILABLE of sysexits.h
+MOST_MEMORY = 2 << 30  # bytes: macros that double each other in turn have no end before that
+LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
 
 def package_folder(package: str, file: Path) -> str:
@@ -40,14 +50,80 @@ def answer_find(file: Path) -> None:
     sys.modules["ament_index_python.packages"] = packages
 
 
+def open_text(name: str, mode: str = "r") -> IO[str]:
+    """What the module xacro uses as `open`: a file that is included may be no device, and none without end.
+
+    Raises:
+        InputFileError, OSError: it names the file.
+    """
+    if mode == "r":
+        check_input(Path(name), LARGEST_INCLUDED)
+    file: IO[str] = Path(name).open(mode)  # noqa: SIM115 (xacro closes it)
+    return file
+
+
+def circle(names: Sequence[str]) -> str:
+    """The first ring in what stands within each other, as "a → b → a"; empty where there is none."""
+    for end, name in enumerate(names):
+        if name in names[:end]:
+            return " → ".join(names[names.index(name) : end + 1])
+    return ""
+
+
+def foreign(file: str) -> str:
+    """What a file is that is no text of XML; empty: it may be."""
+    if not Path(file).is_file():
+        return ""  # a FIFO would wait for its writer
+    try:
+        with Path(file).open("rb") as opened:
+            start = opened.read(len(LFS_POINTER))
+    except OSError:
+        return ""
+    if start == LFS_POINTER:
+        return "it is a git-LFS pointer, not the file itself; fetch it: git lfs pull"
+    if start[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in start[:4]:
+        return "it is UTF-16, not UTF-8; save it as UTF-8: iconv -f UTF-16 -t UTF-8"
+    return ""
+
+
+def better_reason(said: str, files: Sequence[str], macros: Sequence[str]) -> str:
+    """What went wrong where xacro's own words do not name it, or at length; empty: they do.
+
+    Args:
+        said: what xacro wrote.
+        files: the files that it was in, each included by the one before.
+        macros: likewise the macros.
+    """
+    if files and (what := foreign(files[-1])):
+        return f"{files[-1]}: {what}"
+    if "amplification" in said:
+        return "its <!ENTITY …> definitions stand for each other and grow without end: write what they stand for"
+    if "recursion" not in said:
+        return ""
+    if ring := circle([Path(file).name for file in files]):
+        return f"files include each other in a circle: {ring}"
+    if ring := circle(macros):
+        return f"macros call each other in a circle: {ring}"
+    return ""
+
+
 def main() -> None:
     """Exits with xacro's own code, or with NOT_INSTALLED."""
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
     try:
         import xacro
     except ImportError:
         sys.exit(NOT_INSTALLED)
     answer_find(Path(sys.argv[1]))
-    xacro.main()
+    xacro.open = open_text
+    said = io.StringIO()
+    try:
+        with redirect_stderr(said):
+            xacro.main()
+    except SystemExit:
+        macros = [macro.body.getAttribute("name") for macro in xacro.macrostack or []]
+        sys.stderr.write(better_reason(said.getvalue(), xacro.filestack or [], macros) or said.getvalue())
+        raise
 
 
 if __name__ == "__main__":

@@ -165,7 +165,8 @@ def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
         weight /= weight.mean()
     scores = weighted * residual[:, None]
     sums = np.add.reduceat(scores, np.arange(0, len(scores), block), axis=0)
-    errors = np.sqrt(np.diag(inverse @ (sums.T @ sums) @ inverse.T))
+    variances = np.diag(inverse @ (sums.T @ sums) @ inverse.T)
+    errors = np.sqrt(np.where(variances >= 0, variances, np.nan))  # where the log tells nothing, rounding is left
     values, spread = np.full(len(TERMS), np.nan), np.full(len(TERMS), np.nan)
     values[there], spread[there] = theta / scale[there], errors / scale[there]
     return _Solution(values, spread, residual)
@@ -212,6 +213,11 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
         )
     for name, remedy in (("straight", "ramps forwards and back"), ("turning", "turns on the spot, both ways")):
         inertia = found[name]
+        if not np.isfinite(inertia.value) or not np.isfinite(inertia.error):
+            raise UnfitError(
+                f"{who}: the inertia {name} cannot be told from this log: it holds no {remedy}. identify.py without "
+                "--log drives them"
+            )
         if not inertia.error < INERTIA_ERROR * abs(inertia.value):
             raise UnfitError(
                 f"{who}: the inertia {name} is {inertia:.3g} kg·m², its standard error must be below "
@@ -223,6 +229,11 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
                 "contradict each other; look whether the joint's effort has the sign of its motion"
             )
     friction = max(found["damping"].error * fastest, found["friction"].error)
+    if not np.isfinite(friction):
+        raise UnfitError(
+            f"{who}: the friction cannot be told from this log: drive at several speeds, both ways; identify.py "
+            "without --log does"
+        )
     if not friction < max(FRICTION_ERROR * effort, 1e-9):
         raise UnfitError(
             f"{who}: the friction is known to {friction:.2g} N·m, {FRICTION_ERROR:.0%} of the RMS torque "

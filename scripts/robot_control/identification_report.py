@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -104,4 +105,8 @@ def _number(value: float) -> str:
 
 
 def _measured(estimate: Estimate) -> str:
-    return f"{estimate.value:.4g} ± {estimate.error:.1g}"
+    if not math.isfinite(estimate.value):
+        return "not in the log"
+    return f"{estimate.value:.4g}" + (
+        f" ± {estimate.error:.1g}" if math.isfinite(estimate.error) else ", error unknown"
+    )

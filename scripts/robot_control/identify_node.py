@@ -11,6 +11,8 @@ from robot_control import ParameterError, RobotError
 from robot_control.beside_a_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.excitation import Excitation, NoRoomError
 from robot_control.excitation_watch import Pose, hindrance, interruption, moves
+from robot_control.file_errors import in_words
+from robot_control.files import fit_for_message, write_text
 from robot_control.identification_rows import UnfitError
 from robot_control.identify import Options, Settings, evaluate, parse_options, plan
 from robot_control.identify_log import RecordingError, recording
@@ -54,7 +56,7 @@ def main() -> None:
                     log = _drive(settings, options, signals)
                 _fit(log, settings, options, "driven")
     except REFUSALS as error:
-        sys.exit(f"identify.py: {error}")
+        sys.exit(f"identify.py: {fit_for_message(in_words(error))}")
 
 
 def _fit(log: dict[str, FloatArray], settings: Settings, options: Options, source: str) -> None:
@@ -62,8 +64,11 @@ def _fit(log: dict[str, FloatArray], settings: Settings, options: Options, sourc
     print(outcome.table)
     for sentence in outcome.warnings:
         print(f"! {sentence}")
-    options.output.write_text(outcome.yaml)
-    print(f"wrote {options.output}: rosparam load it, then start {CONTROLLER} anew")
+    write_text(options.output, outcome.yaml)
+    print(
+        f"wrote {options.output}: rosparam load it (in the robot's namespace), start {CONTROLLER} again, then "
+        "rosservice call e_stop_reset: a restart beside the running robot is a stop"
+    )
 
 
 def _settings_of_files(options: Options) -> Settings:

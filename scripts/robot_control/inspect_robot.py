@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 
 from robot_control._robot_control import DriverError, ParameterError, RobotError
+from robot_control.file_errors import in_words
+from robot_control.files import fit_for_message, write_text
 from robot_control.robot_description import Description, describe, mjcf, stand
 from robot_control.robot_report import report
 
@@ -20,7 +22,7 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         robot = describe(options.file, options.params)
         if options.mjcf is not None:
-            options.mjcf.write_text(mjcf(options.file, options.params))
+            write_text(options.mjcf, mjcf(options.file, options.params))
         if options.picture is not None:
             from robot_control.robot_picture import draw_robot
 
@@ -30,7 +32,7 @@ def main(arguments: list[str] | None = None) -> None:
         except DriverError as error:
             fallen = error
     except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:  # a format unknown to matplotlib
-        sys.exit(f"inspect_robot.py: {error}")
+        sys.exit(f"inspect_robot.py: {fit_for_message(in_words(error))}")
     print(_json(robot) if options.json else report(robot))
     for written in (options.mjcf, options.picture):
         if written is not None:

@@ -28,6 +28,7 @@ HARD_LIMITS: dict[str, Any] = {
 SILENT = (
     "wheel_speed",
     "wheel_acceleration",
+    "torque_oscillation",
     "stall",
     "runaway",
     "wrong_direction",

@@ -34,15 +34,15 @@ def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -
     return text
 
 
-def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> dict[str, float]:
-    """How the robot stands in the scene, brakes on: `lean` [rad], and `carried`, the part of its weight that the drive
-    wheels carry.
+def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> dict[str, Any]:
+    """How the robot stands in the scene, brakes on: `lean` [rad]; `carried`, the part of its weight that the drive
+    wheels carry; `unloaded`, the wheels that carry nothing and the links that touch the ground instead, "" if none.
 
     Raises:
         RobotError, ParameterError: as `describe`.
         DriverError: it falls over, does not come to rest, or its wheels do not reach the ground.
     """
-    standing: dict[str, float] = _robot_control.stand(*_arguments(urdf, params))
+    standing: dict[str, Any] = _robot_control.stand(*_arguments(urdf, params))
     return standing
 
 

@@ -45,7 +45,10 @@ def _standing(robot: dict[str, Any]) -> list[str]:
     if "standing" not in robot:
         return []
     lean, carried = robot["standing"]["lean"], robot["standing"]["carried"]
-    return [f"stands             leaning {math.degrees(lean):.2f}°, {100 * carried:.0f} % on the drive wheels"]
+    lines = [f"stands             leaning {math.degrees(lean):.2f}°, {100 * carried:.0f} % on the drive wheels"]
+    if robot["standing"].get("unloaded"):
+        lines.append(f"NO LOAD            {robot['standing']['unloaded']}")
+    return lines
 
 
 def _wheels(robot: dict[str, Any]) -> list[str]:

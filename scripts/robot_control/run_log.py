@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_control.files import LARGEST_TABLE, check_input, printable
+
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
@@ -26,15 +28,22 @@ def read_log(path: Path) -> dict[str, FloatArray]:
 
     A last line that was cut short, because its writer was killed, is left out.
     """
-    with path.open(newline="") as file:
-        lines = csv.reader(file)
-        header = next(lines, [])
-        rows = [row for row in lines if len(row) == len(header)]
+    check_input(path, LARGEST_TABLE)
+    with path.open(newline="", errors="replace") as file:
+        try:
+            lines = csv.reader(file)
+            header = next(lines, [])
+            rows = [row for row in lines if len(row) == len(header)]
+        except csv.Error as error:
+            raise LogError(f"{path}: is no CSV: {error}") from None
     if "run" not in header or "cycle" not in header:
-        raise LogError(f"{path}: no columns `run` and `cycle`; its header is {header[:5]}")
+        raise LogError(f"{path}: no columns `run` and `cycle`; its header is {printable(str(header[:5]))}")
     if not rows:
         raise LogError(f"{path}: no rows")
-    table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
+    try:
+        table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
+    except ValueError as error:
+        raise LogError(f"{path}: {error}") from None
     run = table[:, header.index("run")]
     table = table[run == run.max()]
     return {name: table[:, i] for i, name in enumerate(header)}

@@ -11,6 +11,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from robot_control.brakes import Brake
 from robot_control.picture_style import STYLE
 from robot_control.run_log import Log, joint_names
 from robot_control.run_summary import RunSummary
@@ -19,7 +20,11 @@ from robot_control.tracking import CYCLE_TOLERANCE, commanded_path
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COMMANDED, TRUE, ESTIMATED = "#9a9a9a", "#1f5fa8", "#e07b00"
+COMMANDED, TRUE, ESTIMATED, BRAKED = "#9a9a9a", "#1f5fa8", "#f2b366", "#c0392b"
+ESTIMATED_PATH = "#e07b00"
+"""dashed over the true one, which it covers"""
+BRAKES_NAMED = 3
+"""in the picture; the table and summary.json name more"""
 JOINTS = ("#1f5fa8", "#c0392b", "#2e8b57", "#7d3c98")
 
 
@@ -34,13 +39,17 @@ def draw_run(log: Log, summary: RunSummary, title: str, path: Path) -> None:
         linear = figure.add_subplot(grid[0, 1])
         angular = figure.add_subplot(grid[1, 1], sharex=linear)
         torque = figure.add_subplot(grid[2, 1], sharex=linear)
+        linear.set_xlim(float(log["time"][0]), float(log["time"][-1]))
         _draw_speed(linear, log, summary, "linear")
         _draw_speed(angular, log, summary, "angular")
         _draw_torques(torque, log)
+        for axes in (linear, angular, torque):
+            _mark_brakes(axes, summary.brakes)
+            _legend_beside(axes)
+        _name_brakes(linear, summary.brakes)
         for axes in (linear, angular):
             axes.tick_params(labelbottom=False)
         torque.set_xlabel("time [s]")
-        linear.set_xlim(float(log["time"][0]), float(log["time"][-1]))
         figure.savefig(path)
         plt.close(figure)
 
@@ -50,7 +59,12 @@ def _draw_path(axes: Axes, log: Log, summary: RunSummary) -> None:
     axes.plot(x, y, color=COMMANDED, linewidth=5, alpha=0.5, label="commanded")
     axes.plot(log["truth_x"], log["truth_y"], color=TRUE, linewidth=2, label="true")
     axes.plot(
-        log["estimate_x"], log["estimate_y"], color=ESTIMATED, linewidth=2, linestyle=(0, (3, 2)), label="estimated"
+        log["estimate_x"],
+        log["estimate_y"],
+        color=ESTIMATED_PATH,
+        linewidth=2,
+        linestyle=(0, (3, 2)),
+        label="estimated",
     )
     axes.plot(0, 0, "o", color="black", markersize=7)
     axes.annotate("start", (0, 0), xytext=(8, -14), textcoords="offset points")
@@ -79,11 +93,12 @@ def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str) -> No
     name, unit = ("Speed", "m/s") if component == "linear" else ("Yaw rate", "rad/s")
     time = log["time"]
     axes.plot(time, log[f"requested_{component}"], color=COMMANDED, linewidth=1.2, linestyle=":", label="requested")
-    axes.plot(time, log[f"limited_{component}"], color=COMMANDED, linewidth=4, alpha=0.5, label="within limits")
-    axes.plot(time, log[f"truth_{component}"], color=TRUE, linewidth=1.4, label="true")
-    axes.plot(
-        time, log[f"estimate_{component}"], color=ESTIMATED, linewidth=1, linestyle=(0, (3, 2)), label="estimated"
-    )
+    limited = log[f"limited_{component}"].copy()
+    for brake in summary.brakes:
+        limited[(time >= brake.begin) & (time <= brake.end)] = np.nan  # which the brake leaves without effect
+    axes.plot(time, limited, color=COMMANDED, linewidth=4, alpha=0.5, label="within limits")
+    axes.plot(time, log[f"estimate_{component}"], color=ESTIMATED, linewidth=2, label="estimated")
+    axes.plot(time, log[f"truth_{component}"], color=TRUE, linewidth=1.2, label="true")  # above the estimate's noise
     if summary.tracking is not None:
         tracking = summary.tracking
         commanded = tracking.linear.commanded if component == "linear" else tracking.angular.commanded
@@ -94,7 +109,6 @@ def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str) -> No
         )  # fmt: skip
     axes.set_title(name)
     axes.set_ylabel(f"{name.lower()} [{unit}]")
-    _legend_beside(axes)
 
 
 def _draw_torques(axes: Axes, log: Log) -> None:
@@ -111,7 +125,29 @@ def _draw_torques(axes: Axes, log: Log) -> None:
         axes.plot(log["time"], log[f"{joint}_effort"], color=color, linewidth=1.2, label=f"{name}, actual")
     axes.set_title("Torque")
     axes.set_ylabel("torque [N·m]")
-    _legend_beside(axes)
+
+
+def _mark_brakes(axes: Axes, brakes: tuple[Brake, ...]) -> None:
+    """Line and area: a brake of a cycle is narrower than a pixel."""
+    for i, brake in enumerate(brakes):
+        label = f"gate braked, {len(brakes)} ×" if i == 0 else None
+        axes.axvspan(brake.begin, brake.end, color=BRAKED, alpha=0.25, linewidth=1.5, label=label)
+
+
+def _name_brakes(axes: Axes, brakes: tuple[Brake, ...]) -> None:
+    """Above the panel, where no curve is; those that would overlap are left to the table."""
+    begin, end = axes.get_xlim()
+    free = begin
+    for brake in brakes[:BRAKES_NAMED]:
+        text = f"{brake.begin:.2f} s: {brake.describe(1)}"
+        width = (end - begin) * len(text) / 95  # of an axis of 95 such letters
+        at = min(max(brake.begin, begin), end - width)
+        if at < free:
+            continue
+        axes.text(
+            at, 1.01, text, color=BRAKED, fontsize=9, va="bottom", transform=axes.get_xaxis_transform(), clip_on=False
+        )
+        free = at + width
 
 
 def _legend_beside(axes: Axes) -> None:

@@ -5,14 +5,20 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+import textwrap
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from robot_control.brakes import Brake, brakes_in_drive
 from robot_control.loop_timing import Distribution, LoopTiming, loop_timing
 from robot_control.run_log import Log, last
 from robot_control.tracking import RISE_LIMIT, SETTLE, NotSteadyError, Tracking, judge
+
+BRAKES_SHOWN = 4
+WIDTH = 80
+"""columns of the table"""
 
 SUPERVISOR_STATES = ("INIT", "READY", "DRIVE", "STOPPING", "STOPPED", "FAULT")
 """In the order of enum SupervisorState."""
@@ -52,6 +58,8 @@ STOP_CAUSES = (
     "overruns",
     "battery_low",
     "battery_empty",
+    "latch_unreadable",
+    "torque_oscillation",
 )
 """In the order of the bits of StopCause."""
 
@@ -80,6 +88,8 @@ class RunSummary:
     stolen_share: float
     """0 … 1 of the processors' time."""
     safety: Safety
+    brakes: tuple[Brake, ...] = ()
+    """Of the gate, while a motion was asked for."""
 
     @property
     def passed(self) -> bool:
@@ -109,7 +119,7 @@ def summarize(log: Log, linear: float, angular: float, driven: float, stolen_sha
         missing = driven - timing.slipped - (tracking.end - tracking.begin)
         if missing > RISE_LIMIT + SETTLE:
             tracking, untracked = None, f"{missing:.1f} s of the {driven:g} s driven are not in the steady part"
-    return RunSummary(tracking, untracked, timing, stolen_share, safety(log))
+    return RunSummary(tracking, untracked, timing, stolen_share, safety(log), brakes_in_drive(log))
 
 
 def safety(log: Log) -> Safety:
@@ -138,7 +148,8 @@ def to_json(summary: RunSummary) -> str:
 
 def to_table(summary: RunSummary) -> str:
     """The summary for a reader at a terminal, at most 80 columns wide."""
-    lines = [*_motion_lines(summary), "", *_timing_lines(summary), "", _safety_line(summary.safety)]
+    lines = [*_motion_lines(summary), "", *_timing_lines(summary), ""]
+    lines += [_safety_line(summary.safety), *_brake_lines(summary.brakes)]
     return "\n".join(lines)
 
 
@@ -162,7 +173,7 @@ def _motion_lines(summary: RunSummary) -> list[str]:
     lines.append(f"  {'estimated position [mm]':<32}{tracking.position_error * 1000:12.3f}")
     lines.append(f"  {'estimated yaw [mrad]':<32}{tracking.yaw_error * 1000:12.3f}")
     if tracking.excused_cycles:
-        lines.append(f"  {'cycles excused after a brake':<32}{tracking.excused_cycles:12d}")
+        lines.append(f"  {'cycles excused: braked, 50 after':<32}{tracking.excused_cycles:12d}")
     return lines
 
 
@@ -189,8 +200,24 @@ def _timing_lines(summary: RunSummary) -> list[str]:
 
 
 def _safety_line(safety_: Safety) -> str:
-    stops = f"stopped by {', '.join(safety_.causes)}" if safety_.causes else "no stop"
+    stops = f"stopped by {', '.join(safety_.causes)}" if safety_.causes else "no latched stop"
     return f"{'safety':<34}{safety_.state}, {stops} ({' → '.join(safety_.states)})"
+
+
+def _brake_lines(brakes: tuple[Brake, ...]) -> list[str]:
+    if not brakes:
+        return [f"{'brakes of the gate while driving':<34}none"]
+    cycles = sum(brake.cycles for brake in brakes)
+    lines = [
+        f"{'brakes of the gate while driving':<34}{len(brakes)}, {cycles} cycle{'s' if cycles != 1 else ''} in all"
+    ]
+    for brake in brakes[:BRAKES_SHOWN]:
+        lines += textwrap.wrap(
+            f"  {f'at {brake.begin:.3f} s':<32}{brake.describe()}", WIDTH, subsequent_indent=" " * 36
+        )
+    if len(brakes) > BRAKES_SHOWN:
+        lines.append(f"  and {len(brakes) - BRAKES_SHOWN} more")
+    return lines
 
 
 def _state_name(state: float) -> str:

@@ -8,6 +8,12 @@ LOCKSTEP = (
     "Paced by the wall clock: in lockstep, where many simulated seconds pass between two sends, every command times "
     "out. Give that run a command_script instead."
 )
+START = (
+    "Sends zeros until safety_status is READY or DRIVE, then the command; after a stop zeros again, until the robot is "
+    "released: then it ends with exit code 1, and motion needs a new start."
+)
+ZERO_PERIOD = 0.2
+"""s between two zeros, at most"""
 
 
 @dataclass(frozen=True)
@@ -22,6 +28,11 @@ class SendPlan:
     def sends_left(self, sent: int) -> bool:
         """Is there another one to send after `sent`?"""
         return self.count is None or sent < self.count
+
+    @property
+    def zero_period(self) -> float:
+        """s between two zeros."""
+        return min(self.period, ZERO_PERIOD)
 
     def describe(self, sent: int) -> str:
         """One line for the log."""
@@ -50,7 +61,7 @@ def parse_plan(arguments: list[str]) -> SendPlan:
     NaN and infinity are allowed as a velocity: the controller refuses them, and that can be seen with this tool.
     """
     parser = argparse.ArgumentParser(
-        prog="send_cmd.py", description="Repeats one velocity command on cmd_vel.", epilog=LOCKSTEP
+        prog="send_cmd.py", description=f"Repeats one velocity command on cmd_vel. {START}", epilog=LOCKSTEP
     )
     parser.add_argument("--linear", type=float, default=SendPlan.linear, help="m/s (default %(default)s)")
     parser.add_argument("--angular", type=float, default=SendPlan.angular, help="rad/s (default %(default)s)")

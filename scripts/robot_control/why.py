@@ -40,6 +40,7 @@ class Safety:
     speed_limit: float = float("inf")  # m/s
     missing: tuple[str, ...] = ()  # nodes, or what of them was not seen
     refusal: tuple[str, ...] = ()  # of the last reset
+    awaiting_zero: bool = False  # INIT ends with a zero request, or with silence on cmd_vel
 
 
 @dataclass(frozen=True)
@@ -200,6 +201,13 @@ def _stopped(facts: Facts) -> Answer | None:
     if safety is None or safety.state in {"READY", "DRIVE"}:
         return None
     absent = missing_nodes(facts)
+    if safety.awaiting_zero and not safety.causes and not absent:
+        senders = facts.commanders()
+        return Answer(
+            Verdict.STOPPED,
+            "Not ready: it waits for a zero request; stop the sender for 1.25 s or send zero.",
+            (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),) if senders else (),
+        )
     if safety.state == "INIT" or not safety.causes:
         who = ", ".join(safety.missing) or "the first cycles"
         return Answer(
@@ -336,6 +344,14 @@ def speeds(pair: tuple[float, float]) -> str:
 def _moving(facts: Facts) -> Answer:
     safety = facts.heard()
     slow = f", no faster than {safety.speed_limit:.2g} m/s" if safety and safety.speed_limit < float("inf") else ""
+    unloaded = facts.value(PLANT, "unloaded_wheels")
+    if unloaded and _told(facts):
+        return Answer(
+            Verdict.MOVING,
+            f"Its wheels turn and may not move it: {unloaded}.",
+            (("integrator", "look at how low the wheels reach, and at the <collision> shapes of the links named"),),
+            ("rosrun robot_control inspect_robot.py FILE",),
+        )
     if facts.measured is not None and max(map(abs, facts.measured)) > MOVING:
         return Answer(Verdict.MOVING, f"It moves: {speeds(facts.measured)}{slow}.")
     if _told(facts) and facts.limited is not None:

@@ -24,6 +24,7 @@ def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:
         speed_limit=status.speed_limit,
         missing=tuple(status.missing),
         refusal=tuple(status.reset_refusal),
+        awaiting_zero=status.awaiting_zero_request,
     )
 
 

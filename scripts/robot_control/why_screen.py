@@ -151,6 +151,9 @@ def _circumstances(facts: Facts) -> Rows:
     faults = facts.value(PLANT, "injected")
     if faults not in {"", "none"}:
         yield "injected", faults, "33"
+    unloaded = facts.value(PLANT, "unloaded_wheels")
+    if unloaded:
+        yield "wheels", unloaded, "33"
     slip = facts.reasons(ESTIMATOR, "slip").values()
     if slip or "slip" in facts.value(ESTIMATOR, "flags").split():
         yield "slip", "; ".join(map(bare, slip)) or "wheels and inertial sensors disagree", "33"

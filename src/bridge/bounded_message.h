@@ -3,8 +3,8 @@
 ///
 /// roscpp hands over whatever a publisher sent, and where it is too short throws and logs once per message: a broken or
 /// hostile sender would fill the log. Here its length on the wire is judged first; what is out of bounds is neither
-/// copied nor parsed, `accepted` stays false. (Before that roscpp has already received it, up to 1 GB: only a network
-/// that lets no stranger in helps against that.)
+/// copied nor parsed, `accepted` stays false. (Before that roscpp has already received it, up to what wire_guard.h
+/// allows.)
 
 #include <ros/message_traits.h>
 #include <ros/serialization.h>

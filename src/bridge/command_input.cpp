@@ -34,12 +34,14 @@ void CommandInput::limit(double timeout) {
   timeout_ = timeout;
   timeout_ns_ = nanoseconds(timeout);
   senders_.limit(nanoseconds(std::max(timeout, kSenderWindow)));
+  moving_.limit(timeout > 0 ? timeout_ns_ : nanoseconds(1));
 }
 
 void CommandInput::hear(const ArrivedCommand& arrived, const ArrivalTime& time) {
   const JudgedStamp stamp = judge_stamp(arrived.stamp_ns, time.ros_ns, timeout_ns_);
   if (stamp.verdict != StampVerdict::kUsable) {
     ++value_.stale;
+    moving_.hear(arrived.sender, time.loop_ns);
     refuse_stamp(arrived.sender, stamp, time.loop_ns);
     return;
   }
@@ -48,8 +50,15 @@ void CommandInput::hear(const ArrivedCommand& arrived, const ArrivalTime& time) 
   look(time.loop_ns);
   if (value_.many_senders != 0) {
     ++value_.crowded;
+    moving_.hear(arrived.sender, time.loop_ns);
     return;
   }
+  if (zero(arrived.twist)) {
+    moving_.drop(arrived.sender);
+  } else {
+    moving_.hear(arrived.sender, time.loop_ns);
+  }
+  value_.contested = zero(arrived.twist) && moving_.count(time.loop_ns) > 0 ? 1 : 0;
   value_.twist = arrived.twist;
   value_.age_ns = stamp.age_ns;
   ++value_.count;

@@ -9,6 +9,10 @@
 ///      Without, each message overrides the one before, and that is told;
 ///   3. NaN and infinity are the controller's to refuse (control/command_watch.h).
 ///
+/// A sender requests motion from a message that is refused or not of zero velocity until its next accepted zero
+/// velocity, or for cmd_vel_timeout (1 s where that is 0). A zero velocity that arrives while another sender requests
+/// motion is contested (VelocityCommand::contested): it is obeyed, and proves nothing (safety/motion_release.h).
+///
 /// Told: one warning per sender whose stamps are wrong, one per crowd and newcomer; again after kToldAgain at the
 /// earliest, in the loop's time.
 
@@ -72,6 +76,7 @@ class CommandInput {
   double timeout_ = 0;  ///< s
   std::int64_t timeout_ns_ = 0;
   CommandSenders senders_;
+  CommandSenders moving_;  ///< those that request motion
   VelocityCommand value_;
   std::map<std::string, StampVerdict> told_wrong_;  ///< of senders whose stamps are wrong, as last told
   std::map<std::string, std::int64_t> told_ns_;     ///< by sender and verdict, or by the names of a crowd

@@ -1,20 +1,28 @@
 #include "bridge/command_report.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "control/drive_limits.h"
+#include "signals/names.h"
 
 namespace robot_control {
 namespace {
 
 constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
+constexpr std::uint64_t kNoEffect = kReasonNoPermit | kReasonPermitBrake | kReasonPermitRamp | kReasonBadSensors;
+constexpr std::uint64_t kHindrances = kNoEffect | kReasonPermitSlow;
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
-  std::array<char, 200> text{};
+  std::array<char, 300> text{};
   std::snprintf(text.data(), text.size(), pattern, values...);
   return text.data();
+}
+
+PlanarTwist wish_of(const CommandFrame& command) {
+  return {command.twist_requested.linear[0], command.twist_requested.angular[2]};
 }
 
 }  // namespace
@@ -27,53 +35,87 @@ void CommandReport::limit(const DriveControllerParameters& parameters) {
   timeout_ = parameters.cmd_vel_timeout;
 }
 
-std::string CommandReport::speeds(const PlanarTwist& wish) const {
+void CommandReport::enter_run(const CommandFrame& command) {
+  run_ = command.head.run;
+  refused_ = timeouts_ = 0;
+  refusing_ = false;
+  told_.reset();
+  line_gap_ = timeout_gap_ = refusal_gap_ = {};
+}
+
+CommandReport::Told CommandReport::made_of(const CommandFrame& command) const {
+  const PlanarTwist wish = wish_of(command);
   const double scale = kinematics_.wheel_speed_scale(wish);
   const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
-  const SidePair rims = kinematics_.rim_speeds(twist);
-  std::string text = format("left %.2f m/s, right %.2f m/s (cmd_vel %g m/s, %g rad/s", rims.left, rims.right,
-                            wish.linear, wish.angular);
-  if (twist.linear != wish.linear || twist.angular != wish.angular) {
-    text += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
+  return {.rims = kinematics_.rim_speeds(twist),
+          .zero = wish.linear == 0 && wish.angular == 0,
+          .limited = twist.linear != wish.linear || twist.angular != wish.angular,
+          .hindrance = command.reasons & kHindrances};
+}
+
+bool CommandReport::same(const Told& one, const Told& other) {
+  if (one.hindrance != other.hindrance || one.zero != other.zero) return false;
+  return std::abs(one.rims.left - other.rims.left) < kSpeedStep &&
+         std::abs(one.rims.right - other.rims.right) < kSpeedStep && one.limited == other.limited;
+}
+
+std::string CommandReport::text(const Told& told, const CommandFrame& command) const {
+  const PlanarTwist wish = wish_of(command);
+  std::string asked = format("cmd_vel %g m/s, %g rad/s", wish.linear, wish.angular);
+  if ((told.hindrance & kNoEffect) != 0) {
+    const std::uint64_t why = told.hindrance & kNoEffect;
+    return asked + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));
   }
-  return text + ")";
+  if (told.hindrance != 0) return asked + ", but " + sentences_of(kCommandReasonNames, told.hindrance);
+  if (told.limited) {
+    const double scale = kinematics_.wheel_speed_scale(wish);
+    const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
+    asked += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
+  }
+  return format("left %.2f m/s, right %.2f m/s (%s)", told.rims.left, told.rims.right, asked.c_str());
 }
 
 std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
   std::vector<ReportLine> lines;
-  if (command.head.run != run_) {
-    run_ = command.head.run;
-    received_ = refused_ = timeouts_ = 0;
-    told_ = refusing_ = false;
-  }
+  if (command.head.run != run_) enter_run(command);
+  const std::int64_t now_ns = command.head.stamp_ns;
   const bool timed_out = command.timeouts > timeouts_;
   const std::uint64_t not_finite = command.requests_refused - command.requests_stale - command.requests_crowded;
   const bool refused = not_finite > refused_;
-  const bool received = command.requests_received > received_;
-  const bool valid = (command.reasons & kNoWish) == 0;
-  if (timed_out && told_ && (linear_ != 0 || angular_ != 0)) {
-    lines.push_back({true, format("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
-    told_ = false;
-  }
-  if (refused && !refusing_) {
-    lines.push_back({true, "cmd_vel holds NaN or infinity: refused, ramping down to standstill"});
-    told_ = false;
-  }
-  refusing_ = refusing_ || refused;
-  if (received && valid) {
-    const double linear = command.twist_requested.linear[0];
-    const double angular = command.twist_requested.angular[2];
-    if (!told_ || linear != linear_ || angular != angular_) {
-      lines.push_back({false, speeds({linear, angular})});
-    }
-    told_ = true;
-    refusing_ = false;
-    linear_ = linear;
-    angular_ = angular;
-  }
-  received_ = command.requests_received;
-  refused_ = not_finite;
+  const bool stands = (command.reasons & kNoEffect) != 0;
   timeouts_ = command.timeouts;
+  refused_ = not_finite;
+
+  if (timed_out) {
+    const bool moved = told_ && !told_->zero && !stands;
+    if (moved && timeout_gap_.over(now_ns)) {
+      lines.push_back({true, format("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
+      timeout_gap_.begin(now_ns);
+    }
+    told_.reset();
+  }
+  if (refused) {
+    if (!refusing_ && refusal_gap_.over(now_ns)) {
+      lines.push_back({true, std::string("cmd_vel holds NaN or infinity: refused") +
+                                 (stands ? "" : ", ramping down to standstill")});
+      refusal_gap_.begin(now_ns);
+    }
+    refusing_ = true;
+    told_.reset();
+  }
+  if ((command.reasons & kNoWish) != 0 || command.requests_received == 0) return lines;
+
+  refusing_ = false;
+  const Told made = made_of(command);
+  if (made.hindrance != hindrance_) hindered_since_ns_ = now_ns;
+  hindrance_ = made.hindrance;
+  const bool settled = !told_ || made.hindrance == told_->hindrance || now_ns - hindered_since_ns_ >= kSettle;
+  if ((told_ && same(made, *told_)) || !settled || !line_gap_.over(now_ns)) return lines;
+  const bool stood = !told_ || told_->zero;
+  told_ = made;
+  if (made.zero && (stood || made.hindrance != 0)) return lines;  // it stands, as it shall
+  lines.push_back({made.hindrance != 0, text(made, command)});
+  line_gap_.begin(now_ns);
   return lines;
 }
 

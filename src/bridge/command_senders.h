@@ -20,6 +20,9 @@ class CommandSenders {
 
   void hear(const std::string& sender, std::int64_t now_ns);
 
+  /// As if this one had not been heard.
+  void drop(const std::string& sender) { heard_ns_.erase(sender); }
+
   /// Those heard within the window, sorted by name.
   std::vector<std::string> at(std::int64_t now_ns);
   std::size_t count(std::int64_t now_ns);

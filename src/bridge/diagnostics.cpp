@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "bridge/ascii.h"
 #include "bridge/joined.h"
 #include "signals/names.h"
 
@@ -23,7 +24,7 @@ DiagnosticReport::DiagnosticReport(const std::string& node, const std::string& h
 void DiagnosticReport::value(const std::string& key, const std::string& text) {
   msg::KeyValue pair;
   pair.key = key;
-  pair.value = text;
+  pair.value = ascii(text);
   message_.values.push_back(pair);
 }
 
@@ -44,7 +45,7 @@ void DiagnosticReport::raise(msg::DiagnosticStatus::_level_type level, const std
   if (level > message_.level) message_.message.clear();
   message_.level = level;
   if (!message_.message.empty()) message_.message += "; ";
-  message_.message += sentence;
+  message_.message += ascii(sentence);
 }
 
 void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing) {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "bridge/ascii.h"
 #include "bridge/command_input.h"
 #include "bridge/command_report.h"
 #include "bridge/diagnostics.h"
@@ -15,6 +16,8 @@
 #include "bridge/pacer.h"
 #include "bridge/process_node.h"
 #include "bridge/reason_history.h"
+#include "bridge/reconfigure.h"
+#include "bridge/report_line.h"
 #include "bridge/tuning_messages.h"
 #include "runtime/controller_process.h"
 
@@ -33,6 +36,11 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     expect_monitor();
     ros::NodeHandle own("~");
     set_parameters_ = own.advertiseService("set_parameters", &DiffDriveControllerNode::set_parameters, this);
+    set_parameter_map_ = own.advertiseService("set_parameter_map", &DiffDriveControllerNode::set_parameter_map, this);
+    descriptions_ = own.advertise<msg::ConfigDescription>("parameter_descriptions", 1, true);
+    updates_ = own.advertise<msg::Config>("parameter_updates", 1, true);
+    descriptions_.publish(description_of(process().retuning().live()));
+    updates_.publish(config_of(process().retuning().live()));
     joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
@@ -78,10 +86,26 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   void receive(const ArrivedCommand& arrived) {
     const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
     const std::lock_guard lock(input_mutex_);
+    tell_dropped(arrived.sender);
     ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
     time.ros_ns = lockstep ? time.loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
     input_.hear(arrived, time);
     process().cycle().inbox().store(input_.value());
+  }
+
+  /// A command that arrives before the loop runs moves nothing later: said once, until the loop has run.
+  void tell_dropped(const std::string& sender) {
+    SensorFrame sensors;
+    CommandFrame command;
+    const bool runs = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head) &&
+                      process().output().newest(command) == Lookup::kFrame && command.head.run == sensors.head.run;
+    if (!runs && !dropped_told_) {
+      ROS_WARN(
+          "a command of %s arrived before the loop runs and is dropped, as are all until it does; send it again "
+          "when safety_status says READY",
+          sender.c_str());
+    }
+    dropped_told_ = !runs;
   }
 
   /// Stamp of the newest sensor frame. Any thread that holds the lock.
@@ -100,31 +124,51 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     }
   }
 
-  bool set_parameters(msg::SetParametersRequest& request, msg::SetParametersResponse& response) {
+  bool set_parameter_map(msg::SetParametersRequest& request, msg::SetParametersResponse& response) {
+    const Answer answer = retune(request.parameters);
+    response.success = answer.accepted ? 1 : 0;
+    response.message = ascii(answer.text);
+    return true;
+  }
+
+  /// As dynamic_reconfigure has it: the response holds what is in force, whether the request was taken or not.
+  bool set_parameters(msg::ReconfigureRequest& request, msg::ReconfigureResponse& response) {
+    const std::string text = request_text(request.config, process().retuning().live());
+    if (!text.empty()) retune(text);
+    response.config = config_of(process().retuning().live());
+    return true;
+  }
+
+  struct Answer {
+    bool accepted = false;
+    std::string text;
+  };
+
+  /// Takes a set as a whole or refuses it; says so in the log.
+  Answer retune(const std::string& request) {
     // One set at a time: what the server is told last is what holds. Nobody waits for it: the master may hang, and a
     // callback thread has to be left for the commands.
     const std::unique_lock lock(tuning_mutex_, std::try_to_lock);
+    Answer answer;
     if (!lock) {
-      response.success = 0;
-      response.message =
+      answer.text =
           "set_parameters refused, nothing is changed: another set is being taken, or waits for the ROS master; call "
           "again";
-      ROS_WARN("%s", response.message.c_str());
-      return true;
+      ROS_WARN("%s", answer.text.c_str());
+      return answer;
     }
     try {
-      const Retuned retuned = process().retuning().set(request.parameters);
+      const Retuned retuned = process().retuning().set(request);
       follow(process().retuning().in_force());
+      updates_.publish(config_of(process().retuning().live()));
       const std::string unwritten = write_overrides(retuned.values);
-      response.success = 1;
-      response.message = sentence(retuned) + (unwritten.empty() ? "" : "; " + unwritten);
-      ROS_INFO("set_parameters: %s", response.message.c_str());
+      answer = {.accepted = true, .text = sentence(retuned) + (unwritten.empty() ? "" : "; " + unwritten)};
+      ROS_INFO("set_parameters: %s", answer.text.c_str());
     } catch (const ParameterError& error) {
-      response.success = 0;
-      response.message = error.what();
-      ROS_WARN("%s", response.message.c_str());
+      answer.text = error.what();
+      ROS_WARN("%s", answer.text.c_str());
     }
-    return true;
+    return answer;
   }
 
   /// What beside the controller goes by its limits.
@@ -152,16 +196,6 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     return found ? plan : CommandFrame{};
   }
 
-  static void tell(const std::vector<ReportLine>& lines) {
-    for (const ReportLine& line : lines) {
-      if (line.warning) {
-        ROS_WARN("%s", line.text.c_str());
-      } else {
-        ROS_INFO("%s", line.text.c_str());
-      }
-    }
-  }
-
   ros::Publisher joint_commands_;
   ros::Publisher joint_targets_;
   ros::Publisher velocity_out_;
@@ -169,11 +203,15 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   ros::Publisher drive_state_;
   ros::ServiceServer set_parameters_;
-  std::mutex tuning_mutex_;                   ///< one set_parameters at a time; only ever tried
+  ros::ServiceServer set_parameter_map_;
+  ros::Publisher descriptions_;
+  ros::Publisher updates_;
+  std::mutex tuning_mutex_;                   ///< one set at a time; only ever tried
   std::atomic<bool> report_outdated_{false};  ///< other limits hold than `command_report_` knows
   std::mutex input_mutex_;
   CommandInput input_;
   std::int64_t loop_ns_ = 0;
+  bool dropped_told_ = false;
   Pacer pace_;
   CommandReport command_report_;
   CommandFrame command_;

@@ -1,6 +1,6 @@
 #pragma once
 /// diff_drive_controller: cmd_vel, cmd_vel_stamped in; joint_commands, joint_targets, cmd_vel_out, drive_state out;
-/// ~set_parameters.
+/// ~set_parameters (dynamic_reconfigure, with ~parameter_descriptions and ~parameter_updates) and ~set_parameter_map.
 ///
 /// A command's stamp is compared with the clock that senders stamp with, at its arrival: the time of day, in lockstep
 /// the stamp of the newest sensor frame, which is what /clock tells. (TimeMap, which never turns back, would take all

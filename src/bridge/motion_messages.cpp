@@ -54,13 +54,15 @@ Twist twist_of(const msg::Twist& message) {
           .angular = {message.angular.x, message.angular.y, message.angular.z}};
 }
 
-msg::JointState joint_states(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp) {
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
+                             ros::Time stamp) {
   msg::JointState message;
   message.header.stamp = stamp;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     message.name.push_back(robot.joints[i].name);
     message.position.push_back(sensors.joints[i].position);
-    message.velocity.push_back(sensors.joints[i].velocity);
+    const bool tracked = state != nullptr && i < robot.wheels.size();
+    message.velocity.push_back(tracked ? state->wheel_velocity[i] : sensors.joints[i].velocity);
     message.effort.push_back(sensors.joints[i].effort);
   }
   return message;

@@ -18,8 +18,11 @@ namespace robot_control {
 
 Twist twist_of(const msg::Twist& message);
 
-/// All joints in the order of the frames: wheels first, left before right; casters and other joints follow.
-msg::JointState joint_states(const SensorFrame& sensors, const RobotModel& robot, ros::Time stamp);
+/// All joints in the order of the frames: wheels first, left before right; casters and other joints follow. The wheels'
+/// velocities are those that the estimator tracks (StateFrame::wheel_velocity): what the encoder reports jumps by a
+/// count per period. Without a `state` of this run (null), and of other joints, velocities are as reported.
+msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const RobotModel& robot,
+                             ros::Time stamp);
 
 /// Pose in `odom_frame`, twist in `base_frame`; both covariances complete (REP 105, nav_msgs/Odometry).
 msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,

@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include "bridge/ascii.h"
 #include "bridge/description.h"
 #include "bridge/diagnostics.h"
 #include "bridge/motion_messages.h"
@@ -55,11 +56,17 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
         ground_truth(truth_frame_, report().odom_frame, report().base_frame, time().at(truth_frame_.head.stamp_ns)));
   }
 
+  void stop() override {
+    ProcessNode::stop();
+    if (finished()) tell_end();
+  }
+
   void diagnose(DiagnosticReport& report) override {
     report_driver(report, sensors_, process().real_time_factor());
     double slip = 0;
     for (const double wheel : truth_frame_.slip) slip = std::max(slip, wheel);
     report.value("wheel_slip_m_s", slip);
+    if (!plant_->unloaded().empty()) report.value("unloaded_wheels", plant_->unloaded());
     if (sensors_.driver_state == DriverState::kFault)
       report.value("fault_message", std::string(plant_->fault_message()));
   }
@@ -75,12 +82,22 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
         ROS_INFO("%s", text.c_str());
       }
     }
+    if (!plant_->unloaded().empty()) ROS_WARN("suspicious: %s", plant_->unloaded().c_str());
+  }
+
+  void tell_end() {
+    TruthFrame truth;
+    if (process().truth().newest(truth) != Lookup::kFrame) return;
+    const auto cycles = static_cast<double>(truth.head.cycle + 1);
+    const auto& position = truth.pose_world.position;
+    ROS_INFO("the run has ended after %.0f cycles (%g s): the robot is at x = %.3f m, y = %.3f m", cycles,
+             cycles * parameters().loop.period(), position[0], position[1]);
   }
 
   template <class Response>
   static bool answer(const ServiceAnswer& given, Response& response) {
     response.success = given.success ? 1 : 0;
-    response.message = given.message;
+    response.message = ascii(given.message);
     if (given.success) {
       ROS_INFO("%s", given.message.c_str());
     } else {

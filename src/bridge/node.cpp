@@ -10,13 +10,18 @@
 #include <cstdio>
 #include <exception>
 
+#include "bridge/accepted_sockets.h"
 #include "bridge/description.h"
 #include "bridge/diagnostics.h"
+#include "bridge/launch_end.h"
 #include "bridge/loopback.h"
 #include "bridge/messages.h"
+#include "bridge/wire_guard.h"
+#include "hal/bus_cleanup.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "rt/last_words.h"
+#include "rt/process_limits.h"
 #include "rt/realtime_thread.h"
 
 namespace robot_control {
@@ -76,6 +81,45 @@ bool await_master(const std::string& name) {
   return true;
 }
 
+/// Tells of connections that were closed, every 10 s at most.
+class ConnectionNote {
+ public:
+  void look(std::int64_t now_ns) {
+    const std::uint64_t evicted = evicted_connections();
+    const std::uint64_t overlong = overlong_announcements();
+    if ((evicted == evicted_ && overlong == overlong_) || now_ns < next_ns_) return;
+    next_ns_ = now_ns + kSilence;
+    if (evicted != evicted_) {
+      ROS_WARN(
+          "file descriptors run out: %llu connections to this node were closed, so that new ones find room; look "
+          "which program makes so many: ss -tnp",
+          static_cast<unsigned long long>(evicted - evicted_));
+    }
+    if (overlong != overlong_) {
+      ROS_WARN(
+          "%llu connections were closed that announced a header of more than %u or a message of more than %u "
+          "bytes: this node takes none as long; look which program sends them: ss -tnp",
+          static_cast<unsigned long long>(overlong - overlong_), kLongestHeader, kLongestMessage);
+    }
+    evicted_ = evicted;
+    overlong_ = overlong;
+  }
+
+ private:
+  static constexpr std::int64_t kSilence = 10'000'000'000;  // ns
+
+  std::uint64_t evicted_ = 0;
+  std::uint64_t overlong_ = 0;
+  std::int64_t next_ns_ = 0;
+};
+
+/// roslaunch ends its nodes one after the other, and would report one that ends before its turn as dead.
+void await_interrupt() {
+  constexpr std::int64_t kLimit = 20'000'000'000;  // ns; roslaunch gives a node 15 s before SIGTERM
+  constexpr std::int64_t kLook = 10'000'000;       // ns
+  for (const std::int64_t end = monotonic_ns() + kLimit; !interrupted.load() && monotonic_ns() < end;) sleep_ns(kLook);
+}
+
 class NodeLoop {
  public:
   NodeLoop(Node& node, const Setup& setup, ros::NodeHandle& handle)
@@ -98,6 +142,7 @@ class NodeLoop {
     next_poll_ns_ = now_ns + kPollPeriod;
     node_.poll();
     waiting_.look(node_.missing(), now_ns);
+    connections_.look(now_ns);
     tell_refusals(node_.realtime_messages());
   }
 
@@ -126,6 +171,7 @@ class NodeLoop {
   const Setup& setup_;
   ros::Publisher diagnostics_;
   WaitingNote waiting_;
+  ConnectionNote connections_;
   bool refusals_told_ = false;
   std::int64_t next_poll_ns_ = 0;
   std::int64_t next_diagnostic_ns_ = 0;
@@ -137,6 +183,11 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
   std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep their point
   install_last_words(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
+  ignore_file_size_signal();
+  if (const std::string problem = descriptor_problem(); !problem.empty()) {
+    std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), problem.c_str());
+    return 1;
+  }
   bind_as_ros_is_told();
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
@@ -149,7 +200,11 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
 
     ros::NodeHandle handle;
     catch_signals();  // again: ROS puts a handler of its own
-    for (const std::string& text : setup.overrides) ROS_INFO("%s", text.c_str());
+    if (const std::string problem = unguarded(); !problem.empty()) ROS_WARN("%s", problem.c_str());
+    if (const std::size_t ended = remove_ended_buses(setup.bus).size(); ended != 0) {
+      ROS_INFO("removed the shared memory of %zu runs that have ended", ended);
+    }
+    for (const std::string& text : setup.unexpected_overrides) ROS_INFO("%s", text.c_str());
     if (!setup.unread_description.empty()) ROS_WARN("%s", setup.unread_description.c_str());
     node->connect(handle);
     ros::AsyncSpinner callbacks(kCallbackThreads);
@@ -157,6 +212,7 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
     NodeLoop(*node, setup, handle).run();
     node->stop();  // first, so that a service that waits for cycles comes to its end
     callbacks.stop();
+    if (node->finished() && !interrupted.load() && end_launch()) await_interrupt();
     return 0;
   } catch (const std::exception& error) {
     if (ros::isInitialized()) forget_argument();

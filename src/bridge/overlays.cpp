@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 namespace robot_control {
 namespace {
@@ -52,13 +53,17 @@ std::string text_of(XmlRpc::XmlRpcValue value) {
   }
 }
 
+bool is_empty_text(XmlRpc::XmlRpcValue value) {
+  return value.getType() == XmlRpc::XmlRpcValue::TypeString && static_cast<std::string>(value).empty();
+}
+
 }  // namespace
 
 std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::string& block,
                                  const std::string& server_name, const std::vector<std::string>& ignored) {
   std::vector<Overlay> overlays;
   if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
-    if (tree.valid()) overlays.push_back({block, text_of(tree), server_name});
+    if (tree.valid() && !is_empty_text(tree)) overlays.push_back({block, text_of(tree), server_name});
     return overlays;
   }
   XmlRpc::XmlRpcValue copy = tree;  // its iterators are not const
@@ -68,6 +73,28 @@ std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::str
     overlays.insert(overlays.end(), inner.begin(), inner.end());
   }
   return overlays;
+}
+
+std::set<std::string> set_by_launch(const char* const* environment) {
+  std::set<std::string> paths;
+  for (; *environment != nullptr; ++environment) {
+    const std::string_view variable(*environment);
+    const std::size_t equals = variable.find('=');
+    if (!variable.starts_with(kSetByLaunch) || equals == std::string_view::npos) continue;
+    std::istringstream words{std::string(variable.substr(equals + 1))};
+    for (std::string path; words >> path;) paths.insert(path);
+  }
+  return paths;
+}
+
+std::vector<std::string> override_lines(const std::vector<Overlay>& overlays, const std::string& file,
+                                        const std::set<std::string>& unsaid) {
+  std::vector<std::string> lines;
+  for (const Overlay& overlay : overlays) {
+    if (unsaid.contains(overlay.path)) continue;
+    lines.push_back(overlay.origin + " = " + overlay.text + " overrides " + overlay.path + " of " + file);
+  }
+  return lines;
 }
 
 }  // namespace robot_control

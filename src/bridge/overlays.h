@@ -3,9 +3,12 @@
 ///
 /// `robot/rate` (relative to the namespace) lies over `robot.rate`, the private `~pid_kp` of a node over
 /// `<node's block>.pid_kp`. Every key found becomes an overlay: whether it exists is the schema's to judge, so
-/// that a typo on the server is refused like one in the file.
+/// that a typo on the server is refused like one in the file. An empty text is none: launch files set every argument,
+/// and the one that was not given is "".
 
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "parameters/parameters.h"
@@ -20,5 +23,16 @@ namespace robot_control {
 /// out.
 std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::string& block,
                                  const std::string& server_name, const std::vector<std::string>& ignored = {});
+
+/// Names of environment variables in which a launch file lists the paths that it overrides itself, between spaces:
+/// "robot.clock robot.wait_for_nodes". They reach the nodes of that launch alone, unlike parameters, which stay.
+inline constexpr std::string_view kSetByLaunch = "ROBOT_CONTROL_SET_BY_";
+
+/// The paths in all of these variables of `environment` ("NAME=value", as environ(7) has them).
+std::set<std::string> set_by_launch(const char* const* environment);
+
+/// "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml", a line each; without those of `unsaid`.
+std::vector<std::string> override_lines(const std::vector<Overlay>& overlays, const std::string& file,
+                                        const std::set<std::string>& unsaid = {});
 
 }  // namespace robot_control

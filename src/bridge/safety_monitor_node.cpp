@@ -2,15 +2,16 @@
 
 #include <ros/ros.h>
 
-#include <atomic>
 #include <mutex>
 
+#include "bridge/ascii.h"
 #include "bridge/diagnostics.h"
 #include "bridge/graph.h"
 #include "bridge/input_topic.h"
 #include "bridge/messages.h"
 #include "bridge/process_node.h"
 #include "bridge/status_messages.h"
+#include "bridge/stop_log.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "runtime/monitor_process.h"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::int64_t kStatusPeriod = 1'000'000'000;  // ns, at the latest
 constexpr std::int64_t kStatusGap = 20'000'000;        // ns, at the earliest: a flickering cause floods nobody
+constexpr std::int64_t kTriggerWait = 500'000'000;     // ns; the other callback thread still hears the topic e_stop
 constexpr std::int64_t kResetWait = 1'000'000'000;     // ns
 constexpr std::int64_t kResetLook = 2'000'000;         // ns
 
@@ -37,6 +39,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     clearance_.connect(handle, [this](const msg::Float64& message) { hear_clearance(message.data); });
     trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
     reset_ = handle.advertiseService("e_stop_reset", &SafetyMonitorNode::reset, this);
+    if (!process().restored().empty()) ROS_WARN("%s", process().restored().c_str());
   }
 
   std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {1.0e9 / kStatusGap}); }
@@ -50,8 +53,11 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     const std::int64_t silence_ns = now_ns - told_ns_;
     if (told_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
     if (SensorFrame sensors; live(sensors)) time().follow(sensors);
-    status_.publish(found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns())
-                          : waiting_status(absent));
+    msg::SafetyStatus status =
+        found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns()) : waiting_status(absent);
+    note_latch_file(status);
+    status_.publish(status);
+    tell(stop_log_.look(status));
     told_permit_ = found;
     told_missing_ = absent;
     told_ = permit;
@@ -67,12 +73,18 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     return process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
   }
 
-  /// A permit of the driver's present run, or of the run that this process has seen end. What an earlier
-  /// session left is none.
+  /// A permit of this process. What an earlier one left is none.
   bool seen(Permit& permit) {
-    if (process().output().newest(permit) != Lookup::kFrame) return false;
-    if (process().is_current(permit.head)) seen_run_.store(permit.head.run);
-    return permit.head.run == seen_run_.load();
+    return process().output().newest(permit) == Lookup::kFrame && permit.head.run == process().cycle().published_run();
+  }
+
+  void note_latch_file(msg::SafetyStatus& status) {
+    const std::string& problem = process().latch_file_problem();
+    if (problem.empty()) return;
+    status.warnings.emplace_back("latch_file");
+    status.warning_sentences.push_back(
+        ascii("a stop would not outlive a reboot, latch_file cannot be written: " + problem +
+              " (set safety_monitor/latch_file to a file that this user may write)"));
   }
 
   void add(std::uint64_t OperatorInput::*counter) {
@@ -98,10 +110,16 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
 
   bool trigger(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
     add(&OperatorInput::e_stop_services);
-    const std::vector<std::string> absent = missing();
-    response.success = 1;
-    response.message = "stopped; e_stop_reset releases";
-    if (!absent.empty()) response.message = "noted; the robot brakes anyway, because " + absent.front() + " is missing";
+    Permit permit;
+    for (const std::int64_t end = monotonic_ns() + kTriggerWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
+      if (!seen(permit) || (permit.causes & kCauseEmergencyStopService) == 0) continue;
+      response.success = 1;
+      response.message = "stopped; e_stop_reset releases";
+      return true;
+    }
+    response.success = 0;
+    response.message = "the stop is not confirmed: the monitor's loop has not latched it yet; use the hardware e-stop";
+    for (const std::string& name : missing()) response.message += "; waiting for " + ascii(name);
     return true;
   }
 
@@ -123,12 +141,12 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
         continue;
       }
       response.success = permit.reset_refusal == 0;
-      response.message = reset_text(before, permit, publishers_of(command_topics_));
+      response.message = ascii(reset_text(before, permit, publishers_of(command_topics_)));
       return true;
     }
     response.success = 0;
     response.message = "not handled within 1 s: the monitor sees no sensor frames";
-    for (const std::string& name : missing()) response.message += "; waiting for " + name;
+    for (const std::string& name : missing()) response.message += ascii("; waiting for " + name);
     return true;
   }
 
@@ -142,10 +160,10 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   std::mutex input_mutex_;
   std::mutex reset_mutex_;
   OperatorInput input_;
+  StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9, parameters().controller.cmd_vel_timeout};
   Permit told_;
   bool told_permit_ = false;
   std::vector<std::string> told_missing_;
-  std::atomic<std::uint64_t> seen_run_{0};
   std::int64_t told_ns_ = 0;
 };
 

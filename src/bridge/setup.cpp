@@ -5,21 +5,27 @@
 #include <ros/package.h>
 #include <ros/param.h>
 #include <ros/this_node.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 
 #include "bridge/description.h"
 #include "bridge/overlays.h"
 #include "hal/bus.h"
+#include "runtime/latch_file.h"
 
 namespace robot_control {
 namespace {
 
-/// Where the base file lies: `~config`, else the installed one.
+std::string installed_config() {
+  return ros::package::getPath("robot_control") + "/config/robot_params.yaml";
+}
+
+/// `~config`, which lies over the installed file, else that one.
 std::string config_path() {
   std::string path;
-  if (ros::param::get("~config", path)) return path;
-  return ros::package::getPath("robot_control") + "/config/robot_params.yaml";
+  return ros::param::get("~config", path) ? path : installed_config();
 }
 
 void append(std::vector<Overlay>& overlays, const std::string& name, const std::string& block,
@@ -35,7 +41,7 @@ std::vector<Overlay> server_overlays(const std::string& node) {
   std::vector<Overlay> overlays;
   append(overlays, "robot", "robot");
   append(overlays, ros::this_node::getName(), node, {"config", "urdf"});
-  if (std::string urdf; ros::param::get("~urdf", urdf)) {
+  if (std::string urdf; ros::param::get("~urdf", urdf) && !urdf.empty()) {
     overlays.push_back(overlays_of(urdf, "robot.urdf", ros::names::resolve("~urdf")).front());
   }
   return overlays;
@@ -77,15 +83,19 @@ std::string clock_problem(ClockMode clock, bool use_sim_time) {
 
 namespace {
 
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
 void fill_setup(const std::string& node, Setup& setup) {
   const std::string path = config_path();
   const std::vector<Overlay> overlays = server_overlays(node);
-  for (const Overlay& overlay : overlays) {
-    setup.overrides.push_back(overlay.origin + " = " + overlay.text + " overrides " + overlay.path + " of " + path);
-  }
+  setup.overrides = override_lines(overlays, path);
+  setup.unexpected_overrides = override_lines(overlays, path, set_by_launch(environ));
   std::string problems;
   try {
-    setup.parameters = read_parameters(path, overlays);
+    setup.parameters = read_parameters(path, overlays, installed_config());
   } catch (const ParameterError& error) {
     throw SetupError(error.what());  // without parameters nothing else can be judged
   }
@@ -103,6 +113,7 @@ void fill_setup(const std::string& node, Setup& setup) {
   // Each robot has a folder of its own: logs of two namespaces never meet in one file.
   std::string& directory = setup.parameters.telemetry.directory;
   directory += (directory.empty() ? "." : "") + ros::this_node::getNamespace();
+  setup.parameters.latch_file = latch_path(setup.parameters.latch_file, host_name(), ros::this_node::getNamespace());
   setup.bus = setup.parameters.loop.bus;
   if (setup.bus.empty()) setup.bus = bus_name(ros::master::getURI(), ros::this_node::getNamespace());
 }
@@ -115,7 +126,7 @@ Parameters parameters_of(const std::string& node) {
   append(overlays, node, node, {"config", "urdf"});
   std::string path;
   if (!ros::param::get(ros::names::resolve(node + "/config"), path)) path = config_path();
-  return read_parameters(path, overlays);
+  return read_parameters(path, overlays, installed_config());
 }
 
 Setup read_setup(const std::string& node) {

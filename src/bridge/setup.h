@@ -24,7 +24,8 @@ struct Setup {
   RobotModel robot;
   std::string bus;
   std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
-  std::string unread_description;      ///< that another robot_description stands on the server, or empty
+  std::vector<std::string> unexpected_overrides;  ///< of these, without those that the launch file itself causes
+  std::string unread_description;                 ///< that another robot_description stands on the server, or empty
 };
 
 /// `clock: wall` with /use_sim_time = true would stamp and time everything wrongly, `clock: lockstep` without it

@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "bridge/ascii.h"
 #include "bridge/calibration_keeper.h"
 #include "bridge/diagnostics.h"
 #include "bridge/motion_messages.h"
@@ -49,10 +50,12 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   void publish() override {
     if (process().sensors().newest(sensors_) != Lookup::kFrame || !process().is_current(sensors_.head)) return;
     time().follow(sensors_);
+    const bool estimated = process().output().newest(state_) == Lookup::kFrame && state_.head.run == sensors_.head.run;
     if (joint_pace_.due(sensors_.head.run, sensors_.head.stamp_ns)) {
-      joint_states_.publish(joint_states(sensors_, robot(), time().at(sensors_.head.stamp_ns)));
+      const StateFrame* const state = estimated ? &state_ : nullptr;
+      joint_states_.publish(joint_states(sensors_, state, robot(), time().at(sensors_.head.stamp_ns)));
     }
-    if (process().output().newest(state_) != Lookup::kFrame || state_.head.run != sensors_.head.run) return;
+    if (!estimated) return;
     slip_lately_ |= state_.slip;
     if (odom_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_odometry();
     if (imu_pace_.due(state_.head.run, state_.head.stamp_ns)) publish_imu();
@@ -102,7 +105,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   bool reset_odometry(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
     const std::string refusal = take({0, 0, 0});
     response.success = refusal.empty();
-    response.message = refusal.empty() ? "the pose is zero from the next cycle on" : refusal;
+    response.message = ascii(refusal.empty() ? "the pose is zero from the next cycle on" : refusal);
     return true;
   }
 
@@ -111,7 +114,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     const std::string problem = odometry_problem(wished);
     const std::string refusal = problem.empty() ? take(normalised(wished)) : "not done: " + problem;
     response.success = refusal.empty();
-    response.message = refusal.empty() ? taken_sentence(normalised(wished)) : refusal;
+    response.message = ascii(refusal.empty() ? taken_sentence(normalised(wished)) : refusal);
     return true;
   }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "bridge/ascii.h"
 #include "bridge/joined.h"
 #include "signals/names.h"
 
@@ -65,7 +66,7 @@ std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& 
   if (evidence->joint < robot.joints.size()) {
     text.append(text.empty() ? "" : ", ").append(robot.joints[evidence->joint].name);
   }
-  return text;
+  return ascii(text);
 }
 
 msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, const std::vector<std::string>& absent,
@@ -98,6 +99,8 @@ msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, c
   if (absent.empty() && permit.state == SupervisorState::kInit) {
     assign(message.missing, sentences(kMissingNodeNames, permit.missing));
   }
+  message.awaiting_zero_request =
+      permit.state == SupervisorState::kInit && permit.missing == 0 && permit.unreleased != 0 && absent.empty();
   message.resets = permit.resets_handled;
   assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal));
   message.run = permit.head.run;
@@ -119,7 +122,7 @@ msg::SafetyStatus waiting_status(const std::vector<std::string>& missing) {
 bool news(const Permit& last, const Permit& now) {
   return last.state != now.state || last.action != now.action || last.causes != now.causes ||
          last.active != now.active || last.warnings != now.warnings || last.speed_limit != now.speed_limit ||
-         last.first_cause != now.first_cause || last.missing != now.missing ||
+         last.first_cause != now.first_cause || last.missing != now.missing || last.unreleased != now.unreleased ||
          last.resets_handled != now.resets_handled || last.reset_refusal != now.reset_refusal ||
          last.head.run != now.head.run;
 }

@@ -18,12 +18,19 @@ class TelemetryNode final : public Node {
  public:
   explicit TelemetryNode(const Setup& setup)
       : lockstep_(setup.parameters.loop.clock == ClockMode::kLockstep),
+        quota_(setup.parameters.telemetry.quota),
         process_(setup.parameters, setup.robot, setup.bus) {}
 
-  void connect(ros::NodeHandle& /*handle*/) override { ROS_INFO("writing %s", process_.path().c_str()); }
+  void connect(ros::NodeHandle& /*handle*/) override {
+    const std::string path = std::filesystem::absolute(process_.path()).lexically_normal().string();
+    ROS_INFO("writing %s; telemetry.quota = %g GB", path.c_str(), quota_);
+  }
   void poll() override { process_.poll(); }
   void publish() override {
     process_.drain();
+    for (const std::string& path : process_.take_removed()) {
+      ROS_WARN("removed %s, the oldest log: telemetry.quota = %g GB", path.c_str(), quota_);
+    }
     if (process_.problem().empty() || told_) return;
     told_ = true;
     ROS_ERROR("%s. The loop goes on, its rows are counted and lost", process_.problem().c_str());
@@ -57,6 +64,7 @@ class TelemetryNode final : public Node {
 
  private:
   bool lockstep_;
+  double quota_;  ///< GB
   bool told_ = false;
   TelemetryProcess process_;
 };

@@ -21,14 +21,24 @@ std::uint64_t cycles_left(double timeout, std::int64_t age_ns, double period) no
   return static_cast<std::uint64_t>(std::max(0.0, std::floor(left / period + kMargin)));
 }
 
+std::uint64_t cycles_of_silence(double timeout, double period) noexcept {
+  constexpr double kWithoutTimeout = 1;  // s
+  return cycles_left(timeout > 0 ? timeout : kWithoutTimeout, 0, period);
+}
+
 }  // namespace
 
-CommandWatch::CommandWatch(double timeout, double period) : timeout_(timeout), period_(period) {
+CommandWatch::CommandWatch(double timeout, double period)
+    : timeout_(timeout), period_(period), silence_needed_(cycles_of_silence(timeout, period)) {
   reset();
 }
 
-void CommandWatch::reset(const VelocityCommand& inbox) noexcept {
+void CommandWatch::reset(const VelocityCommand& inbox, bool with_zero) noexcept {
   first_ = last_ = inbox;
+  first_cycle_.reset();
+  message_cycle_ = 0;
+  zero_requests_ = with_zero ? 1 : 0;
+  zero_requested_ = with_zero;
   life_ = request_cycle_ = not_finite_ = timeouts_ = stale_ = 0;
   reason_ = kReasonNoCommand;
   wish_ = {};
@@ -36,6 +46,7 @@ void CommandWatch::reset(const VelocityCommand& inbox) noexcept {
 
 void CommandWatch::limit(double timeout) noexcept {
   timeout_ = timeout;
+  silence_needed_ = cycles_of_silence(timeout, period_);
   life_ = cycles_left(timeout_, last_.age_ns, period_);
 }
 
@@ -48,7 +59,19 @@ void CommandWatch::accept(const VelocityCommand& request, std::uint64_t cycle) n
   if (!good) ++not_finite_;
 }
 
+void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t cycle) noexcept {
+  const bool first = !first_cycle_.has_value();
+  if (first) first_cycle_ = message_cycle_ = cycle;
+  const bool refused = request.stale != last_.stale || request.crowded != last_.crowded;
+  const bool accepted = request.count != last_.count;
+  if (!refused && !accepted) return;
+  message_cycle_ = cycle;
+  zero_requested_ = !first && !refused && zero(request.twist) && request.contested == 0 && request.many_senders == 0;
+  if (zero_requested_) ++zero_requests_;
+}
+
 const Twist& CommandWatch::step(const VelocityCommand& request, std::uint64_t cycle) noexcept {
+  note_messages(request, cycle);
   if (request.stale != last_.stale) stale_ = kReasonStale;
   if (request.count != last_.count) {
     stale_ = 0;

@@ -14,8 +14,19 @@
 /// lives. Commands overwritten in the inbox between two cycles count as received; only the last one is judged.
 ///
 /// Only cycles are counted here: no clock that jumps can end a command early, or bring one back.
+///
+/// Beside the request stands the evidence that no motion is requested, for the safety monitor (motion_release.h):
+///
+///   zero request    an accepted command of zero velocity that is not contested (VelocityCommand::contested), received
+///                   after the first step: what the inbox holds then may be as old as the process
+///   zero requested  a zero request was received, and since then nothing else: no motion, no refused message,
+///                   no contested zero
+///   silent cycles   k − k_message, k_message the cycle of the last message of any sender, accepted or refused; before
+///                   the first one the cycle of the first step
+///   silence needed  cmd_vel_timeout in cycles; 1 s where that is 0
 
 #include <cstdint>
+#include <optional>
 
 #include "signals/velocity_command.h"
 
@@ -26,8 +37,9 @@ class CommandWatch {
   /// `timeout` s, 0 = never; `period` > 0, s.
   CommandWatch(double timeout, double period);
 
-  /// A new run: what the inbox holds now, and whatever came before, counts as not received.
-  void reset(const VelocityCommand& inbox = {}) noexcept;
+  /// A new run: what the inbox holds now, and whatever came before, counts as not received. `with_zero`: the run begins
+  /// with a zero request, because nothing older can be pending (a command script, ClosedLoop).
+  void reset(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
 
   /// Another timeout, s, from the next step on; for the command that stands, too.
   void limit(double timeout) noexcept;
@@ -45,8 +57,15 @@ class CommandWatch {
   std::uint64_t crowded() const noexcept { return last_.crowded - first_.crowded; }
   std::uint64_t timeouts() const noexcept { return timeouts_; }
 
+  std::uint64_t first_cycle() const noexcept { return first_cycle_.value_or(0); }
+  std::uint64_t zero_requests() const noexcept { return zero_requests_; }
+  bool zero_requested() const noexcept { return zero_requested_; }
+  std::uint64_t silent_cycles(std::uint64_t cycle) const noexcept { return cycle - message_cycle_; }
+  std::uint64_t silence_needed() const noexcept { return silence_needed_; }
+
  private:
   void accept(const VelocityCommand& request, std::uint64_t cycle) noexcept;
+  void note_messages(const VelocityCommand& request, std::uint64_t cycle) noexcept;
 
   double timeout_;
   double period_;
@@ -59,6 +78,11 @@ class CommandWatch {
   std::uint64_t reason_ = 0;
   std::uint64_t stale_ = 0;  ///< kReasonStale or 0
   Twist wish_;
+  std::optional<std::uint64_t> first_cycle_;  ///< of the first step since `reset`
+  std::uint64_t message_cycle_ = 0;
+  std::uint64_t silence_needed_ = 0;
+  std::uint64_t zero_requests_ = 0;
+  bool zero_requested_ = false;
 };
 
 }  // namespace robot_control

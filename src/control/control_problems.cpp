@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "control/feed_forward.h"
+#include "control/kinematics.h"
 #include "control/measured_robot.h"
+#include "control/rehearsal.h"
 #include "control/wheel_loop_gains.h"
 #include "control/wheel_loop_stability.h"
 
@@ -22,27 +26,51 @@ struct Load {
   bool operator==(const Load& other) const noexcept { return load == other.load; }
 };
 
-std::array<Load, 4> loads(const RobotModel& robot, const WheelModel& wheel) {
-  const double damping = robot.joints[wheel.joint].damping;
-  const double straight = straight_inertia(robot, wheel);
-  return {{{"lifted", {wheel.inertia, damping}},
-           {"turning", {turning_inertia(robot, wheel), damping}},
-           {"driving straight", {straight, damping}},
-           {"driving straight with its mass doubled", {2 * straight - wheel.inertia, damping}}}};
+using Loads = std::array<Load, 8>;
+
+/// Of the wheel as the set has it, and as the robot's description has it.
+Loads loads(const RobotModel& set, const RobotModel& described, std::size_t wheel) {
+  Loads loads{};
+  auto next = loads.begin();
+  for (const RobotModel* robot : {&set, &described}) {
+    const WheelModel& of = robot->wheels[wheel];
+    const double damping = robot->joints[of.joint].damping;
+    const double straight = straight_inertia(*robot, of);
+    *next++ = {"lifted", {of.inertia, damping}};
+    *next++ = {"turning", {turning_inertia(*robot, of), damping}};
+    *next++ = {"driving straight", {straight, damping}};
+    *next++ = {"driving straight with its mass doubled", {2 * straight - of.inertia, damping}};
+  }
+  return loads;
 }
+
+/// Of the wheel loop: a half swing is e^(−πζ) = 0.85 of the one before. Derived gains have 0.9.
+constexpr double kLeastDamping = 0.05;
 
 /// What decides about stability.
 struct Loop {
   WheelLoopGains gains;
   double bandwidth;  ///< Hz
   double period;     ///< s
-  std::array<Load, 4> loads;
+  Loads loads;       ///< those of the set, then those of the description
 
   bool operator==(const Loop& other) const noexcept {
     return gains.kp == other.gains.kp && gains.ki == other.gains.ki && loads == other.loads;
   }
 
   double radius(const Load& of) const { return wheel_loop_spectral_radius(gains, of.load, period, bandwidth); }
+
+  /// ζ of the wheel's loop of second order, J·q̈ + (d + kp)·q̇ + ki·q = 0 about the target; infinite without ki.
+  double damping(const Load& of) const {
+    if (!(gains.ki > 0)) return std::numeric_limits<double>::infinity();
+    return (of.load.damping + gains.kp) / (2 * std::sqrt(gains.ki * of.load.inertia));
+  }
+
+  /// The load with the least damping; null: it is enough.
+  const Load* underdamped_load() const {
+    const auto least = std::ranges::min_element(loads, {}, [&](const Load& load) { return damping(load); });
+    return damping(*least) < kLeastDamping ? &*least : nullptr;
+  }
 
   /// Null: stable with every load.
   const Load* unstable_load() const {
@@ -67,6 +95,13 @@ double stable_part(const Loop& loop) {
   return 0;
 }
 
+/// Of the robot as described, where the set says otherwise of it.
+bool described(const Loop& loop, const Load& load) {
+  const auto place = static_cast<std::size_t>(&load - loop.loads.data());
+  const std::size_t half = loop.loads.size() / 2;
+  return place >= half && !(loop.loads[place] == loop.loads[place - half]);
+}
+
 std::string unstable_message(const Loop& loop, const std::string& joint, const Load& load) {
   const WheelLoopGains& gains = loop.gains;
   std::ostringstream text;
@@ -74,7 +109,8 @@ std::string unstable_message(const Loop& loop, const std::string& joint, const L
   text << "diff_drive_controller: pid_kp " << gains.kp << ", pid_ki " << gains.ki << ", pid_kd " << gains.kd
        << ", tracking_bandwidth " << loop.bandwidth << " Hz at " << std::lround(1 / loop.period)
        << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " ("
-       << load.load.inertia << " kg·m²): spectral radius " << loop.radius(load) << ", must be < 1. ";
+       << load.load.inertia << " kg·m²" << (described(loop, load) ? " by the description" : "") << "): spectral radius "
+       << loop.radius(load) << ", must be < 1. ";
   // Half of what is just stable: a gain margin of two.
   const double part = 0.5 * stable_part(loop);
   if (part > 0) {
@@ -85,6 +121,18 @@ std::string unstable_message(const Loop& loop, const std::string& joint, const L
         << "No smaller gains of this proportion are stable: lower pid_ki or pid_kd against pid_kp, or leave pid_kp and "
            "pid_ki out: then they are derived from the robot.";
   }
+  return text.str();
+}
+
+std::string underdamped_message(const Loop& loop, const std::string& joint, const Load& load) {
+  const double most = std::pow((load.load.damping + loop.gains.kp) / (2 * kLeastDamping), 2) / load.load.inertia;
+  std::ostringstream text;
+  text.precision(3);
+  text << "diff_drive_controller: pid_kp " << loop.gains.kp << ", pid_ki " << loop.gains.ki << ": the loop of joint '"
+       << joint << "' swings with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
+       << (described(loop, load) ? " by the description" : "") << "): damping ratio " << loop.damping(load)
+       << ", must be at least " << kLeastDamping << ". Use at most pid_ki " << most
+       << ", or leave pid_kp and pid_ki out: then they are derived from the robot.";
   return text.str();
 }
 
@@ -117,13 +165,101 @@ void check_believable(const Believed& value, std::vector<std::string>& problems)
   problems.push_back(text.str());
 }
 
+/// What the joints take at full speed by the set, beside what the motors have and what the description says.
+void check_joint_losses(const DriveControllerParameters& parameters, const RobotModel& robot,
+                        std::vector<std::string>& problems) {
+  constexpr double kPart = 0.25;  // of the effort limit, for bearing and gear: half of a worm gear's at full load
+  constexpr double kTimes = 2;    // of what is described
+  const DriveKinematics kinematics(robot);
+  const double linear = parameters.max_linear_speed;
+  const double angular = parameters.max_angular_speed;
+  const PlanarTwist fastest{linear, angular};
+  const WheelValues speeds = kinematics.joint_speeds(
+      {kinematics.wheel_speed_scale(fastest) * linear, kinematics.wheel_speed_scale(fastest) * angular});
+  double most_damping = std::numeric_limits<double>::infinity();
+  double most_friction = most_damping;
+  for (const WheelModel& wheel : robot.wheels) {
+    const JointModel& joint = robot.joints[wheel.joint];
+    const double speed = std::ranges::max(speeds, {}, [](double value) { return std::abs(value); });
+    most_damping =
+        std::min(most_damping, std::max(kTimes * joint.damping, kPart * joint.effort_limit / std::abs(speed)));
+    most_friction = std::min(most_friction, std::max(kTimes * joint.friction, kPart * joint.effort_limit));
+  }
+  const auto check = [&](const char* key, const char* unit, const std::optional<double>& given, double most,
+                         const char* why) {
+    if (!given || *given <= most) return;
+    std::ostringstream text;
+    text.precision(4);
+    text << "diff_drive_controller.feed_forward." << key << " = " << *given << " " << unit
+         << ": plausible for this robot are 0 … " << most << " " << unit << ", " << why
+         << ", or twice what the description says. Where it really is more, say so in the URDF (<dynamics>).";
+    problems.push_back(text.str());
+  };
+  check("wheel_damping", "N·m·s/rad", parameters.feed_forward.wheel_damping, most_damping,
+        "a quarter of the wheel's torque limit at the fastest wheel speed of these limits");
+  check("wheel_friction", "N·m", parameters.feed_forward.wheel_friction, most_friction,
+        "a quarter of the wheel's torque limit");
+}
+
 /// A payload, a rotor behind a gear: but not a hundred times what is described, which would drive the robot by itself.
-void check_believable(const FeedForwardParameters& given, const RobotModel& robot, std::vector<std::string>& problems) {
+void check_believable(const DriveControllerParameters& parameters, const RobotModel& robot,
+                      std::vector<std::string>& problems) {
+  const FeedForwardParameters& given = parameters.feed_forward;
   check_believable({"mass", "kg", given.mass, robot.mass, 5}, problems);
   check_believable({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
   if (robot.wheels.empty()) return;
   const double wheel = robot.wheels.front().inertia;
   check_believable({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
+  check_joint_losses(parameters, robot, problems);
+}
+
+std::string excess_message(const Excess& excess, const char* robot) {
+  std::ostringstream text;
+  text.precision(3);
+  const PlanarTwist& motion = excess.motion;
+  const char* unit = excess.turning ? " rad/s" : " m/s";
+  text << "diff_drive_controller: with these limits, gains and feed_forward, " << robot << " would reach "
+       << excess.reached << unit << (excess.stopping ? " on its way from " : " on its way to ")
+       << (excess.turning ? motion.angular : motion.linear) << unit << (excess.stopping ? " to rest" : "")
+       << " (commanded " << motion.linear << " m/s, " << motion.angular << " rad/s), must stay within "
+       << 100 * kExcessPart << " %, but for " << 1000 * kExcessTime
+       << " ms. Bring feed_forward nearer to what the description says, or correct the description where it is wrong; "
+          "or leave pid_kp and pid_ki out: then they are derived from the robot.";
+  return text.str();
+}
+
+/// The set is driven before it drives the robot (rehearsal.h): the robot as described, and as the set has it. What
+/// derived gains would do on it as well is not the set's fault.
+std::string rehearsal_problem(const DriveControllerParameters& parameters, const RobotModel& described,
+                              const RobotModel& set, double period) {
+  constexpr double kNotWorse = 1.2;
+  DriveControllerParameters derived = parameters;
+  derived.pid_kp.reset();
+  derived.pid_ki.reset();
+  derived.pid_kd = 0;
+  derived.tracking_bandwidth.reset();
+  DriveControllerParameters as_described = derived;
+  as_described.feed_forward = {};
+  struct Trial {
+    const char* name;
+    const RobotModel& plant;
+    const DriveControllerParameters& reference;
+  };
+  for (const Trial& trial : {Trial{"the robot as its description has it", described, as_described},
+                             Trial{"the robot as feed_forward has it", set, derived}}) {
+    const Excess excess = rehearse(parameters, described, trial.plant, period);
+    if (excess.times <= 1) continue;
+    if (excess.times <= kNotWorse * rehearse(trial.reference, described, trial.plant, period).times) continue;
+    return excess_message(excess, trial.name);
+  }
+  return "";
+}
+
+/// Nothing but limits is set: the rest is derived from the description.
+bool only_limits(const DriveControllerParameters& parameters) noexcept {
+  const FeedForwardParameters& given = parameters.feed_forward;
+  return !parameters.pid_kp && !parameters.pid_ki && parameters.pid_kd == 0 && !parameters.tracking_bandwidth &&
+         !given.mass && !given.yaw_inertia && !given.wheel_inertia && !given.wheel_damping && !given.wheel_friction;
 }
 
 }  // namespace
@@ -132,16 +268,26 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
                                           double period) {
   const RobotModel robot = measured_robot(believed, parameters.feed_forward);
   std::vector<std::string> problems;
-  check_believable(parameters.feed_forward, believed, problems);
+  check_believable(parameters, believed, problems);
   std::vector<Loop> judged;
   const double bandwidth = tracking_bandwidth(parameters, period);
-  for (const WheelModel& wheel : robot.wheels) {
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
+    const WheelModel& wheel = robot.wheels[i];
     const JointModel& joint = robot.joints[wheel.joint];
     if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, robot));
-    const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, wheel)};
+    const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, believed, i)};
     if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
     judged.push_back(loop);
-    if (const Load* load = loop.unstable_load()) problems.push_back(unstable_message(loop, joint.name, *load));
+    if (const Load* load = loop.unstable_load()) {
+      problems.push_back(unstable_message(loop, joint.name, *load));
+    } else if (const Load* swinging = loop.underdamped_load()) {
+      problems.push_back(underdamped_message(loop, joint.name, *swinging));
+    }
+  }
+  if (problems.empty() && !robot.wheels.empty() && !only_limits(parameters)) {
+    if (std::string problem = rehearsal_problem(parameters, believed, robot, period); !problem.empty()) {
+      problems.push_back(std::move(problem));
+    }
   }
   return problems;
 }

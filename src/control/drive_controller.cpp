@@ -64,8 +64,8 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
       standstill_(period),
       loops_(make_loops(parameters, robot, period)) {}
 
-void DriveController::reset(const VelocityCommand& inbox) noexcept {
-  watch_.reset(inbox);
+void DriveController::reset(const VelocityCommand& inbox, bool with_zero) noexcept {
+  watch_.reset(inbox, with_zero);
   limiter_.seed({});
   standstill_.reset();
   for (WheelLoop& loop : loops_) loop.reset();
@@ -248,6 +248,11 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   out.requests_stale = watch_.stale();
   out.requests_crowded = watch_.crowded();
   out.timeouts = watch_.timeouts();
+  out.first_cycle = watch_.first_cycle();
+  out.zero_requests = watch_.zero_requests();
+  out.zero_requested = watch_.zero_requested() ? 1 : 0;
+  out.silent_cycles = watch_.silent_cycles(cycle);
+  out.silence_needed = watch_.silence_needed();
 }
 
 }  // namespace robot_control

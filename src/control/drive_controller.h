@@ -72,7 +72,8 @@ class DriveController {
   DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
 
   /// A new run: forgets requests, those that the inbox holds now among them, and every state.
-  void reset(const VelocityCommand& inbox = {}) noexcept;
+  /// `with_zero`: the run begins with a zero request (command_watch.h).
+  void reset(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
 
   /// Between two cycles: other limits, timeout and gains, from the next step on. Bumpless (wheel_loop.h); what exceeds
   /// a lowered limit returns to it as the limiter does. They outlast `reset`.

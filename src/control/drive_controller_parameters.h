@@ -16,23 +16,23 @@ struct FeedForwardParameters {
 
 /// Gains that are left out are derived from the robot, wheel by wheel: wheel_loop_gains.h.
 struct DriveControllerParameters {
-  double max_linear_speed = 1.0;                    ///< m/s
-  double max_angular_speed = 2.0;                   ///< rad/s
-  double max_linear_acceleration = 1.0;             ///< m/s²
-  double max_angular_acceleration = 4.0;            ///< rad/s²
-  std::optional<double> max_linear_deceleration;    ///< m/s²; absent: as the acceleration
-  std::optional<double> max_angular_deceleration;   ///< rad/s²
-  double max_linear_emergency_deceleration = 2.0;   ///< m/s², ≥ the deceleration
-  double max_angular_emergency_deceleration = 8.0;  ///< rad/s²
-  double max_linear_jerk = 10.0;                    ///< m/s³; 0: no limit
-  double max_angular_jerk = 40.0;                   ///< rad/s³; 0: no limit
-  bool keep_curvature = true;                       ///< on the way to a new command both axes arrive together
-  double cmd_vel_timeout = 1.25;                    ///< s; 0 = never
-  bool one_sender = false;                          ///< true: no command counts while more than one node sends
-  std::optional<double> pid_kp;                     ///< N·m·s/rad
-  std::optional<double> pid_ki;                     ///< N·m/rad
-  double pid_kd = 0.0;                              ///< N·m·s²/rad
-  std::optional<double> tracking_bandwidth;         ///< Hz, of the wheel speeds' tracking loops
+  double max_linear_speed = 1.0;                             ///< m/s
+  double max_angular_speed = 2.0;                            ///< rad/s
+  double max_linear_acceleration = 1.0;                      ///< m/s²
+  double max_angular_acceleration = 4.0;                     ///< rad/s²
+  std::optional<double> max_linear_deceleration;             ///< m/s²; absent: as the acceleration
+  std::optional<double> max_angular_deceleration;            ///< rad/s²
+  std::optional<double> max_linear_emergency_deceleration;   ///< m/s², ≥ the deceleration; absent: drive_limits.h
+  std::optional<double> max_angular_emergency_deceleration;  ///< rad/s²
+  std::optional<double> max_linear_jerk;                     ///< m/s³; 0: no limit; absent: drive_limits.h
+  std::optional<double> max_angular_jerk;                    ///< rad/s³; 0: no limit
+  bool keep_curvature = true;                                ///< on the way to a new command both axes arrive together
+  double cmd_vel_timeout = 1.25;                             ///< s; 0 = never
+  bool one_sender = false;                                   ///< true: no command counts while more than one node sends
+  std::optional<double> pid_kp;                              ///< N·m·s/rad
+  std::optional<double> pid_ki;                              ///< N·m/rad
+  double pid_kd = 0.0;                                       ///< N·m·s²/rad
+  std::optional<double> tracking_bandwidth;                  ///< Hz, of the wheel speeds' tracking loops
   FeedForwardParameters feed_forward;
 };
 

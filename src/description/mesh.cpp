@@ -1,15 +1,16 @@
 #include "description/mesh.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "description/assimp_mesh.h"
 #include "description/robot_description.h"
 #include "description/stl.h"
+#include "files/input_file.h"
 
 namespace robot_control {
 namespace {
@@ -36,12 +37,9 @@ std::string read_bytes(const std::filesystem::path& path) {
     refuse(path, "mesh", std::to_string(size >> 20U) + " MiB are more than " + std::to_string(kLargestMesh >> 20U),
            "Thin the mesh out");
   }
-  std::string bytes(error ? 0 : size, '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
-    refuse(path, "mesh", "it cannot be read", "Check the file's permissions");
-  }
-  return bytes;
+  InputFile file = read_input_file(path, kLargestMesh);
+  if (!file.problem.empty()) refuse(path, "mesh", "it cannot be read: " + file.problem, "Check the file's permissions");
+  return std::move(file.text);
 }
 
 Points faces_of(const std::filesystem::path& path) {
@@ -50,6 +48,7 @@ Points faces_of(const std::filesystem::path& path) {
     refuse(path, "mesh", "\"" + ending + "\" is no format that is read here", kExport);
   }
   const std::string bytes = read_bytes(path);
+  if (is_lfs_pointer(bytes)) refuse(path, "mesh", kLfsPointer, kLfsRemedy);
   MeshFaces faces = ending == ".stl" ? parse_stl(bytes) : parse_with_assimp(bytes, ending.substr(1));
   if (!faces.problem.empty()) refuse(path, "mesh", "unreadable: " + faces.problem, kExport);
   return std::move(faces.points);
@@ -61,9 +60,10 @@ bool before(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-Points read_mesh(const std::filesystem::path& path) {
+Points read_mesh(const std::filesystem::path& path, std::size_t* not_finite) {
   Points points = faces_of(path);
-  std::erase_if(points, [](const Eigen::Vector3d& point) { return !point.allFinite(); });
+  const std::size_t erased = std::erase_if(points, [](const Eigen::Vector3d& point) { return !point.allFinite(); });
+  if (not_finite != nullptr) *not_finite = erased;
   std::sort(points.begin(), points.end(), before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) {
@@ -73,17 +73,18 @@ Points read_mesh(const std::filesystem::path& path) {
   return points;
 }
 
-Points mesh_corners(const std::filesystem::path& path) {
+MeshCorners mesh_corners(const std::filesystem::path& path) {
   using Version = std::tuple<std::uintmax_t, std::filesystem::file_time_type>;
   static std::mutex mutex;
-  static std::map<std::filesystem::path, std::pair<Version, Points>> remembered;
+  static std::map<std::filesystem::path, std::pair<Version, MeshCorners>> remembered;
 
   std::error_code no_size, no_time;
   const Version version{std::filesystem::file_size(path, no_size), std::filesystem::last_write_time(path, no_time)};
   const std::lock_guard lock(mutex);
   const auto found = remembered.find(path);
   if (!no_size && !no_time && found != remembered.end() && found->second.first == version) return found->second.second;
-  Points corners = hull_corners(read_mesh(path));
+  MeshCorners corners;
+  corners.points = hull_corners(read_mesh(path, &corners.not_finite));
   remembered[path] = {version, corners};
   return corners;
 }

@@ -25,7 +25,9 @@ using Points = std::vector<Eigen::Vector3d>;
 ///
 /// Throws RobotError with file and remedy: a file that is missing or cannot be read, that is no STL, OBJ or DAE, is
 /// cut short or broken, has no face, or is larger than kLargestMesh.
-Points read_mesh(const std::filesystem::path& path);
+///
+/// `not_finite` counts the points that are infinite or not a number.
+Points read_mesh(const std::filesystem::path& path, std::size_t* not_finite = nullptr);
 
 /// The corners of the convex hull, in the order of x, y, z. A flat cloud gives the corners of its polygon, a straight
 /// one its two ends, a single point itself: directions in which it is thinner than 10⁻⁶ of its largest extent do not
@@ -40,9 +42,14 @@ Points hull_corners(const Points& points);
 /// for a flat cloud.
 std::vector<std::array<std::size_t, 3>> hull_triangles(const Points& points);
 
+struct MeshCorners {
+  Points points;
+  std::size_t not_finite = 0;  ///< points at infinity, or none at all, that are left out
+};
+
 /// hull_corners(read_mesh(path)), remembered until the file's size or time of change is another. A hull may be scaled
 /// afterwards: its corners stay corners.
-Points mesh_corners(const std::filesystem::path& path);
+MeshCorners mesh_corners(const std::filesystem::path& path);
 
 inline constexpr std::size_t kMostHullCorners = 1000;
 inline constexpr std::uintmax_t kLargestMesh = 100U << 20U;  ///< bytes

@@ -12,6 +12,7 @@
 
 #include "description/environment.h"
 #include "description/robot_description.h"
+#include "files/input_file.h"
 
 namespace robot_control {
 namespace {
@@ -20,6 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
+
+constexpr std::size_t kLargestManifest = std::size_t{1} << 20U;  // bytes
 
 std::vector<fs::path> folders_of(const std::string& search_path) {
   std::vector<fs::path> folders;
@@ -42,7 +45,8 @@ bool is_folder(const fs::path& path) {
 
 std::string package_name(const fs::path& folder) {
   TiXmlDocument xml;
-  if (xml.LoadFile((folder / "package.xml").c_str()) && xml.FirstChildElement("package") != nullptr) {
+  xml.Parse(read_input_file(folder / "package.xml", kLargestManifest).text.c_str());
+  if (!xml.Error() && xml.FirstChildElement("package") != nullptr) {
     const TiXmlElement* name = xml.FirstChildElement("package")->FirstChildElement("name");
     if (name != nullptr && name->GetText() != nullptr) {
       std::istringstream text(name->GetText());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 #include "description/urdf_document.h"
 #include "description/wording.h"
@@ -148,6 +149,46 @@ void add_gazebo_joints(const TiXmlElement& element, std::set<std::string>& joint
   }
 }
 
+void add_plugins_that_say(const TiXmlElement& element, const std::vector<std::string>& words,
+                          std::set<std::string>& plugins) {
+  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    if (child->ValueStr() != "plugin") {
+      add_plugins_that_say(*child, words, plugins);
+      continue;
+    }
+    const std::string file = attribute(*child, "filename"), name = attribute(*child, "name");
+    const std::string text = child->GetText() == nullptr ? "" : child->GetText();
+    const std::string said = lower_case(file + " " + name + " " + text);
+    const bool says = std::any_of(words.begin(), words.end(),
+                                  [&](const std::string& word) { return said.find(word) != std::string::npos; });
+    if (says) plugins.insert(!file.empty() ? file : !name.empty() ? name : text);
+  }
+}
+
+/// What TinyXML would read as something else, or as nothing.
+void check_text(const RobotDescription& description) {
+  const std::string& text = description.text;
+  const std::string source = description.source;
+  if (is_lfs_pointer(text)) refuse(source, "URDF", kLfsPointer, kLfsRemedy);
+  const bool marked = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  const std::string_view start = std::string_view(text).substr(0, 4);
+  const std::string_view little("<\0", 2), big("\0<", 2);
+  if (marked || start.find(little) != std::string_view::npos || start.find(big) != std::string_view::npos) {
+    refuse(source, "XML", "it is UTF-16, not UTF-8", "Save it as UTF-8: iconv -f UTF-16 -t UTF-8 FILE");
+  }
+  if (const std::size_t at = text.find('\0'); at != std::string::npos) {
+    refuse(source, "XML", "it has a NUL character, at byte " + std::to_string(at), "Write text alone");
+  }
+  for (std::size_t i = text.find("<!"); i != std::string::npos; i = text.find("<!", i + 2)) {
+    if (text.compare(i, 4, "<!--") == 0) {
+      i = std::min(text.find("-->", i), text.size() - 2);
+    } else if (text.compare(i, 8, "<!ENTITY") == 0) {
+      refuse(source, "<!ENTITY>", "it defines entities of its own, which a URDF does not need and which are not read",
+             "Write what they stand for, or use xacro");
+    }
+  }
+}
+
 void remove(TiXmlElement& parent, const std::string& name) {
   TiXmlElement* child = parent.FirstChildElement(name);
   while (child != nullptr) {
@@ -203,6 +244,7 @@ void mend_joint(TiXmlElement& joint) {
 }  // namespace
 
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml) {
+  check_text(description);
   check_depth(description);
   xml.Parse(description.text.c_str());
   if (xml.Error()) {
@@ -249,6 +291,12 @@ std::set<std::string> driven_joints(const TiXmlElement& robot) {
     }
   }
   return joints;
+}
+
+std::set<std::string> plugins_that_say(const TiXmlElement& robot, const std::vector<std::string>& words) {
+  std::set<std::string> plugins;
+  add_plugins_that_say(robot, words, plugins);
+  return plugins;
 }
 
 std::set<std::string> unsaid_axes(const TiXmlElement& robot) {

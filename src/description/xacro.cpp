@@ -7,6 +7,7 @@
 #include "description/other_process.h"
 #include "description/robot_description.h"
 #include "description/wording.h"
+#include "files/input_file.h"
 
 namespace robot_control {
 namespace {
@@ -32,8 +33,9 @@ std::string python_path() {
 }  // namespace
 
 std::string expand_xacro(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) refuse(path, "xacro", "there is no such file", "Give the path of a file");
+  if (const std::string problem = input_file_problem(path, kLargestDescription); !problem.empty()) {
+    refuse(path, "xacro", "it cannot be read: " + problem, "Give the path of a file");
+  }
   const std::string interpreter = python();
   const ProcessResult result =
       run_program({interpreter, "-P", "-m", "robot_control.expand_xacro", fs::absolute(path).string()},

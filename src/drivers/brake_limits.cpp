@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "description/wording.h"
-#include "drivers/ground_points.h"
 #include "hal/driver.h"
 #include "robot/gravity.h"
+#include "robot/tipping.h"
 
 namespace robot_control {
 namespace {
@@ -16,24 +16,9 @@ constexpr double kAlmostLifting = 0.9;
 constexpr double kLeastPart = 0.1;
 constexpr double kSlopeHeld = 10 * M_PI / 180;
 constexpr double kSlopeBraked = 5 * M_PI / 180;
-constexpr double kSettlingTilt = 3 * M_PI / 180;
 constexpr double kHoldSpeed = 0.03;  // m/s at the rim
 
 }  // namespace
-
-double lifting_deceleration(const RobotModel& robot) {
-  const double ground = -standing_height(robot);
-  const double centre = robot.centre_of_gravity_base[0];
-  const double height = robot.centre_of_gravity_base[2] - ground;
-  double front = 0, rear = 0;
-  for (const Eigen::Vector3d& point : ground_points(robot)) {
-    const double reach = point.x() - centre;
-    if (point.z() - ground > std::tan(kSettlingTilt) * std::abs(reach)) continue;
-    front = std::max(front, reach);
-    rear = std::max(rear, -reach);
-  }
-  return kGravity * std::min(front, rear) / std::max(height, 1e-6);
-}
 
 Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantParameters& parameters, double step) {
   const WheelModel& wheel = robot.wheels[index];

@@ -9,12 +9,9 @@
 ///   hold speed  0.03 m/s / r
 ///
 /// n drive wheels, h time step, J a wheel's inertia about its axle, r its radius, f the dry friction of joint and
-/// motor, which brakes as well, m the robot's mass. a is the deceleration at which wheels lift: about a support at the
-/// horizontal distance d from the centre of gravity, which is at the height c, inertia m a c outweighs m g d from
-/// a = g d / c on. d is the distance to the foremost or rearmost support, whichever is less. Supports are the ground
-/// points (ground_points.h) that are on the ground, or come to it when the robot tilts by 3° about the centre of
-/// gravity's foot. A robot that tips easily still stands on slopes of 10°; it slows down on them as far as it does not
-/// tip, and on 5° in any case. More than the ground's friction carries is harmless, the wheel then slides.
+/// motor, which brakes as well, m the robot's mass. a is the deceleration at which wheels lift (robot/tipping.h). A
+/// robot that tips easily still stands on slopes of 10°; it slows down on them as far as it does not tip, and on 5° in
+/// any case. More than the ground's friction carries is harmless, the wheel then slides.
 ///
 /// d and k: see joint_law.h; a factor of four to its limits.
 
@@ -32,9 +29,6 @@ struct Brake {
   double stiffness = 0;    ///< N·m/rad
   double hold_speed = 0;   ///< rad/s
 };
-
-/// m/s², at which the first wheel lifts; g or more is as good as never.
-double lifting_deceleration(const RobotModel& robot);
 
 /// Of the true robot's `wheel`. Throws DriverError for given values that the wheel does not bear, naming value and
 /// bound. `step` = h in seconds.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "drivers/ground_points.h"
 #include "drivers/mjcf_shapes.h"
 #include "robot/gravity.h"
+#include "robot/ground_points.h"
 
 namespace robot_control {
 namespace {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -11,11 +12,13 @@
 #include <iterator>
 
 #include "description/wording.h"
-#include "drivers/ground_points.h"
 #include "drivers/mjcf.h"
 #include "drivers/mujoco_errors.h"
+#include "drivers/scene_files.h"
 #include "drivers/true_robot.h"
+#include "files/message_text.h"
 #include "hal/driver.h"
+#include "robot/ground_points.h"
 
 namespace robot_control {
 namespace {
@@ -45,7 +48,7 @@ ModelPointer load(const std::string& path, const mjVFS* files, const std::string
   std::array<char, 1000> error{};
   ModelPointer model(mj_loadXML(path.c_str(), files, error.data(), static_cast<int>(error.size())));
   if (!model) {
-    throw DriverError(blamed + ": MuJoCo does not compile it: " + on_one_line(error.data()) +
+    throw DriverError(blamed + ": MuJoCo does not compile it: " + fit_for_message(on_one_line(error.data())) +
                       ". Mend the scene, or set another one (mujoco_plant/scene).");
   }
   return model;
@@ -118,6 +121,18 @@ void find_addresses(MujocoModel& result) {
   result.accelerometer = model.sensor_adr[find(model, mjOBJ_SENSOR, kMjcfAccelerometer)];
 }
 
+/// ", such as flat, kerb in its folder"; empty: there is none.
+std::string scenes_beside(const std::filesystem::path& scene) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(scene.parent_path(), error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".xml") names.push_back(entry->path().stem());
+  }
+  std::sort(names.begin(), names.end());
+  return names.empty() ? "" : ", such as " + printable(list(names)) + " in its folder";
+}
+
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -128,9 +143,12 @@ std::string read_file(const std::filesystem::path& path) {
 MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& parameters, double period) {
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
-  if (std::error_code error; !std::filesystem::is_regular_file(scene, error)) {
-    throw DriverError(scene.string() + ": there is no such file. Set mujoco_plant/scene to the path of an MJCF file.");
+  if (std::error_code error; !std::filesystem::exists(scene, error)) {
+    throw DriverError(printable(scene.string()) +
+                      ": there is no such file. Set mujoco_plant/scene to the path of an MJCF file" +
+                      scenes_beside(scene) + ".");
   }
+  check_scene_files(scene);
   MujocoModel result;
   result.robot = true_robot(robot, parameters);
   const MjcfPlace place =

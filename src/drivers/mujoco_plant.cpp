@@ -109,7 +109,7 @@ void MujocoPlant::settle() {
     rested = at_rest(model_, *data_, kRestSpeed, kJointRestSpeed) ? rested + model_.substeps * step : 0;
   }
   const std::string side = unloaded_side(model_, wheels_);
-  const std::string standing = bodies_on_ground(model_, *data_);
+  const std::string standing = links_on_ground(model_, *data_);
   if (!side.empty() && !standing.empty()) {
     throw DriverError(where + "its " + side + " wheels bear no load, what stands on the ground is " + standing +
                       ". Look at how low the wheels reach, and the <collision> shapes of the rest.");
@@ -120,6 +120,16 @@ void MujocoPlant::settle() {
         "with its brakes on the robot does not come to rest at the site \"start\". Put the site "
         "on a plane, z upwards from it, less steep than brakes and friction can hold; where the centre of "
         "gravity lies over the only axle, put it where casters carry a part of it.");
+  }
+  // The same after every start, which other threads may not see changing.
+  if (!has_rested_) {
+    unloaded_ = unloaded_wheels(model_, wheels_);
+    if (!unloaded_.empty()) {
+      unloaded_ += unloaded_.find(", ") == std::string::npos ? " bears" : " bear";
+      unloaded_ +=
+          " no load at rest, on the ground " + (standing.empty() ? "are the other wheels" : "stand " + standing);
+    }
+    has_rested_ = true;
   }
   data_->time = 0;
   set_origin();

@@ -69,6 +69,10 @@ class MujocoPlant final : public Driver {
   /// What MuJoCo said when the fault came; "" without one.
   const char* fault_message() const noexcept { return fault_message_.data(); }
 
+  /// "left_wheel_joint bears no load at rest, on the ground stand skid": of the first `start`; "" where all drive
+  /// wheels carry.
+  const std::string& unloaded() const noexcept { return unloaded_; }
+
   /// For tests and tools: model and data. Null data before `start`.
   const MujocoModel& model() const noexcept { return model_; }
   const mjData* data() const noexcept { return data_.get(); }
@@ -101,6 +105,8 @@ class MujocoPlant final : public Driver {
   std::array<double, 7> origin_{};  ///< of truth: position, quaternion w x y z
   std::array<double, 3> push_{};    ///< N, world axes
   bool settled_ = false;
+  bool has_rested_ = false;
+  std::string unloaded_;
 
   DriverState state_ = DriverState::kStarting;
   std::uint64_t faults_ = 0;

@@ -5,13 +5,28 @@
 #include <set>
 
 #include "description/wording.h"
+#include "drivers/mjcf.h"
 #include "robot/gravity.h"
+#include "robot/ground_points.h"
 
 namespace robot_control {
 namespace {
 
 constexpr double kFallen = 30 * M_PI / 180;
 constexpr double kLeastLoad = 0.001;
+constexpr double kLeastShare = 0.01;
+
+/// A body's shapes stand in the MJCF in its own order (mjcf.cpp), but for those that roll, which are one each.
+std::string link_of(const MujocoModel& model, int geom) {
+  const int body = model.model->geom_bodyid[geom];
+  std::string name = mj_id2name(model.model.get(), mjOBJ_BODY, body);
+  const auto number = static_cast<std::size_t>(geom - model.model->body_geomadr[body]);
+  for (const RigidBody& candidate : model.robot.bodies->bodies) {
+    const bool slides = rolling_body(model.robot, candidate) == nullptr && number < candidate.shapes.size();
+    if (slides && mjcf_body_name(candidate.name) == name) return candidate.shapes[number].link;
+  }
+  return name;
+}
 
 }  // namespace
 
@@ -33,15 +48,23 @@ std::string unloaded_side(const MujocoModel& model, const WheelContacts& wheels)
   return "";
 }
 
-std::string bodies_on_ground(const MujocoModel& model, const mjData& data) {
+std::string unloaded_wheels(const MujocoModel& model, const WheelContacts& wheels) {
+  const double share = model.robot.mass * kGravity / static_cast<double>(model.drive_wheels);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.drive_wheels; ++i) {
+    if (wheels.normal_force(i) < kLeastShare * share) names.push_back(model.robot.joints[i].name);
+  }
+  return names.empty() ? "" : list(names);
+}
+
+std::string links_on_ground(const MujocoModel& model, const mjData& data) {
   std::set<std::string> names;
+  const auto drive_wheels_end = model.wheel_shape.begin() + static_cast<std::ptrdiff_t>(model.drive_wheels);
   for (int i = 0; i < data.ncon; ++i) {
-    for (const int shape : {data.contact[i].geom1, data.contact[i].geom2}) {
-      const int body = model.model->geom_bodyid[shape];
-      const bool of_robot = model.model->body_rootid[body] == model.base_body;
-      const auto& rolling = model.wheel_shape;
-      if (!of_robot || std::find(rolling.begin(), rolling.end(), shape) != rolling.end()) continue;
-      names.insert(mj_id2name(model.model.get(), mjOBJ_BODY, body));
+    for (const int geom : {data.contact[i].geom1, data.contact[i].geom2}) {
+      const bool of_robot = model.model->body_rootid[model.model->geom_bodyid[geom]] == model.base_body;
+      const bool drives = std::find(model.wheel_shape.begin(), drive_wheels_end, geom) != drive_wheels_end;
+      if (of_robot && !drives) names.insert(link_of(model, geom));
     }
   }
   return names.empty() ? "" : list({names.begin(), names.end()});

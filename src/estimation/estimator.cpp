@@ -31,6 +31,9 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
       filter_(contact_geometry(geometry_, robot, parameters.tyre_creep), filter_noise(parameters, robot),
               filter_prior(parameters)),
       standstill_(standstill_limits(parameters, robot)),
+      rate_(parameters.rate_bandwidth, period),
+      rate_noise_gain_(rate_.noise_gain()),
+      wheel_velocities_(robot, parameters.speed_bandwidth, period),
       sides_{Side{SideEncoder(robot, robot_control::Side::kLeft), SpeedTracker(parameters.speed_bandwidth, period)},
              Side{SideEncoder(robot, robot_control::Side::kRight), SpeedTracker(parameters.speed_bandwidth, period)}} {
   reset();
@@ -53,6 +56,9 @@ void Estimator::reset() noexcept {
     side.refused = 0;
     side.believed = true;
   }
+  rate_.reset(Eigen::Vector3d::Zero());
+  rate_follows_ = false;
+  wheel_velocities_.reset();
   resting_ = true;
   held_ = {};
   steady_time_ = 0;
@@ -136,12 +142,25 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
       move(dt);
     }
   }
+  follow_rate(dt);
+  wheel_velocities_.step(sensors, dt);
   if (pose_pending_) {
     place(*pose_pending_, filter_);
     held_ = {};
     pose_pending_.reset();
     slip_.renew(filter_);
   }
+}
+
+/// At rest, in the first step of a motion and without a gyro there is nothing to smooth.
+void Estimator::follow_rate(double dt) noexcept {
+  const bool follows = !resting_ && imu_.gyro();
+  if (follows && rate_follows_ && dt > 0) {
+    rate_.step(filter_.rate, dt);
+  } else if (!(follows && rate_follows_)) {
+    rate_.reset(filter_.rate);
+  }
+  rate_follows_ = follows;
 }
 
 void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
@@ -306,7 +325,7 @@ void Estimator::note(SensorIndex sensor, double nis, double dt) noexcept {
 
 void Estimator::fill(StateFrame& out) const noexcept {
   write_pose(filter_, parameters_.planar, out);
-  write_twist(filter_, rate_noise(), parameters_.planar, out);
+  write_twist(filter_, rate_.rate(), rate_noise(), parameters_.planar, out);
   write_learned(filter_, base_from_imu_, out);
   fill_health(out);
 }
@@ -315,14 +334,17 @@ RateNoise Estimator::rate_noise() const noexcept {
   if (!imu_.gyro()) {
     const double slip = square(parameters_.wheel_slip_noise) * parameters_.speed_bandwidth *
                         (std::abs(wheel_speed()) + std::abs(filter_.rate.z()));
-    return {.variance = 4 / square(geometry_.wheel_base) * (square(kSpeedDeviation) + slip), .gyro = false};
+    const double variance = 4 / square(geometry_.wheel_base) * (square(kSpeedDeviation) + slip);
+    return {.variance = variance, .tracked = variance, .gyro = false};
   }
   if (resting_) return {};
-  return {.variance = square(parameters_.gyro_noise) / (2 * period_)};  // the rate is the mean of two samples
+  const double sample = square(parameters_.gyro_noise) / period_;  // the filter's rate is the mean of two
+  return {.variance = sample / 2, .tracked = rate_noise_gain_ * sample};
 }
 
 void Estimator::fill_health(StateFrame& out) const noexcept {
   out.wheels = wheels_;
+  wheel_velocities_.write(out.wheel_velocity);
   out.nis = nis_;
   out.rejected = rejected_;
   out.slip = resting_ ? 0 : slip_.reasons();

@@ -20,6 +20,9 @@
 ///   both encoders, or one and the gyro: no longer kStateValid. The next good reading brings the whole travel.
 /// A frame of a cycle that is not newer gives the last state again.
 ///
+/// The angular velocity of the twist is the gyro's, less its bias, behind a tracking loop (rate_tracker.h); pose and
+/// biases follow every sample.
+///
 /// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kSmoothing.
 
 #include <array>
@@ -29,12 +32,14 @@
 #include "estimation/error_state_filter.h"
 #include "estimation/estimator_parameters.h"
 #include "estimation/imu_samples.h"
+#include "estimation/rate_tracker.h"
 #include "estimation/side_encoder.h"
 #include "estimation/slip_watch.h"
 #include "estimation/speed_tracker.h"
 #include "estimation/standstill_window.h"
 #include "estimation/state_output.h"
 #include "estimation/wheel_geometry.h"
+#include "estimation/wheel_velocities.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -119,6 +124,7 @@ class Estimator {
   void correct_side(int side, double dt) noexcept;
   void note(SensorIndex sensor, double nis, double dt) noexcept;
   void fill(StateFrame& out) const noexcept;
+  void follow_rate(double dt) noexcept;
   RateNoise rate_noise() const noexcept;
   void fill_health(StateFrame& out) const noexcept;
 
@@ -130,9 +136,13 @@ class Estimator {
   SlipWatch slip_;
   StandstillWindow standstill_;
   ImuSamples imu_;
+  RateTracker rate_;
+  double rate_noise_gain_;  ///< RateTracker::noise_gain
+  WheelVelocities wheel_velocities_;
   std::array<Side, 2> sides_;
 
-  bool resting_ = true;  ///< nothing is integrated until the window breaks
+  bool rate_follows_ = false;  ///< `rate_` tracks the filter's rate
+  bool resting_ = true;        ///< nothing is integrated until the window breaks
   Held held_;
   Eigen::Vector3d steady_gyro_ = Eigen::Vector3d::Zero();  ///< rad/s, of windows that contradict the gyro's bias
   double steady_time_ = 0;                                 ///< s, of these windows

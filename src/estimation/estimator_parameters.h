@@ -20,7 +20,8 @@ struct EstimatorParameters {
   double accelerometer_noise = 1.716e-3;    ///< m/s²/√Hz, white noise density
   double accelerometer_bias_initial = 0.2;  ///< m/s², standard deviation at switch-on (20 mg)
   double accelerometer_bias_walk = 6.5e-5;  ///< m/s²/√s
-  double speed_bandwidth = 20.0;            ///< Hz, of the tracking loop behind the twist
+  double speed_bandwidth = 20.0;            ///< Hz, of the tracking loops behind wheel speeds
+  double rate_bandwidth = 20.0;             ///< Hz, of the tracking loop behind the twist's angular velocity
 
   bool slip_detection = true;    ///< false: wheels are always believed
   bool self_calibration = true;  ///< false: the calibration stays as it starts

@@ -45,6 +45,7 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
   no_less(parameters.calibration.radius_ratio_deviation, "radius_ratio_deviation must be >= 0");
   no_less(parameters.calibration.wheel_base_deviation, "wheel_base_deviation must be >= 0");
   positive(parameters.speed_bandwidth, "speed_bandwidth must be > 0 Hz");
+  positive(parameters.rate_bandwidth, "rate_bandwidth must be > 0 Hz");
   return parameters;
 }
 

@@ -54,11 +54,11 @@ void write_pose(const ErrorStateFilter& filter, bool planar, StateFrame& out) no
                          : Pose{array(base), out.attitude};
 }
 
-void write_twist(const ErrorStateFilter& filter, const RateNoise& noise, bool planar, StateFrame& out) noexcept {
+void write_twist(const ErrorStateFilter& filter, const Vector3d& rate, const RateNoise& noise, bool planar,
+                 StateFrame& out) noexcept {
   const auto& p = filter.covariance;
   const Vector3d& imu = filter.geometry().imu_in_base;
-  const Vector3d rate = filter.rate;
-  const Vector3d linear = filter.velocity - rate.cross(imu);
+  const Vector3d linear = filter.velocity - filter.rate.cross(imu);
   Covariance6 joint = Covariance6::Zero();
   joint.topLeftCorner<3, 3>() = p.block<3, 3>(Filter::kVelocity, Filter::kVelocity);
   if (noise.gyro) {
@@ -66,12 +66,14 @@ void write_twist(const ErrorStateFilter& filter, const RateNoise& noise, bool pl
     joint.bottomLeftCorner<3, 3>() = joint.topRightCorner<3, 3>().transpose();
     joint.bottomRightCorner<3, 3>() = p.block<3, 3>(Filter::kGyroBias, Filter::kGyroBias);
   }
-  for (int i = 3; i < 6; ++i) joint(i, i) += noise.variance;
+  for (int i = 3; i < 6; ++i) joint(i, i) += noise.tracked;
   Covariance6 by = Covariance6::Zero();
   by.topLeftCorner<3, 3>().setIdentity();
   by.topRightCorner<3, 3>() = -cross_matrix(imu);
   by.bottomRightCorner<3, 3>() = -Matrix3d::Identity();
-  write(by * joint * by.transpose(), planar, out.twist_covariance);
+  Covariance6 twist = by * joint * by.transpose();
+  twist.topLeftCorner<3, 3>() += (noise.variance - noise.tracked) * cross_matrix(imu) * cross_matrix(imu).transpose();
+  write(twist, planar, out.twist_covariance);
   out.twist_base = planar ? Twist{{linear.x(), linear.y(), 0}, {0, 0, rate.z()}} : Twist{array(linear), array(rate)};
 }
 

@@ -19,11 +19,15 @@ void write_pose(const ErrorStateFilter& filter, bool planar, StateFrame& out) no
 
 /// How well the angular velocity is known.
 struct RateNoise {
-  double variance = 0;  ///< (rad/s)², of each axis, beside the gyro's bias
+  double variance = 0;  ///< (rad/s)², of each axis, beside the gyro's bias; of the filter's rate
+  double tracked = 0;   ///< the same of the rate that is published, no larger
   bool gyro = true;     ///< false: it is not the gyro's, its bias does not count
 };
 
-void write_twist(const ErrorStateFilter& filter, const RateNoise& noise, bool planar, StateFrame& out) noexcept;
+/// `rate` rad/s, base axes: ω as it is published (rate_tracker.h). The lever ω × r keeps the filter's own, which does
+/// not lag: for an IMU far from the base a lag would be a speed.
+void write_twist(const ErrorStateFilter& filter, const Eigen::Vector3d& rate, const RateNoise& noise, bool planar,
+                 StateFrame& out) noexcept;
 
 /// Biases in the IMU's axes, and calibration, with their deviations.
 void write_learned(const ErrorStateFilter& filter, const Eigen::Matrix3d& base_from_imu, StateFrame& out) noexcept;

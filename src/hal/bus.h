@@ -8,10 +8,12 @@
 ///   another layout, unlocked      retires it (ChannelHead::retired) and makes a new one; the futex sequence of
 ///                                 a new object begins at a random number
 ///   truncated or foreign magic    never writes to it, unlinks it and makes a new one
-///   any of them, locked           BusError: another instance, or a node of another build, is running
+///   any of them, locked           BusError after a third of a second: another instance, or a node of another build, is
+///                                 running
 ///   another owner, open to others BusError naming owner or mode; not put right, since whoever could open it may
 ///                                 have it open still
 ///   a link, directory, pipe       BusError
+/// What the processes of another bus left is removed by the next start of any node (bus_cleanup.h).
 /// A reader maps read-only. It maps nothing but what is usable: an unlocked wreck is waited out, since its next
 /// writer replaces it; a locked wreck and a foreign owner are a BusError. A lock does not outlive the process
 /// that took it, unless a forked child has kept the descriptor.
@@ -90,7 +92,8 @@ class ForeignChannel {
       : object_(std::make_unique<ForeignBusObject>(bus, std::move(channel), BusLayoutOf<Object>::value)) {}
 
   /// Ordinary thread, at 10 Hz: maps, or maps anew when the name has a new object. True if `memory()` changed.
-  /// Throws BusError. Old mappings stay valid; after an unlink without a successor the old one stays current,
+  /// Throws BusError. A shortage of descriptors passes: what is mapped stays, and the next poll looks again. Old
+  /// mappings stay valid; after an unlink without a successor the old one stays current,
   /// because its writer may well go on.
   bool poll() { return object_->poll(); }
 

@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kClaimTries = 100;  // each lost try means that another process changed the name meanwhile
 constexpr int kSettleTries = 10;
+constexpr int kLockTries = 30;  // a process that removes ended buses holds their locks for a millisecond
 constexpr std::int64_t kSettleNs = 10'000'000;  // a claim holds an object that it will replace for some µs
 
 /// The part of ChannelHead that keeps its place.
@@ -122,6 +123,11 @@ const char* kind_text(mode_t mode) {
        look + "stop all nodes and remove it; the next start makes it anew");
 }
 
+/// Of descriptors, here or on the whole machine: it passes.
+bool is_shortage(const std::system_error& error) {
+  return error.code().value() == EMFILE || error.code().value() == ENFILE;
+}
+
 [[noreturn]] void fail_system(const std::string& channel, const std::string& name, const std::system_error& error) {
   struct stat status {};
   if (lstat(file_of(name).c_str(), &status) == 0 && !S_ISREG(status.st_mode)) fail_not_private(channel, name);
@@ -132,6 +138,11 @@ const char* kind_text(mode_t mode) {
     case ENOSPC:
     case ENOMEM:
       fail(channel, name, error.what(), "make room in /dev/shm ('df -h /dev/shm'; in a container --shm-size=256m)");
+    case EMFILE:
+    case ENFILE:
+      fail(channel, name, error.what(), "raise the limit of open files (ulimit -n 1024; of the machine: fs.file-max)");
+    case EFBIG:
+      fail(channel, name, error.what(), "raise the limit on the size of files ('ulimit -f unlimited')");
     default:
       fail(channel, name, error.what(), "see that /dev/shm is a writable tmpfs");
   }
@@ -184,12 +195,21 @@ std::optional<SharedMemory> open_or_create(const std::string& name) {
   return object ? std::move(object) : SharedMemory::create(name);
 }
 
+/// False: held by another for longer than kLockTries · kSettleNs, or the name is another object's by now.
+bool lock_soon(SharedMemory& object) {
+  for (int tries = 0; !object.lock(); ++tries) {
+    if (tries == kLockTries || !object.still_named()) return false;
+    sleep_ns(kSettleNs);
+  }
+  return true;
+}
+
 OwnedBusObject claim_object(const std::string& channel, const std::string& name, const BusLayout& layout) {
   for (int tries = 0; tries < kClaimTries; ++tries) {
     std::optional<SharedMemory> object = open_or_create(name);
     if (!object) continue;
     if (!object->is_private()) fail_not_private(channel, name);
-    const bool locked = object->lock();
+    const bool locked = lock_soon(*object);
     if (!object->still_named()) continue;
     const Finding finding = inspect(*object, layout);
     if (!locked) fail_locked(channel, name, finding);
@@ -227,6 +247,17 @@ std::string bus_object_name(const std::string& bus, const std::string& channel) 
   return name;
 }
 
+BusContent content_of(const SharedMemory& object, const BusLayout& layout) {
+  switch (inspect(object, layout)) {
+    case Finding::kUsable:
+      return BusContent::kUsable;
+    case Finding::kEmpty:
+      return BusContent::kNone;
+    default:
+      return BusContent::kUnreadable;
+  }
+}
+
 OwnedBusObject OwnedBusObject::claim(const std::string& bus, const std::string& channel, const BusLayout& layout) {
   const std::string name = bus_object_name(bus, channel);
   return reporting(channel, name, [&] { return claim_object(channel, name, layout); });
@@ -236,18 +267,26 @@ ForeignBusObject::ForeignBusObject(const std::string& bus, std::string channel, 
     : channel_(std::move(channel)), name_(bus_object_name(bus, channel_)), layout_(layout) {}
 
 bool ForeignBusObject::poll() {
-  return reporting(channel_, name_, [this] {
-    std::optional<SharedMemory> named = SharedMemory::open(name_, Access::kReadOnly);
-    obstacle_ = named ? "" : "does not exist yet";
-    if (!named || is_current(*named)) return false;
-    if (!named->is_private()) fail_not_private(channel_, name_);
-    obstacle_ = obstacle_of(*named);
-    if (!obstacle_.empty()) return false;
-    mappings_.push_back(named->map(layout_.object_bytes));
-    object_ = std::move(named);
-    data_.store(mappings_.back().data(), std::memory_order_release);
-    return true;
-  });
+  try {
+    return look();
+  } catch (const std::system_error& error) {
+    if (!is_shortage(error)) fail_system(channel_, name_, error);
+    obstacle_ = "cannot be looked at: too many open files";
+    return false;
+  }
+}
+
+bool ForeignBusObject::look() {
+  std::optional<SharedMemory> named = SharedMemory::open(name_, Access::kReadOnly);
+  obstacle_ = named ? "" : "does not exist yet";
+  if (!named || is_current(*named)) return false;
+  if (!named->is_private()) fail_not_private(channel_, name_);
+  obstacle_ = obstacle_of(*named);
+  if (!obstacle_.empty()) return false;
+  mappings_.push_back(named->map(layout_.object_bytes));
+  object_ = std::move(named);
+  data_.store(mappings_.back().data(), std::memory_order_release);
+  return true;
 }
 
 /// A retired object is never current: the next look is for its successor.

@@ -32,6 +32,10 @@ struct BusLayout {
 /// letters, digits, '_', '-', '.', or the whole is longer than a file name may be.
 std::string bus_object_name(const std::string& bus, const std::string& channel);
 
+/// What an object holds for a process that expects `layout`.
+enum class BusContent { kUsable, kNone, kUnreadable };
+BusContent content_of(const SharedMemory& object, const BusLayout& layout);
+
 class OwnedBusObject {
  public:
   /// Throws BusError.
@@ -61,6 +65,7 @@ class ForeignBusObject {
   const std::string& obstacle() const noexcept { return obstacle_; }
 
  private:
+  bool look();
   bool is_current(const SharedMemory& named) const;
   std::string obstacle_of(const SharedMemory& named) const;
 

@@ -1,6 +1,5 @@
 #include "parameters/calibration_file.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,8 +8,8 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <system_error>
 
+#include "files/output_file.h"
 #include "parameters/calibration_bounds.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/value_reader.h"
@@ -156,34 +155,6 @@ std::string text_of(const Content& content) {
   return text;
 }
 
-/// Closes what it holds.
-class File {
- public:
-  File(const std::string& path, int flags) : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0644)) {
-    if (descriptor_ < 0) fail();
-  }
-  ~File() { close(descriptor_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  void write_all(const std::string& text) const {
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
-      if (count < 0 && errno != EINTR) fail();
-      if (count > 0) done += static_cast<std::size_t>(count);
-    }
-  }
-  void sync() const {
-    if (fsync(descriptor_) != 0) fail();
-  }
-
- private:
-  [[noreturn]] void fail() const { throw std::system_error(errno, std::generic_category(), path_); }
-
-  std::string path_;
-  int descriptor_;
-};
-
 double grown(double learned, double added, double most) {
   return std::min(most, std::hypot(learned, added));
 }
@@ -247,10 +218,10 @@ std::optional<LearnedCalibration> read_calibration(const std::string& path, cons
     problems.throw_if_any(subject);
   }
   std::error_code error;
-  const auto status = std::filesystem::symlink_status(path, error);
+  const auto status = std::filesystem::status(path, error);  // a link whose file is not there yet is none, too
   if (status.type() == std::filesystem::file_type::not_found) return {};
   const ParameterTree tree = read_tree(path, {}, problems);
-  if (tree.blocks.empty()) problems.add({path, "", "holds no calibration", "", kRemedy});
+  if (tree.blocks.empty() && problems.empty()) problems.add({path, "", "holds no calibration", "", kRemedy});
   problems.throw_if_any(subject);
   const Content found = content_of(tree, path, problems);
   problems.throw_if_any(subject);
@@ -261,14 +232,7 @@ std::optional<LearnedCalibration> read_calibration(const std::string& path, cons
 
 void write_calibration(const std::string& path, const LearnedCalibration& calibration, const RobotModel& robot,
                        const EstimatorParameters& parameters) {
-  const std::string fresh = path + ".new";
-  {
-    const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
-    file.write_all(text_of(content_of(calibration, robot, parameters)));
-    file.sync();
-  }
-  std::filesystem::rename(fresh, path);
-  File(folder_of(path), O_RDONLY | O_DIRECTORY).sync();
+  write_output_file(path, text_of(content_of(calibration, robot, parameters)));
 }
 
 EstimatorParameters continued(const EstimatorParameters& parameters, const LearnedCalibration& calibration) {

@@ -1,6 +1,8 @@
 #include "parameters/live_parameters.h"
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
@@ -69,7 +71,35 @@ void refuse_fixed(const Block& block, const ParameterTree& tree, ProblemList& pr
   }
 }
 
+/// What tools show that know no other letters.
+std::string ascii(std::string text) {
+  const std::pair<std::string_view, std::string_view> words[] = {{"…", "..."}, {"·", "*"},  {"²", "^2"}, {"³", "^3"},
+                                                                 {"≥", ">="},  {"≤", "<="}, {"°", "deg"}};
+  for (const auto& [letter, word] : words) {
+    for (std::size_t at = text.find(letter); at != std::string::npos; at = text.find(letter, at + word.size())) {
+      text.replace(at, letter.size(), word);
+    }
+  }
+  return text;
+}
+
 }  // namespace
+
+std::vector<LiveParameter> live_parameters(const Parameters& whole, const std::string& block_name) {
+  Parameters parameters = whole;
+  const Block& block = *std::ranges::find(schema(), block_name, &Block::name);
+  std::vector<LiveParameter> live;
+  for (const Key& key : live_keys(block)) {
+    const Value value = value_of(key.field(parameters));
+    if (!value) continue;
+    live.push_back({.key = path_of(block, key).substr(block_name.size() + 1),
+                    .value = *value,
+                    .min = (key.traits & kZeroIsOff) != 0 ? 0 : key.min,
+                    .max = key.max,
+                    .rule = ascii(rule_of(key))});
+  }
+  return live;
+}
 
 LiveChange read_live(const Parameters& base, const std::string& block_name, const std::string& text) {
   const Block& whole = *std::ranges::find(schema(), block_name, &Block::name);

@@ -28,6 +28,18 @@ struct LiveChange {
   std::vector<std::string> problems;  ///< empty: nothing stands against it
 };
 
+/// One key that may change while its node runs.
+struct LiveParameter {
+  std::string key;                   ///< as in LiveValue
+  std::variant<double, bool> value;  ///< as it holds
+  double min = 0;                    ///< numbers only
+  double max = 0;
+  std::string rule;  ///< in words, "a number of 0.001 … 50 m/s"; in ASCII
+};
+
+/// Of one block, in the order of the schema; without those that are left out.
+std::vector<LiveParameter> live_parameters(const Parameters& whole, const std::string& block);
+
 /// `base` is sound. Any text.
 LiveChange read_live(const Parameters& base, const std::string& block, const std::string& text);
 

@@ -5,6 +5,8 @@
 
 #include <sstream>
 
+#include "files/input_file.h"
+#include "parameters/peer_file.h"
 #include "parameters/text_file.h"
 #include "parameters/value_reader.h"
 
@@ -97,46 +99,89 @@ void read_document(const YAML::Node& root, const std::string& source, const std:
   });
 }
 
-class Unheard : public YAML::EventHandler {
+/// What the nodes of a text do not say: how many documents it has, and its tags.
+class Documents : public YAML::EventHandler {
   using Mark = YAML::Mark;
   using Style = YAML::EmitterStyle::value;
   using Anchor = YAML::anchor_t;
+
+ public:
+  // 0, 1, or 2 for more. YAML::LoadAll finds documents without end in a text that begins with a comma.
+  explicit Documents(const std::string& text) {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    while (count < 2 && parser.HandleNextDocument(*this)) ++count;
+  }
+
+  void refuse_tags(const std::string& source, ProblemList& problems) const {
+    for (const auto& [tag, mark] : tags_) {
+      problems.add({printable(tag), "", "is a YAML tag, and none is read", at_line(source, mark),
+                    "write the plain value, in the unit of the key: angles in rad"});
+    }
+  }
+
+  std::size_t count = 0;
+
+ private:
+  // "": none; "?": a plain scalar's; "!": a quoted one's.
+  void look(const std::string& tag, const Mark& mark) {
+    if (tag.empty() || tag == "?" || tag == "!") return;
+    constexpr std::string_view kCore = "tag:yaml.org,2002:";
+    tags_.emplace_back(tag.starts_with(kCore) ? "!!" + tag.substr(kCore.size()) : tag, mark);
+  }
+
   void OnDocumentStart(const Mark&) override {}
   void OnDocumentEnd() override {}
   void OnNull(const Mark&, Anchor) override {}
   void OnAlias(const Mark&, Anchor) override {}
-  void OnScalar(const Mark&, const std::string&, Anchor, const std::string&) override {}
-  void OnSequenceStart(const Mark&, const std::string&, Anchor, Style) override {}
+  void OnScalar(const Mark& mark, const std::string& tag, Anchor, const std::string&) override { look(tag, mark); }
+  void OnSequenceStart(const Mark& mark, const std::string& tag, Anchor, Style) override { look(tag, mark); }
   void OnSequenceEnd() override {}
-  void OnMapStart(const Mark&, const std::string&, Anchor, Style) override {}
+  void OnMapStart(const Mark& mark, const std::string& tag, Anchor, Style) override { look(tag, mark); }
   void OnMapEnd() override {}
-};
 
-// 0, 1, or 2 for more. YAML::LoadAll finds documents without end in a text that begins with a comma.
-std::size_t documents_in(const std::string& text) {
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  Unheard events;
-  std::size_t count = 0;
-  while (count < 2 && parser.HandleNextDocument(events)) ++count;
-  return count;
-}
+  std::vector<std::pair<std::string, Mark>> tags_;
+};
 
 void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& problems) {
   std::error_code ignored;
   const std::filesystem::path path = std::filesystem::absolute(yaml_path, ignored);
-  const auto text = read_text_file(yaml_path, "name a YAML file like config/robot_params.yaml", problems);
+  const auto text =
+      read_text_file(yaml_path, kLargestParameterFile, "name a YAML file like config/robot_params.yaml", problems);
   if (!text) return;
   try {
-    const std::size_t documents = documents_in(*text);
-    if (documents != 1) {
-      const std::string found = documents == 0 ? "none" : "more";
+    const Documents documents(*text);
+    if (documents.count != 1) {
+      const std::string found = documents.count == 0 ? "none" : "more";
       problems.add({yaml_path, "", "must hold one YAML document, not " + found, "", ""});
       return;
     }
-    read_document(YAML::Load(*text), yaml_path, path.parent_path(), tree, problems);
+    const YAML::Node root = YAML::Load(*text);
+    if (const std::string what = peer_configuration(root); !what.empty()) {
+      problems.add({yaml_path, "", "is a configuration of ros_controllers, not of robot_control (" + what + ")", "",
+                    kPeerTable});
+      return;
+    }
+    documents.refuse_tags(yaml_path, problems);
+    read_document(root, yaml_path, path.parent_path(), tree, problems);
   } catch (const YAML::Exception& error) {
     problems.add({yaml_path, "", "is not YAML: " + printable(error.msg), at_line(yaml_path, error.mark), ""});
+  }
+}
+
+/// Key by key; of a map that both have, what the upper one does not name.
+void lay_under(const std::string& base_path, const std::string& yaml_path, ParameterTree& tree, ProblemList& problems) {
+  std::error_code error;
+  if (base_path.empty() || !std::filesystem::exists(base_path, error)) return;
+  if (!yaml_path.empty() && std::filesystem::equivalent(base_path, yaml_path, error)) return;
+  ParameterTree base;
+  read_file(base_path, base, problems);
+  for (auto& [path, entry] : base.entries) {
+    const std::size_t inner = path.find('.', path.find('.') + 1);
+    const auto map = inner == std::string::npos ? tree.entries.end() : tree.entries.find(path.substr(0, inner));
+    if (map != tree.entries.end() && map->second.kind != Entry::Kind::kMap) continue;
+    entry.base = true;
+    tree.entries.emplace(path, std::move(entry));
   }
 }
 
@@ -144,6 +189,7 @@ void lay_over(const Overlay& overlay, ParameterTree& tree, ProblemList& problems
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::current_path(ignored);
   try {
+    Documents(overlay.text).refuse_tags(overlay.origin, problems);
     put_value(overlay.path, YAML::Load(overlay.text), overlay.origin, overlay.origin, problems,
               [&](const std::string& path, Entry entry, const std::string&) {
                 // An empty string has no other spelling on a server.
@@ -171,12 +217,13 @@ void lay_request_over(const std::string& block, const std::string& text, Paramet
     return;
   }
   try {
-    const bool one = documents_in(text) == 1;
-    const YAML::Node map = one ? YAML::Load(text) : YAML::Node();
+    const Documents documents(text);
+    const YAML::Node map = documents.count == 1 ? YAML::Load(text) : YAML::Node();
     if (!map.IsMap() || map.size() == 0) {
       refuse(form + ", at least one");
       return;
     }
+    documents.refuse_tags("request", problems);
     for_each_key(map, block + ".", "request", problems, [&](const auto& name, const auto&, const YAML::Node& value) {
       put_value(block + "." + name, value, "request", "request", problems,
                 [&](const std::string& path, Entry entry, const std::string&) {
@@ -196,10 +243,12 @@ void lay_request_over(const std::string& block, const std::string& text, Paramet
   }
 }
 
-ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems) {
+ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems,
+                        const std::string& base_path) {
   ParameterTree tree;
   if (!yaml_path.empty()) read_file(yaml_path, tree, problems);
   if (!problems.empty() && tree.blocks.empty()) return tree;
+  lay_under(base_path, yaml_path, tree, problems);
   for (const Overlay& overlay : overlays) lay_over(overlay, tree, problems);
   return tree;
 }

@@ -19,6 +19,7 @@ struct Entry {
   std::string origin;            ///< "robot_params.yaml:12", or the overlay's own
   std::filesystem::path folder;  ///< what a relative path in it is relative to
   bool overlay = false;
+  bool base = false;  ///< of the file below the file
 };
 
 struct BlockEntry {
@@ -33,8 +34,10 @@ struct ParameterTree {
 
 /// Reads the file (none if `yaml_path` is empty), then lays the overlays over it, the last one on top.
 /// Unreadable and malformed YAML, duplicate keys and blocks that are no maps become problems. An overlay that is a map
-/// is laid over key by key: what it does not name stays.
-ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems);
+/// is laid over key by key: what it does not name stays. So is the file over that of `base_path`, where one is there
+/// and another. Every YAML tag (`!degrees`, `!!str`) is a problem: none is read.
+ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems,
+                        const std::string& base_path = "");
 
 /// Lays a request over the tree: the text of a YAML map of keys of `block`, of at most kLongestRequest bytes. Anything
 /// else is one problem.

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "control/drive_limits.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
@@ -19,7 +20,7 @@ class TreeReader {
       : tree_(std::move(tree)), blocks_(blocks), source_(std::move(source)), problems_(problems), parameters_(base) {}
 
   Parameters read() {
-    overlays_replace_other_names();
+    higher_layers_replace_other_names();
     refuse_unknown();
     for (const Block& block : blocks_) {
       for (const Key& key : block.keys) read_key(block, key);
@@ -32,22 +33,24 @@ class TreeReader {
   }
 
  private:
-  // An overlay that says wheel_separation means the file's wheel_base, and the other way round.
-  void overlays_replace_other_names() {
+  // Where a higher layer says wheel_separation, it means the lower one's wheel_base, and the other way round.
+  void higher_layers_replace_other_names() {
     for (const Block& block : schema()) {
       for (const Key& key : block.keys) {
         if (key.other_name_of.empty()) continue;
         const std::string one = path_of(block, key);
         const std::string other = std::string(block.name) + "." + std::string(key.other_name_of);
-        if (overlaid(one) && !overlaid(other)) tree_.entries.erase(other);
-        if (overlaid(other) && !overlaid(one)) tree_.entries.erase(one);
+        if (layer_of(one) > layer_of(other)) tree_.entries.erase(other);
+        if (layer_of(other) > layer_of(one)) tree_.entries.erase(one);
       }
     }
   }
 
-  bool overlaid(const std::string& path) const {
+  /// 0: not given, 1: by the base, 2: by the file, 3: by an overlay.
+  int layer_of(const std::string& path) const {
     const auto entry = tree_.entries.find(path);
-    return entry != tree_.entries.end() && entry->second.overlay;
+    if (entry == tree_.entries.end()) return 0;
+    return entry->second.overlay ? 3 : entry->second.base ? 1 : 2;
   }
 
   void refuse_unknown() {
@@ -131,34 +134,29 @@ class TreeReader {
       refuse(empty, "must be below " + low + " = " + as_written(entry) + " [" + entry.origin + "]");
     }
     const DriveControllerParameters& drive = parameters_.controller;
-    const auto check_emergency = [&](const std::string& axis, double emergency, std::optional<double> deceleration,
-                                     double acceleration) {
-      const std::string path = "diff_drive_controller.max_" + axis + "_emergency_deceleration";
-      const std::string usual =
-          "diff_drive_controller.max_" + axis + (deceleration ? "_deceleration" : "_acceleration");
-      if (!sound_.contains(path) || !sound_.contains(usual) || emergency >= deceleration.value_or(acceleration)) {
-        return;
+    const SpeedLimits limits = speed_limits(drive);
+    const auto check_axis = [&](const std::string& axis, const MotionLimits& of, bool own_deceleration,
+                                std::optional<double> jerk) {
+      const std::string block = "diff_drive_controller.max_" + axis;
+      const std::string emergency = block + "_emergency_deceleration";
+      const std::string usual = block + (own_deceleration ? "_deceleration" : "_acceleration");
+      if (sound_.contains(emergency) && sound_.contains(usual) && of.emergency_deceleration < of.deceleration) {
+        const Entry& entry = tree_.entries.at(usual);
+        refuse(emergency, "must not be below " + usual + " = " + as_written(entry) + " [" + entry.origin + "]");
       }
-      const Entry& entry = tree_.entries.at(usual);
-      refuse(path, "must not be below " + usual + " = " + as_written(entry) + " [" + entry.origin + "]");
+      // The jerk limit must let the brake of an emergency come.
+      constexpr double kBuildUp = 1.0;  // s
+      if (!sound_.contains(block + "_jerk") || jerk.value_or(0) == 0) return;
+      if (*jerk * kBuildUp >= of.emergency_deceleration) return;
+      const auto entry = tree_.entries.find(emergency);
+      const bool given = sound_.contains(emergency) && entry != tree_.entries.end();
+      refuse(block + "_jerk", "must be 0 (off) or reach " + emergency + " = " +
+                                  (given ? as_written(entry->second) + " [" + entry->second.origin + "]"
+                                         : shortest(of.emergency_deceleration) + " (derived)") +
+                                  " within " + shortest(kBuildUp) + " s");
     };
-    check_emergency("linear", drive.max_linear_emergency_deceleration, drive.max_linear_deceleration,
-                    drive.max_linear_acceleration);
-    check_emergency("angular", drive.max_angular_emergency_deceleration, drive.max_angular_deceleration,
-                    drive.max_angular_acceleration);
-    // The jerk limit must let the brake of an emergency come.
-    constexpr double kBuildUp = 1.0;  // s
-    const auto check_jerk = [&](const std::string& axis, double jerk, double emergency) {
-      const std::string path = "diff_drive_controller.max_" + axis + "_jerk";
-      const std::string deceleration = "diff_drive_controller.max_" + axis + "_emergency_deceleration";
-      if (!sound_.contains(path) || !sound_.contains(deceleration)) return;
-      if (jerk == 0 || jerk * kBuildUp >= emergency) return;
-      const Entry& entry = tree_.entries.at(deceleration);
-      refuse(path, "must be 0 (off) or reach " + deceleration + " = " + as_written(entry) + " [" + entry.origin +
-                       "] within " + shortest(kBuildUp) + " s");
-    };
-    check_jerk("linear", drive.max_linear_jerk, drive.max_linear_emergency_deceleration);
-    check_jerk("angular", drive.max_angular_jerk, drive.max_angular_emergency_deceleration);
+    check_axis("linear", limits.linear, drive.max_linear_deceleration.has_value(), drive.max_linear_jerk);
+    check_axis("angular", limits.angular, drive.max_angular_deceleration.has_value(), drive.max_angular_jerk);
     // The sensors of one cycle, the permit of the next, the torque of the one after.
     constexpr double kCyclesToStop = 3;
     const std::string delay = "safety_monitor.stop_delay";
@@ -226,11 +224,12 @@ Parameters read_blocks(ParameterTree tree, std::span<const Block> blocks, const 
   return TreeReader(std::move(tree), blocks, source, base, problems).read();
 }
 
-Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays) {
+Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays,
+                           const std::string& base_path) {
   const std::string source = yaml_path.empty() ? "the given values" : yaml_path;
   const std::string subject = "parameters refused (" + source + ")";
   ProblemList problems;
-  ParameterTree tree = read_tree(yaml_path, overlays, problems);
+  ParameterTree tree = read_tree(yaml_path, overlays, problems, base_path);
   if (tree.blocks.empty() && !yaml_path.empty()) problems.throw_if_any(subject);  // not a file to ask further
   Parameters parameters = read_blocks(std::move(tree), schema(), source, {}, problems);
   problems.throw_if_any(subject);

@@ -59,6 +59,7 @@ struct ReportParameters {
 
 struct TelemetryParameters {
   std::string directory;  ///< where runs are written; empty or relative: from where the node was started
+  double quota = 5;       ///< GB (10⁹ bytes) of all runs in `directory` together; 0: no limit
 };
 
 struct Parameters {
@@ -70,6 +71,7 @@ struct Parameters {
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none
   DriveControllerParameters controller;
   SafetyParameters safety;
+  std::string latch_file;  ///< path, see runtime/latch_file.h; empty: none
   ReportParameters report;
   TelemetryParameters telemetry;
 };
@@ -87,9 +89,15 @@ struct Overlay {
 /// except what the URDF knows (`robot.wheel_base`, …) or what is derived from it (`pid_kp`, …): the optional ones of
 /// describe_parameters. With an empty `yaml_path` the overlays are everything there is.
 ///
+/// `base_path`: a complete file over which that of `yaml_path` is laid key by key, so that it may hold only the keys
+/// that it changes; empty, not there or the same file: none.
+///
+/// A file that is a configuration of ros_controllers' or ros2_controllers' diff_drive_controller is one problem.
+///
 /// Relative paths of input files (`urdf`, `scene`, `command_script`) count from the folder of the YAML file, in
 /// an overlay from the current folder; they come out absolute.
-Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {});
+Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {},
+                           const std::string& base_path = "");
 
 /// Every path that may be set ("robot.rate", …), in the order of the schema.
 std::vector<std::string> parameter_paths();

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "files/message_text.h"
+
 namespace robot_control {
 
 /// Printed as one line: `path = value: rule [origin]; remedy`. Empty parts are left out.
@@ -33,10 +35,6 @@ class ProblemList {
 
 /// "`subject`: 2 problems", and each of them on a line of its own below.
 std::string listing(std::string_view subject, const std::vector<std::string>& lines);
-
-/// Text from outside made fit for a message: control characters escaped, cut after at most 60 bytes, between
-/// characters.
-std::string printable(std::string_view text);
 
 /// Shortest text that reads back as the same number.
 std::string shortest(double value);

@@ -176,6 +176,7 @@ constexpr auto kStateEstimator = std::to_array<Key>({
     {"gyro_bias", in<&P::estimator, &EstimatorParameters::gyro_bias>, "rad/s", -kGyroBiasMax, kGyroBiasMax},
     {"calibration_file", in<&P::calibration_file>, {}, 0, 0, kPath | kMayBeEmpty},
     {"speed_bandwidth", in<&P::estimator, &EstimatorParameters::speed_bandwidth>, "Hz", 0.1, 500},
+    {"rate_bandwidth", in<&P::estimator, &EstimatorParameters::rate_bandwidth>, "Hz", 0.1, 500},
     {"joint_states_rate", in<&P::report, &ReportParameters::joint_states_rate>, "Hz", 0.1, 2000, kPublishRate},
     {"odom_rate", in<&P::report, &ReportParameters::odom_rate>, "Hz", 0.1, 2000, kPublishRate},
     {"imu_rate", in<&P::report, &ReportParameters::imu_data_rate>, "Hz", 0.1, 2000, kPublishRate},
@@ -195,11 +196,11 @@ constexpr auto kDiffDriveController = std::to_array<Key>({
     {"max_linear_deceleration", in<&P::controller, &Drive::max_linear_deceleration>, "m/s²", 0.001, 100, kDerived},
     {"max_angular_deceleration", in<&P::controller, &Drive::max_angular_deceleration>, "rad/s²", 0.001, 1000, kDerived},
     {"max_linear_emergency_deceleration", in<&P::controller, &Drive::max_linear_emergency_deceleration>, "m/s²", 0.001,
-     100, kLive},
+     100, kDerived},
     {"max_angular_emergency_deceleration", in<&P::controller, &Drive::max_angular_emergency_deceleration>, "rad/s²",
-     0.001, 1000, kLive},
-    {"max_linear_jerk", in<&P::controller, &Drive::max_linear_jerk>, "m/s³", 0.001, 1.0e6, kZeroIsOff | kLive},
-    {"max_angular_jerk", in<&P::controller, &Drive::max_angular_jerk>, "rad/s³", 0.001, 1.0e6, kZeroIsOff | kLive},
+     0.001, 1000, kDerived},
+    {"max_linear_jerk", in<&P::controller, &Drive::max_linear_jerk>, "m/s³", 0.001, 1.0e6, kZeroIsOff | kDerived},
+    {"max_angular_jerk", in<&P::controller, &Drive::max_angular_jerk>, "rad/s³", 0.001, 1.0e6, kZeroIsOff | kDerived},
     {"keep_curvature", in<&P::controller, &Drive::keep_curvature>, {}, 0, 0, kLive},
     {"cmd_vel_timeout", in<&P::controller, &Drive::cmd_vel_timeout>, "s", 0, 60, kTimeout | kZeroIsOff | kLive},
     {"one_sender", in<&P::controller, &Drive::one_sender>},
@@ -225,6 +226,7 @@ constexpr auto kSafetyLimits = std::to_array<Key>({
     {"clearance", in<&P::safety, &Safety::clearance>, "m", 0, 10000, kZeroIsOff},
     {"stop_delay", in<&P::safety, &Safety::stop_delay>, "s", 0, 10},
     {"stop_deceleration", in<&P::safety, &Safety::stop_deceleration>, "m/s²", 0.001, 100},
+    {"latch_file", in<&P::latch_file>, {}, 0, 0, kPath | kMayBeEmpty | kOptional},
 });
 
 constexpr auto kSafetyMonitor =
@@ -233,6 +235,7 @@ constexpr auto kSafetyMonitor =
          condition<&Safety::wheel_acceleration>("wheel_acceleration", "rad/s²", 0.1, 1.0e7, kOptional),
          condition<&Safety::wheel_effort>("wheel_effort", "of the effort limit", 0.01, 10),
          condition<&Safety::power>("power", "W", 0.01, 1.0e7, kOptional),
+         condition<&Safety::torque_oscillation>("torque_oscillation", "of the effort limit", 0.01, 10),
          condition<&Safety::stall>("stall", "rad", 0.001, 1000, kOptional),
          condition<&Safety::runaway>("runaway", "rad/s", 0.001, 10000, kOptional),
          condition<&Safety::wrong_direction>("wrong_direction", "rad/s", 0.001, 10000),
@@ -251,6 +254,7 @@ constexpr auto kSafetyMonitor =
 
 constexpr auto kTelemetry = std::to_array<Key>({
     {"directory", in<&P::telemetry, &TelemetryParameters::directory>, {}, 0, 0, kMayBeEmpty},
+    {"quota", in<&P::telemetry, &TelemetryParameters::quota>, "GB", 0.001, 1.0e6, kZeroIsOff},
 });
 
 constexpr auto kBlocks = std::to_array<Block>({

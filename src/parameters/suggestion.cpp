@@ -4,6 +4,7 @@
 #include <numeric>
 #include <vector>
 
+#include "parameters/peer_file.h"
 #include "parameters/schema.h"
 
 namespace robot_control {
@@ -39,6 +40,7 @@ std::string suggest_key(std::string_view path) {
   const std::size_t dot = path.find('.');
   const std::string_view block_name = path.substr(0, dot);
   const std::string_view key_name = dot == std::string_view::npos ? path : path.substr(dot + 1);
+  if (std::string peer = suggest_for_peer_key(key_name); !peer.empty()) return peer;
   constexpr std::size_t kLongestWord = 100;
   if (key_name.size() > kLongestWord) return {};
   std::size_t nearest = farthest(key_name) + 1;

@@ -1,27 +1,15 @@
 #include "parameters/text_file.h"
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include "files/input_file.h"
 
 namespace robot_control {
 
-std::optional<std::string> read_text_file(const std::string& path, const std::string& remedy, ProblemList& problems) {
-  const auto refuse = [&](const std::string& why) {
-    problems.add({path, "", "cannot be read: " + why, "", remedy});
-    return std::nullopt;
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return refuse("is a folder");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return refuse(std::strerror(errno));
-  std::ostringstream text;
-  const bool empty = file.peek() == std::ifstream::traits_type::eof();
-  if (!empty && !(text << file.rdbuf())) return refuse(std::strerror(errno));
-  return text.str();
+std::optional<std::string> read_text_file(const std::string& path, std::size_t most, const std::string& remedy,
+                                          ProblemList& problems) {
+  InputFile file = read_input_file(path, most);
+  if (file.problem.empty()) return std::move(file.text);
+  problems.add({path, "", "cannot be read: " + file.problem, "", remedy});
+  return std::nullopt;
 }
 
 }  // namespace robot_control

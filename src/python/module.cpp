@@ -18,6 +18,7 @@
 #include "drivers/mujoco_plant.h"
 #include "hal/driver.h"
 #include "python/describe.h"
+#include "python/installed_file.h"
 #include "python/offline_estimator.h"
 #include "python/recorder.h"
 #include "python/wheel_loops.h"
@@ -89,7 +90,7 @@ RobotModel robot_of(const Parameters& parameters) {
 }
 
 /// The robot set down in the scene and at rest: how far it leans, rad, and which part of its weight the drive wheels
-/// carry.
+/// carry; `unloaded` names those that carry nothing, and what stands on the ground instead.
 py::dict stand(const Parameters& parameters) {
   const RobotModel robot = robot_of(parameters);
   MujocoPlant plant(robot, parameters.plant, parameters.loop.period());
@@ -103,13 +104,14 @@ py::dict stand(const Parameters& parameters) {
   py::dict result;
   result["lean"] = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
   result["carried"] = load / (model.body_subtreemass[plant.model().base_body] * mju_norm3(model.opt.gravity));
+  result["unloaded"] = plant.unloaded();
   return result;
 }
 
 Parameters parameters_from(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
   std::vector<Overlay> overlays;
   for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
-  return read_parameters(path, overlays);
+  return read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "parameters/calibration_file.h"
+#include "python/installed_file.h"
 #include "signals/names.h"
 
 namespace py = pybind11;
@@ -24,7 +25,7 @@ constexpr std::size_t kSensors = kStateSensorNames.size();
 Parameters parameters_of(const std::string& path, const OfflineEstimator::Values& values) {
   std::vector<Overlay> overlays;
   for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "Estimator"});
-  return read_parameters(path, overlays);
+  return read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
 }
 
 /// Two wheels on one axle, whose middle is base_link.

@@ -8,33 +8,19 @@
 #include "description/urdf_document.h"
 #include "description/wording.h"
 #include "robot/named_wheels.h"
+#include "robot/other_drives.h"
+#include "robot/rollers.h"
+#include "robot/swivel.h"
 #include "robot/wheel.h"
 #include "robot/wheel_pairs.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kUpright = 0.8;  // |z| of a swivel's axis: within 37° of the vertical
-constexpr int kBisections = 60;   // to the last bit
+constexpr int kBisections = 60;  // to the last bit
 
 double lowest_point(const WheelModel& wheel) {
   return wheel.centre_base[2] - wheel.radius;
-}
-
-const RigidBody* swivel_of(const RigidBodies& robot, std::size_t body) {
-  for (std::size_t i = robot.bodies[body].parent; i != 0; i = robot.bodies[i].parent) {
-    const RigidBody& ancestor = robot.bodies[i];
-    const bool turns = ancestor.joint.type != JointType::kPrismatic;
-    if (turns && std::abs((ancestor.in_root.linear() * ancestor.joint.axis).z()) > kUpright) return &ancestor;
-  }
-  return nullptr;
-}
-
-double trail(const RigidBody& swivel, const RollingMeasure& wheel) {
-  const Eigen::Vector3d axis = swivel.in_root.linear() * swivel.joint.axis;
-  const Eigen::Vector3d rolling = wheel.axle_in_root.cross(axis).normalized();
-  const Eigen::Vector3d centre(wheel.wheel.centre_base[0], wheel.wheel.centre_base[1], wheel.wheel.centre_base[2]);
-  return std::abs((centre - swivel.in_root.translation()).dot(rolling));
 }
 
 double suspension_travel(const RigidBodies& robot, std::size_t body) {
@@ -72,19 +58,19 @@ class Search {
     for (const RollingBody& candidate : candidates_) {
       if (robot_.bodies[candidate.body].joint.driven) driven.push_back(candidate);
     }
-    if (driven.empty() && rolling_ > kMaxWheels) {
+    const bool bound = !driven.empty();
+    if (!bound && rolling_ > kMaxWheels) {
       refuse(robot_.source, "<robot>",
              std::to_string(rolling_) + " wheels roll, and nothing says which of them drive: tracks are not supported",
              remedy());
     }
-    std::string objection;
-    for (std::vector<RollingBody> pairs : {driven, candidates_}) {
-      if (pairs.empty()) continue;
-      objection = sort_into_pairs(robot_, pairs);
-      if (objection.empty() && driven.empty()) objection = hanging_objection(pairs);
-      if (objection.empty()) return pairs;
-    }
-    std::string text = "which wheels drive is not clear: " + objection + ". Candidates: ";
+    std::vector<RollingBody> pairs = bound ? driven : candidates_;
+    std::string objection = sort_into_pairs(robot_, pairs);
+    if (objection.empty() && !bound) objection = hanging_objection(pairs);
+    if (objection.empty()) return pairs;
+    std::string text = "which wheels drive is not clear: ";
+    if (bound) text += "the file says that " + list(names_of(driven)) + " are driven, but ";
+    text += objection + ". Candidates: ";
     for (const RollingBody& candidate : candidates_) {
       text += (&candidate == &candidates_.front() ? "" : "; ") + described(robot_, candidate);
     }
@@ -93,6 +79,22 @@ class Search {
   }
 
  private:
+  std::vector<std::string> names_of(const std::vector<RollingBody>& wheels) const {
+    std::vector<std::string> names;
+    for (const RollingBody& wheel : wheels) names.push_back(robot_.bodies[wheel.body].joint.name);
+    return names;
+  }
+
+  /// A wheel that follows another one drives as that does.
+  bool follows_a_wheel(const RigidBody& body) const {
+    const RigidBody* leader = robot_.moved_by(body.joint.mimicked);
+    if (leader == nullptr || swivel_of(robot_, static_cast<std::size_t>(leader - robot_.bodies.data())) != nullptr) {
+      return false;
+    }
+    const RollingMeasure measure = measure_wheel(*leader);
+    return measure.objection.empty() && axle_tilt(measure) <= kAxleTolerance;
+  }
+
   static std::string remedy() {
     return "Name the wheels' joints by robot/left_wheel_joints: […] and robot/right_wheel_joints: […]; they must "
            "turn about the lateral (y) axis and have a round <collision> shape";
@@ -106,6 +108,10 @@ class Search {
   void consider(std::size_t index) {
     const RigidBody& body = robot_.bodies[index];
     const std::string& joint = body.joint.name;
+    if (rollers_of(robot_, body.parent) > 0) return;
+    if (const std::size_t rollers = rollers_of(robot_, index); rollers > 0) {
+      return reject(joint, rollers_objection(rollers));
+    }
     const bool named = looks_like_a_wheel(robot_, joint);
     if (body.joint.type == JointType::kPrismatic && !named) return;
     const RollingMeasure measure = measure_wheel(body);
@@ -115,9 +121,14 @@ class Search {
                                robot_.bodies[0].name + ", 0.2° are allowed");
     }
     if (!measure.objection.empty()) return reject(joint, measure.objection);
-    if (swivel_of(robot_, index) != nullptr) return reject(joint, "it stands behind a swivel");
-    if (!body.joint.mimicked.empty()) return reject(joint, "it follows " + body.joint.mimicked);
-    candidates_.push_back({index, measure.wheel});
+    if (const RigidBody* swivel = swivel_of(robot_, index); swivel != nullptr) {
+      return reject(joint, std::string("it stands behind a swivel, ") + swivel->joint.name +
+                               (is_steered(*swivel, body, measure) ? ", which steers it" : ""));
+    }
+    if (!body.joint.mimicked.empty() && !follows_a_wheel(body)) {
+      return reject(joint, "it follows " + body.joint.mimicked);
+    }
+    candidates_.push_back({index, measure.wheel, measure.out_of_round});
   }
 
   void drop_those_above_the_floor() {
@@ -146,17 +157,18 @@ class Search {
 
   void drop_those_on_the_middle_line() {
     if (candidates_.empty()) return;
-    double middle = 0;
+    double middle = 0, half = 0;
     if (candidates_.size() > 1) {
       const auto by_y = [](const RollingBody& a, const RollingBody& b) {
         return a.wheel.centre_base[1] < b.wheel.centre_base[1];
       };
       const auto [right, left] = std::minmax_element(candidates_.begin(), candidates_.end(), by_y);
       middle = (right->wheel.centre_base[1] + left->wheel.centre_base[1]) / 2;
+      half = (left->wheel.centre_base[1] - right->wheel.centre_base[1]) / 2;
     }
     std::erase_if(candidates_, [&](const RollingBody& candidate) {
       const double away = std::abs(candidate.wheel.centre_base[1] - middle);
-      if (away > std::max(kFloorTolerance, 0.1 * candidate.wheel.radius)) return false;
+      if (away > std::max(kFloorTolerance, std::min(0.1 * candidate.wheel.radius, half / 2))) return false;
       reject(robot_.bodies[candidate.body].joint.name,
              "it stands on the middle line, y " + number(middle) + " m, halfway between the outermost wheels");
       return true;
@@ -180,11 +192,19 @@ void note_lying_names(const RigidBodies& robot, const RollingBody& wheel, std::v
                        (left ? "left" : "right") + " wheel: y is " + number(wheel.wheel.centre_base[1]) + " m"});
 }
 
+void note_out_of_round(const RigidBodies& robot, const RollingBody& wheel, std::vector<RobotNote>& notes) {
+  if (!(wheel.out_of_round > 0)) return;
+  notes.push_back({RobotNote::Kind::kSuspicious, link_element(robot.bodies[wheel.body].name),
+                   "out of round: it reaches " + number(wheel.out_of_round * 1000) +
+                       " mm farther from its axle than most of its rim, whose radius of " + number(wheel.wheel.radius) +
+                       " m is taken"});
+}
+
 /// Whether it rolls, sets `omni`.
 bool judge_swivel(const RigidBodies& robot, std::size_t body, RollingMeasure& measure, std::vector<RobotNote>& notes) {
   const RigidBody* swivel = swivel_of(robot, body);
   measure.wheel.omni = swivel == nullptr;
-  const bool follows = swivel != nullptr && trail(*swivel, measure) >= kLeastTrail * measure.wheel.radius;
+  const bool follows = swivel != nullptr && trails(*swivel, measure);
   if (follows) return true;
   notes.push_back({RobotNote::Kind::kAssumed, joint_element(robot.bodies[body].joint.name),
                    measure.wheel.omni
@@ -206,7 +226,7 @@ std::vector<RollingBody> find_casters(const RigidBodies& robot, const std::vecto
     if (taken.contains(i)) continue;
     RollingMeasure measure = measure_wheel(robot.bodies[i]);
     if (!measure.objection.empty() || lowest_point(measure.wheel) - floor > kCasterTolerance) continue;
-    if (judge_swivel(robot, i, measure, notes)) casters.push_back({i, measure.wheel});
+    if (judge_swivel(robot, i, measure, notes)) casters.push_back({i, measure.wheel, measure.out_of_round});
   }
   return casters;
 }
@@ -223,8 +243,20 @@ DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& par
            "At most " + std::to_string(kMaxWheels) + " are supported; tracks are not");
   }
   for (const RollingBody& wheel : train.wheels) note_lying_names(robot, wheel, notes);
+  for (const RollingBody& wheel : train.wheels) note_out_of_round(robot, wheel, notes);
   train.casters = find_casters(robot, train.wheels, notes);
+  judge_other_drives(robot, train, named, notes);
   return train;
+}
+
+void release_followers(RigidBodies& robot, const DriveTrain& train, std::vector<RobotNote>& notes) {
+  for (const RollingBody& wheel : train.wheels) {
+    BodyJoint& joint = robot.bodies[wheel.body].joint;
+    if (joint.mimicked.empty()) continue;
+    notes.push_back({RobotNote::Kind::kSuspicious, joint_element(joint.name),
+                     "<mimic joint=\"" + joint.mimicked + "\"> is left out: it is a drive wheel, driven by itself"});
+    joint.mimicked.clear();
+  }
 }
 
 double wheel_base_of(const std::vector<RollingBody>& wheels) {

@@ -5,22 +5,23 @@
 ///   rolls (wheel.h) on an axle that is lateral within kAxleTolerance;
 ///   reaches the floor: its lowest point is within kFloorTolerance of that of the lowest candidate, or within the
 ///     travel of its suspension;
-///   does not stand behind a swivel (an upright joint between it and the root), nor follow another joint by <mimic>;
+///   carries no rollers (rollers.h) and does not stand behind a swivel (swivel.h), nor follow another joint by
+///     <mimic>, but that of a wheel;
 ///   is not on the middle line, halfway between the outermost candidates.
-/// Of the candidates those are the drive wheels that the URDF says are driven, where these make pairs; else all,
-/// where they do. A pair: one left and one right of the middle line, on one axle (Δx), equally far out (Δ|y|) and of
-/// one radius, each within kPairTolerance of the wheel base or radius. All pairs have one radius, and nothing level
-/// with them hangs in the air because its own is smaller. Anything else is not guessed: the candidates are named, and
-/// what to set.
+/// Of the candidates those are the drive wheels that the URDF says are driven, a follower as its leader; where it says
+/// so of none, all. They have to make pairs. A pair: one left and one right of the middle line, on one axle (Δx),
+/// equally far out (Δ|y|) and of one radius, each within kPairTolerance of the wheel base or radius, or what they are
+/// out of round. All pairs have one radius, and nothing level with them hangs in the air because its own is smaller.
+/// Anything else is not guessed: the candidates are named, and what to set.
 ///
 /// More than kMaxWheels candidates, of which the URDF drives none, are the rollers of a track: refused.
 ///
 /// Left and right are told by position: names lie. What a name says otherwise is noted.
 ///
-/// All else that rolls near the floor is a caster. Its swivel turns it into the direction of travel by its trail, the
-/// distance by which the wheel follows the swivel's axis, across the axle. Without a swivel the robot could turn only
-/// by dragging it sideways: it is taken for an omni wheel (WheelModel::omni). With a trail below kLeastTrail of the
-/// radius it is no caster, but slides. Both are noted.
+/// All else that rolls near the floor is a caster. Its swivel turns it into the direction of travel by its trail
+/// (swivel.h). Without a swivel the robot could turn only by dragging it sideways: it is taken for an omni wheel
+/// (WheelModel::omni). With too short a trail it is no caster, but slides. Both are noted. What shows that the robot
+/// is no differential drive at all: other_drives.h.
 
 #include <string>
 #include <vector>
@@ -31,11 +32,11 @@ namespace robot_control {
 
 inline constexpr double kFloorTolerance = 0.005;  ///< m
 inline constexpr double kPairTolerance = 0.01;
-inline constexpr double kLeastTrail = 0.05;
 
 struct RollingBody {
-  std::size_t body = 0;  ///< index into RigidBodies::bodies
-  WheelModel wheel;      ///< without `joint`
+  std::size_t body = 0;     ///< index into RigidBodies::bodies
+  WheelModel wheel;         ///< without `joint`
+  double out_of_round = 0;  ///< m (wheel.h)
 };
 
 struct DriveTrain {
@@ -49,6 +50,9 @@ inline constexpr double kCasterTolerance = 0.03;  ///< m
 /// than kMaxWheels; names of joints that do not exist, are fixed, slide, are not lateral or round, stand on the wrong
 /// side.
 DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& parameters, std::vector<RobotNote>& notes);
+
+/// Takes the <mimic> of drive wheels away, and notes it: each has a drive of its own.
+void release_followers(RigidBodies& robot, const DriveTrain& train, std::vector<RobotNote>& notes);
 
 /// m, Δy of the left and right wheels' centres, mean over the axles
 double wheel_base_of(const std::vector<RollingBody>& wheels);

@@ -35,16 +35,21 @@ Eigen::Matrix3d possible_inertia(const Eigen::Matrix3d& given, double mass) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(given);
   Eigen::Vector3d principal = solver.eigenvalues();
   if (principal[2] <= 0) return 0.4 * mass * kBallRadius * kBallRadius * Eigen::Matrix3d::Identity();
-  const double rounding = 1e-9 * principal[2];
-  if (principal[0] >= least && principal[0] + principal[1] >= principal[2] - rounding) return given;
+  const double enough = (1 + kThickness) * principal[2];
+  if (principal[0] >= least && principal[0] + principal[1] >= enough) return given;
 
   principal = principal.cwiseMax(least);
-  const double lacking = principal[2] - principal[0] - principal[1];
-  if (lacking > rounding) {
-    principal[0] += lacking / 2;
-    principal[1] += lacking / 2;
-  }
+  const double lacking = std::max(0.0, enough - principal[0] - principal[1]);
+  principal[0] += lacking / 2;
+  principal[1] += lacking / 2;
   return solver.eigenvectors() * principal.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+bool is_possible(const Eigen::Matrix3d& given, double mass) {
+  const Eigen::Vector3d principal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(given, Eigen::EigenvaluesOnly).eigenvalues();
+  return principal[0] >= mass * kLeastGyration * kLeastGyration &&
+         principal[0] + principal[1] >= (1 - 1e-9) * principal[2];
 }
 
 PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body, const std::string& source,
@@ -59,7 +64,7 @@ PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body
   if (given.mass == 0) return result;
   const Eigen::Matrix3d tensor = eigen_inertia(given);
   const Eigen::Matrix3d possible = possible_inertia(tensor, given.mass);
-  if (possible != tensor) {
+  if (!is_possible(tensor, given.mass)) {
     notes.push_back({RobotNote::Kind::kRepaired, link_element(link.name),
                      "principal moments of inertia " + moments(tensor) + " kg·m² belong to no body of " +
                          number(given.mass) + " kg: " + moments(possible) + " taken"});

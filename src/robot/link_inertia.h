@@ -19,12 +19,18 @@ struct PointInertia {
 
 /// The inertia nearest to `given` that a body of this mass can have. With the principal moments A ≤ B ≤ C:
 ///
-///   each ≥ m ρ², ρ = kLeastGyration;  A + B ≥ C: where not, A and B both grow by (C − A − B)/2
+///   each ≥ m ρ², ρ = kLeastGyration;  A + B ≥ (1 + ε) C, ε = kThickness: where not, A and B both grow by half of
+///   what lacks
 ///
 /// C stays, because it is what the maker is likelier to have meant; so do the principal axes. `given` itself where it
-/// needs no repair (up to rounding, 10⁻⁹ of C). Where all of it is zero: that of a solid ball of kBallRadius.
+/// needs no repair. Where all of it is zero: that of a solid ball of kBallRadius. ε keeps a flat part valid when its
+/// tensor is rotated or summed in doubles: rounding is 10⁻¹⁵ of C, a part with A + B = C a plate without thickness.
 Eigen::Matrix3d possible_inertia(const Eigen::Matrix3d& given, double mass);
 
+/// Whether it needs no repair that is worth a note: a plate without thickness, A + B = C up to 10⁻⁹ of C, is possible.
+bool is_possible(const Eigen::Matrix3d& given, double mass);
+
+inline constexpr double kThickness = 1e-6;
 inline constexpr double kLeastGyration = 1e-4;  ///< m: that of a ball of 0.3 mm
 inline constexpr double kBallRadius = 0.02;     ///< m
 

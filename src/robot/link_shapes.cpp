@@ -1,6 +1,8 @@
 #include "robot/link_shapes.h"
 
 #include <cmath>
+#include <filesystem>
+#include <utility>
 
 #include "description/mesh.h"
 #include "description/resource.h"
@@ -11,26 +13,47 @@
 namespace robot_control {
 namespace {
 
+/// A mesh that is not there.
+class MissingMesh : public RobotError {
+ public:
+  using RobotError::RobotError;
+};
+
 std::vector<Eigen::Vector3d> mesh_points(const urdf::Mesh& mesh, const std::string& element,
-                                         const RobotDescription& description) {
+                                         const RobotDescription& description, std::vector<RobotNote>& notes) {
   const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
   if (!scale.allFinite() || (scale.array() == 0).any()) {
     refuse(description.source, element, "<mesh filename=\"" + mesh.filename + "\">: its scale is empty or zero",
            "Give scale=\"1 1 1\" for a mesh in metres, \"0.001 0.001 0.001\" for one in millimetres");
   }
-  try {
-    std::vector<Eigen::Vector3d> points = mesh_corners(resolve_resource(mesh.filename, description));
-    for (Eigen::Vector3d& point : points) point = point.cwiseProduct(scale);
-    return points;
-  } catch (const RobotError& error) {
-    // What names the URDF itself names it once.
+  // What names the URDF itself names it once.
+  const auto located = [&](const RobotError& error) {
     const std::string prefix = description.source + ": ";
     const std::string text = error.what();
-    throw RobotError(prefix + element + ": " + (text.starts_with(prefix) ? text.substr(prefix.size()) : text));
+    return prefix + element + ": " + (text.starts_with(prefix) ? text.substr(prefix.size()) : text);
+  };
+  std::filesystem::path path;
+  try {
+    path = resolve_resource(mesh.filename, description);
+  } catch (const RobotError& error) {
+    throw MissingMesh(located(error));
+  }
+  try {
+    MeshCorners mesh_read = mesh_corners(path);
+    for (Eigen::Vector3d& point : mesh_read.points) point = point.cwiseProduct(scale);
+    if (mesh_read.not_finite > 0) {
+      notes.push_back({RobotNote::Kind::kSuspicious, element,
+                       "<mesh filename=\"" + mesh.filename + "\">: " + std::to_string(mesh_read.not_finite) +
+                           " points of it are infinite or not a number: left out"});
+    }
+    return std::move(mesh_read.points);
+  } catch (const RobotError& error) {
+    throw RobotError(located(error));
   }
 }
 
-Shape read_shape(const urdf::Geometry& geometry, const std::string& element, const RobotDescription& description) {
+Shape read_shape(const urdf::Geometry& geometry, const std::string& element, const RobotDescription& description,
+                 std::vector<RobotNote>& notes) {
   Shape shape;
   switch (geometry.type) {
     case urdf::Geometry::SPHERE:
@@ -50,7 +73,7 @@ Shape read_shape(const urdf::Geometry& geometry, const std::string& element, con
     }
     case urdf::Geometry::MESH:
       shape.type = ShapeType::kMesh;
-      shape.points = mesh_points(static_cast<const urdf::Mesh&>(geometry), element, description);
+      shape.points = mesh_points(static_cast<const urdf::Mesh&>(geometry), element, description, notes);
       break;
   }
   return shape;
@@ -84,12 +107,12 @@ bool has_extent(const Shape& shape, const std::string& source, const std::string
 }  // namespace
 
 std::vector<Shape> shapes_of(const urdf::Link& link, ShapeSource which, const Eigen::Isometry3d& in_body,
-                             const RobotDescription& description, std::vector<RobotNote>& notes) {
+                             const RobotDescription& description, std::vector<RobotNote>& notes,
+                             std::vector<std::string>* missing) {
   std::vector<Shape> shapes;
   const std::string element = link_element(link.name);
-  const auto add = [&](const auto& given, const std::string& kind) {
-    if (!given || !given->geometry) return;
-    Shape shape = read_shape(*given->geometry, element + kind, description);
+  const auto add_read = [&](const auto& given, const std::string& kind) {
+    Shape shape = read_shape(*given->geometry, element + kind, description, notes);
     shape.in_body = in_body * eigen_pose(given->origin);
     shape.link = link.name;
     if (has_extent(shape, description.source, element + kind)) {
@@ -98,12 +121,38 @@ std::vector<Shape> shapes_of(const urdf::Link& link, ShapeSource which, const Ei
       notes.push_back({RobotNote::Kind::kIgnored, element + kind, "a shape without extent is left out"});
     }
   };
+  const auto add = [&](const auto& given, const std::string& kind) {
+    if (!given || !given->geometry) return;
+    try {
+      add_read(given, kind);
+    } catch (const MissingMesh& error) {
+      if (missing == nullptr) throw;
+      missing->push_back(error.what());
+      notes.push_back({RobotNote::Kind::kSuspicious, element + kind,
+                       "no such file as " + static_cast<const urdf::Mesh&>(*given->geometry).filename +
+                           ": left out, what the robot stands on is there without it"});
+    }
+  };
   if (which == ShapeSource::kCollision) {
     for (const auto& collision : link.collision_array) add(collision, "<collision>");
   } else {
     for (const auto& visual : link.visual_array) add(visual, "<visual>");
   }
   return shapes;
+}
+
+std::vector<std::string> missing_visuals(const urdf::Link& link, const RobotDescription& description) {
+  std::vector<std::string> missing;
+  for (const auto& visual : link.visual_array) {
+    if (!visual || !visual->geometry || visual->geometry->type != urdf::Geometry::MESH) continue;
+    const std::string& file = static_cast<const urdf::Mesh&>(*visual->geometry).filename;
+    try {
+      resolve_resource(file, description);
+    } catch (const RobotError&) {
+      missing.push_back(file);
+    }
+  }
+  return missing;
 }
 
 }  // namespace robot_control

@@ -5,6 +5,7 @@
 
 #include "description/urdf_document.h"
 #include "description/wording.h"
+#include "robot/rollers.h"
 #include "robot/wheel.h"
 #include "robot/wheel_pairs.h"
 
@@ -22,6 +23,10 @@ RollingBody named_wheel(const RigidBodies& robot, const std::string& joint) {
     refuse(robot.source, element, "it is fixed, a wheel has to turn", "Make it type=\"continuous\"");
   }
   const RigidBody& body = *robot.moved_by(joint);
+  const auto index = static_cast<std::size_t>(&body - robot.bodies.data());
+  if (const std::size_t rollers = rollers_of(robot, index); rollers > 0) {
+    refuse(robot.source, element, rollers_objection(rollers), "Leave the rollers out of the URDF");
+  }
   const RollingMeasure measure = measure_wheel(body);
   if (body.joint.type == JointType::kPrismatic) {
     refuse(robot.source, element, measure.objection, "Make it type=\"continuous\"");
@@ -36,7 +41,7 @@ RollingBody named_wheel(const RigidBodies& robot, const std::string& joint) {
     refuse(robot.source, link_element(body.name), measure.objection,
            "Give it a <collision> cylinder or sphere about the axle, and a joint of type=\"continuous\"");
   }
-  return {static_cast<std::size_t>(&body - robot.bodies.data()), measure.wheel};
+  return {index, measure.wheel, measure.out_of_round};
 }
 
 }  // namespace

@@ -21,6 +21,9 @@
 namespace robot_control {
 namespace {
 
+constexpr std::size_t kNamed = 3;         // files in a note
+constexpr std::size_t kLongestChain = 3;  // of followers
+
 class Lumper {
  public:
   /// `largest` in m: what radius of gyration a link may have.
@@ -36,6 +39,8 @@ class Lumper {
     result_.link_order = document.link_order;
     result_.driven_joints = document.driven;
     result_.unsaid_axes = document.unsaid_axes;
+    result_.sideways_plugins = document.sideways_plugins;
+    result_.steering_plugins = document.steering_plugins;
     const auto& links = document.model->links_;
     const auto has_collision = [](const auto& link) { return !link.second->collision_array.empty(); };
     collides_ = std::any_of(links.begin(), links.end(), has_collision);
@@ -44,6 +49,7 @@ class Lumper {
 
   LumpedBodies lump() {
     add_body(*document_.model->getRoot(), 0, {});
+    note_missing_visuals();
     for (std::size_t body = 1; body < result_.bodies.size(); ++body) add_visual_wheel(body);
     for (const std::string& name : document_.joint_order) {
       const RigidBody* moved = result_.moved_by(name);
@@ -107,9 +113,20 @@ class Lumper {
   }
 
   void add_shapes(const urdf::Link& link, ShapeSource which, std::size_t body, const Eigen::Isometry3d& in_body) {
-    std::vector<Shape> shapes = shapes_of(link, which, in_body, description_, result_.notes);
+    // A wheel needs its shape; what else is missing is judged when the rest is known (tipping.h).
+    const bool needed = which == ShapeSource::kVisual || may_roll(result_.bodies[body]);
+    std::vector<Shape> shapes =
+        shapes_of(link, which, in_body, description_, result_.notes, needed ? nullptr : &result_.missing_meshes);
+    if (which == ShapeSource::kCollision) {
+      for (const std::string& file : missing_visuals(link, description_))
+        missing_visuals_.emplace_back(link.name, file);
+    }
     if (gyration_radius(link) <= largest_) note_gyration(link, shapes, result_.notes);
     std::move(shapes.begin(), shapes.end(), std::back_inserter(result_.bodies[body].shapes));
+  }
+
+  static bool may_roll(const RigidBody& body) {
+    return body.joint.type == JointType::kContinuous && turns_upright(body);
   }
 
   void add_visual_wheel(std::size_t index) {
@@ -134,7 +151,25 @@ class Lumper {
     }
   }
 
+  /// What RViz would draw. Wheels may get their shapes from there, so it is said before they are measured.
+  void note_missing_visuals() {
+    if (missing_visuals_.empty()) return;
+    std::string files;
+    for (std::size_t i = 0; i < std::min(missing_visuals_.size(), kNamed); ++i) {
+      files += (i == 0 ? "" : ", ") + missing_visuals_[i].second;
+    }
+    if (missing_visuals_.size() > kNamed) files += " and " + std::to_string(missing_visuals_.size() - kNamed) + " more";
+    note(RobotNote::Kind::kSuspicious, link_element(missing_visuals_.front().first),
+         "<visual>: no such file, nothing is drawn there: " + files);
+  }
+
   void check_mimics() {
+    for (std::size_t round = 0; round < kLongestChain; ++round) {
+      for (RigidBody& body : result_.bodies) {
+        const RigidBody* leader = result_.moved_by(body.joint.mimicked);
+        if (leader != nullptr && leader->joint.driven) body.joint.driven = true;
+      }
+    }
     for (RigidBody& body : result_.bodies) {
       BodyJoint& joint = body.joint;
       if (joint.mimicked.empty()) continue;
@@ -155,6 +190,7 @@ class Lumper {
   bool collides_ = true;
   RigidBodies result_;
   std::vector<bool> weighed_;
+  std::vector<std::pair<std::string, std::string>> missing_visuals_;  // link, file
 };
 
 template <typename Matrix>
@@ -203,11 +239,12 @@ RigidBodies read_rigid_bodies(const RobotDescription& description) {
                                   "what it moves has no <inertial>, and nothing rolls on it: taken as fixed"});
   }
   lend_mass(lumped);
-  for (const RigidBody& body : lumped.robot.bodies) {
+  for (RigidBody& body : lumped.robot.bodies) {
     if (!of_this_world(body)) {
       refuse(document.source, link_element(body.name),
              "a mass, length or inertia in it or on the way to it exceeds 1e9", "Give kg, m and kg·m²");
     }
+    if (body.mass > 0) body.inertia = possible_inertia(body.inertia, body.mass);
   }
   return std::move(lumped.robot);
 }

@@ -52,7 +52,7 @@ struct BodyJoint {
   double spring_load = 0;                         ///< N or N·m along q: force = load − stiffness · q
   std::string mimicked;                           ///< joint that this one follows; empty: none
   double mimic_multiplier = 1, mimic_offset = 0;  ///< q = multiplier · q_mimicked + offset
-  bool driven = false;                            ///< transmission, ros2_control or drive plugin names it
+  bool driven = false;  ///< transmission, ros2_control or drive plugin names it, or what it follows by mimic
 };
 
 struct RigidBody {
@@ -81,7 +81,10 @@ struct RigidBodies {
   std::map<std::string, JointType> joints;  ///< all, fixed ones too
   std::vector<std::string> link_order;      ///< in the order of the file
   std::set<std::string> driven_joints;      ///< of all kinds; BodyJoint::driven
+  std::set<std::string> sideways_plugins;   ///< UrdfDocument
+  std::set<std::string> steering_plugins;   ///< likewise
   std::set<std::string> unsaid_axes;        ///< joints whose axis is 1 0 0 for want of another
+  std::vector<std::string> missing_meshes;  ///< messages of <collision> shapes that are left out, see link_shapes.h
   std::vector<RobotNote> notes;             ///< what was assumed, repaired, ignored
 
   /// Null when no moving joint has this name.

@@ -6,6 +6,7 @@
 #include "description/urdf_document.h"
 #include "description/wording.h"
 #include "robot/drive_wheels.h"
+#include "robot/feet.h"
 #include "robot/imu_place.h"
 #include "robot/joint_roles.h"
 #include "robot/model_hash.h"
@@ -13,6 +14,8 @@
 #include "robot/rigid_bodies.h"
 #include "robot/rockers.h"
 #include "robot/suspension.h"
+#include "robot/suspicions.h"
+#include "robot/tipping.h"
 #include "robot/wheel_drive.h"
 #include "signals/joint.h"
 
@@ -161,10 +164,10 @@ void read_imu(const RigidBodies& robot, const RobotParameters& parameters, Robot
   model.imu_in_base = imu_pose(robot, model.imu_link, parameters, model.wheel_base, model.notes);
 }
 
-void note_mecanum(RobotModel& model) {
-  if (model.wheels.size() == 2 || lower_case(model.urdf).find("mecanum") == std::string::npos) return;
-  model.notes.push_back({RobotNote::Kind::kSuspicious, "<robot>",
-                         "it speaks of mecanum wheels: they are driven as plain ones, and do not roll sideways"});
+/// Without a mesh that is not there the robot may have nothing to stand on.
+void check_missing_meshes(const RobotModel& model) {
+  const std::vector<std::string>& missing = model.bodies->missing_meshes;
+  if (!missing.empty() && !(lifting_deceleration(model) > 0)) throw RobotError(missing.front());
 }
 
 void check_finite(const RobotModel& model) {
@@ -215,6 +218,8 @@ RobotModel read_robot(const RobotDescription& description, const RobotParameters
   model.notes = bodies->notes;
 
   DriveTrain train = find_drive_train(*bodies, parameters, model.notes);
+  release_followers(*bodies, train, model.notes);
+  set_feet(*bodies, train, model.notes);
   assume_rotors(*bodies, train, model.notes);
   assume_springs(*bodies, train, model.notes);
   assume_differential(*bodies, train, model.notes);
@@ -223,10 +228,11 @@ RobotModel read_robot(const RobotDescription& description, const RobotParameters
   read_masses(*bodies, parameters, model);
   note_unequal_loads(parameters, model);
   read_imu(*bodies, parameters, model);
-  note_mecanum(model);
-  model.notes = merged(model.notes);
   model.bodies = bodies;
   check_finite(model);
+  check_missing_meshes(model);
+  note_suspicions(model);
+  model.notes = merged(model.notes);
   return model;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "description/wording.h"
+#include "robot/shape_support.h"
 
 namespace robot_control {
 namespace {
@@ -19,28 +20,10 @@ double angle_between_lines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-/// How far `shape` reaches along the unit vector `u` of the body's axes, from the body's origin.
-double support(const Shape& shape, const Eigen::Vector3d& u) {
-  const Eigen::Vector3d local = shape.in_body.linear().transpose() * u;
-  const double centre = shape.in_body.translation().dot(u);
-  switch (shape.type) {
-    case ShapeType::kSphere:
-      return centre + shape.radius;
-    case ShapeType::kCylinder:
-      return centre + shape.radius * local.head<2>().norm() + shape.length / 2 * std::abs(local.z());
-    case ShapeType::kBox:
-      return centre + shape.size.dot(local.cwiseAbs()) / 2;
-    case ShapeType::kMesh:
-      break;
-  }
-  double farthest = -std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& point : shape.points) farthest = std::max(farthest, point.dot(local));
-  return centre + farthest;
-}
-
 struct Profile {
   std::vector<double> heights;  ///< m, support in each direction across the axle
   double reach = 0;             ///< m, of the farthest point from the axle
+  double radius = 0;            ///< m, as wheel.h says
   double first = 0, last = 0;   ///< m along the axle, of what touches the ground
 };
 
@@ -66,16 +49,40 @@ void measure_rim(const Shape& shape, const Eigen::Vector3d& axle, Profile& profi
   }
 }
 
+/// m, from the axle: of the corner of a mesh that reaches farthest along `u`.
+double corner_distance(const Shape& mesh, const Eigen::Vector3d& u, const Eigen::Vector3d& axle) {
+  const Eigen::Vector3d local = mesh.in_body.linear().transpose() * u;
+  const auto farthest =
+      std::max_element(mesh.points.begin(), mesh.points.end(),
+                       [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.dot(local) < b.dot(local); });
+  return farthest == mesh.points.end() ? 0 : (mesh.in_body * *farthest).cross(axle).norm();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double radius_of(double reach, const std::vector<double>& distances) {
+  const double usual = median(distances);
+  return reach > (1 + kTrueRunning) * usual ? usual : reach;
+}
+
 Profile profile_of(const Shape& shape, const Eigen::Vector3d& axle) {
   Profile profile;
   const Eigen::Vector3d x = axle.unitOrthogonal();
   const Eigen::Vector3d y = axle.cross(x);
+  std::vector<double> distances;
   for (int i = 0; i < kDirections; ++i) {
     const double phi = 2 * M_PI * i / kDirections;
-    profile.heights.push_back(support(shape, std::cos(phi) * x + std::sin(phi) * y));
+    const Eigen::Vector3d u = std::cos(phi) * x + std::sin(phi) * y;
+    profile.heights.push_back(support(shape, u));
+    if (shape.type == ShapeType::kMesh) distances.push_back(corner_distance(shape, u, axle));
   }
   if (shape.type == ShapeType::kMesh) {
     measure_rim(shape, axle, profile);
+    profile.radius = radius_of(profile.reach, distances);
     return profile;
   }
   profile.last = support(shape, axle);
@@ -88,10 +95,11 @@ Profile profile_of(const Shape& shape, const Eigen::Vector3d& axle) {
     profile.first = middle - half;
     profile.last = middle + half;
   }
+  profile.radius = radius_of(profile.reach, profile.heights);
   return profile;
 }
 
-double roundness(const std::vector<const Profile*>& profiles) {
+bool is_round(const std::vector<const Profile*>& profiles) {
   double least = std::numeric_limits<double>::infinity();
   double most = 0;
   for (std::size_t i = 0; i < kDirections; ++i) {
@@ -100,7 +108,9 @@ double roundness(const std::vector<const Profile*>& profiles) {
     least = std::min(least, height);
     most = std::max(most, height);
   }
-  return most > 0 ? least / most : 0;
+  if (!(most > 0)) return false;
+  const double few = std::min(kOutOfRound, kMostOutOfRound * most);
+  return most - least <= std::max((1 - kRoundness) * most, few);
 }
 
 /// Those that touch the ground; empty when they are not round.
@@ -110,9 +120,9 @@ std::vector<const Profile*> tyre_of(const std::vector<Profile>& profiles, double
   for (const Profile& profile : profiles) {
     if (profile.reach >= kSameReach * reach) tyre.push_back(&profile);
     const bool farther = round == nullptr || profile.reach > round->reach;
-    if (farther && roundness({&profile}) >= kRoundness) round = &profile;
+    if (farther && is_round({&profile})) round = &profile;
   }
-  if (roundness(tyre) >= kRoundness) return tyre;
+  if (!tyre.empty() && is_round(tyre)) return tyre;
   if (round != nullptr && round->reach >= kCorners * reach) return {round};
   return {};
 }
@@ -130,13 +140,16 @@ void measure_shapes(const RigidBody& body, RollingMeasure& measure) {
     return;
   }
   reach = 0;
-  for (const Profile* profile : tyre) reach = std::max(reach, profile->reach);
+  for (const Profile* profile : tyre) {
+    reach = std::max(reach, profile->reach);
+    measure.wheel.radius = std::max(measure.wheel.radius, profile->radius);
+  }
   double first = tyre.front()->first, last = tyre.front()->last;
   for (const Profile* profile : tyre) {
     first = std::min(first, profile->first);
     last = std::max(last, profile->last);
   }
-  measure.wheel.radius = reach;
+  measure.out_of_round = reach - measure.wheel.radius;
   measure.wheel.width = last - first;
   measure.centre_in_body = axle * (first + last) / 2;
 }

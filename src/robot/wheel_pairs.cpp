@@ -30,7 +30,9 @@ std::string pair_objection(const RigidBodies& robot, const RollingBody& left, co
 std::string radius_objection(const RigidBodies& robot, const std::vector<RollingBody>& wheels) {
   const auto by_radius = [](const RollingBody& a, const RollingBody& b) { return a.wheel.radius < b.wheel.radius; };
   const auto [least, most] = std::minmax_element(wheels.begin(), wheels.end(), by_radius);
-  if (most->wheel.radius - least->wheel.radius <= kPairTolerance * most->wheel.radius) return "";
+  const double unsure = std::max(least->out_of_round, most->out_of_round);
+  const double tolerance = std::max(kPairTolerance * most->wheel.radius, unsure);
+  if (most->wheel.radius - least->wheel.radius <= tolerance) return "";
   return "their radii differ by more than 1 %: " + described(robot, *least) + " and " + described(robot, *most);
 }
 

@@ -144,6 +144,26 @@ class FrameReader {
     return Lookup::kMissing;
   }
 
+  /// What a writer that ended left behind: the frame of the latest stamp among all that are whole, whatever was
+  /// published or torn after it. kCorrupt: something was published, and nothing is whole. Not for the loop: reads every
+  /// slot.
+  Lookup last_whole(Frame& out) const noexcept {
+    const auto* memory = memory_.load(std::memory_order_acquire);
+    if (memory == nullptr) return Lookup::kMissing;
+    bool found = false;
+    bool written = memory->newest.load(std::memory_order_acquire) != 0;
+    Frame frame;
+    for (const auto& slot : memory->slots) {
+      if (slot.version.load(std::memory_order_acquire) % 2 != 0) written = true;
+      if (!copy(slot, frame) || judge(frame) != Lookup::kFrame) continue;
+      if (found && frame.head.stamp_ns < out.head.stamp_ns) continue;
+      out = frame;
+      found = true;
+    }
+    if (found) return Lookup::kFrame;
+    return written ? Lookup::kCorrupt : Lookup::kMissing;
+  }
+
   /// The frame of this run and cycle.
   Lookup at(std::uint64_t run, std::uint64_t cycle, Frame& out) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);

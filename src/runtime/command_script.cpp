@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "files/input_file.h"
 #include "parameters/problem_list.h"
 #include "parameters/text_file.h"
 
@@ -123,12 +124,14 @@ CommandScript CommandScript::parse(std::string_view text, const std::string& sou
   problems.throw_if_any("command script refused (" + source + ")");
   CommandScript script;
   script.rows_ = std::move(parser.rows);
+  script.begin_with_zero();
   return script;
 }
 
 CommandScript::CommandScript(const std::string& path) {
   ProblemList problems;
-  const auto text = read_text_file(path, "name a CSV file or leave robot.command_script empty", problems);
+  const auto text =
+      read_text_file(path, kLargestScript, "name a CSV file or leave robot.command_script empty", problems);
   problems.throw_if_any("command script refused");
   *this = parse(*text, path);
 }

@@ -12,6 +12,9 @@
 /// column may be left out. A row with an event may leave both speeds empty. NaN and infinity are let through: a
 /// bad message is a legitimate test, and the controller's to refuse. Blank lines and lines that begin with # are
 /// skipped. Cycles may repeat, not decrease.
+///
+/// A script begins each run with a request of zero velocity before its first row, because nothing older can be pending:
+/// the first row may move the robot (safety/motion_release.h).
 
 #include <cstdint>
 #include <optional>
@@ -50,6 +53,10 @@ class CommandScript {
   /// A new run: from the first row again.
   void rewind() noexcept { next_ = 0; }
 
+  /// Each run begins with a zero request; so does every script that was read.
+  void begin_with_zero() noexcept { begins_with_zero_ = true; }
+  bool begins_with_zero() const noexcept { return begins_with_zero_; }
+
   std::size_t size() const noexcept { return rows_.size(); }
 
  private:
@@ -63,6 +70,7 @@ class CommandScript {
 
   std::vector<Row> rows_;
   std::size_t next_ = 0;
+  bool begins_with_zero_ = false;
 };
 
 /// The script of the parameter `command_script`: where that is empty, one in which nothing ever happens.

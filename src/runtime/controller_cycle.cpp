@@ -23,14 +23,16 @@ void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
   request_.stale = arrived.stale;
   request_.crowded = arrived.crowded;
   request_.many_senders = arrived.many_senders;
+  request_.contested = arrived.contested;
 }
 
 void ControllerCycle::enter_run() noexcept {
   inbox_.load(received_);
   take_over(received_);
   script_.rewind();
-  if (const auto last = published_before(channels_.command, state_.head.run)) script_.advance(*last);
-  controller_.reset(request_);
+  const auto last = published_before(channels_.command, state_.head.run);
+  if (last) script_.advance(*last);
+  controller_.reset(request_, script_.begins_with_zero() && !last);
 }
 
 void ControllerCycle::receive(std::uint64_t cycle) noexcept {

@@ -30,10 +30,10 @@ void DriverCycle::begin_run(std::uint64_t run) noexcept {
   futex_wake_all(memory->sequence);
 }
 
-void DriverCycle::publish_paused() noexcept {
+void DriverCycle::publish_last_as(DriverState state) noexcept {
   if (cycle_ == 0) return;
   paused_ = trace_.sensors;
-  if (paused_.driver_state != DriverState::kFault) paused_.driver_state = DriverState::kPaused;
+  if (paused_.driver_state != DriverState::kFault) paused_.driver_state = state;
   channels_.sensors.publish(paused_);
 }
 

@@ -44,7 +44,10 @@ class DriverCycle {
 
   /// After the others have worked on the frame of the last tick: they see it again, as paused. Nothing before
   /// the first tick of a run.
-  void publish_paused() noexcept;
+  void publish_paused() noexcept { publish_last_as(DriverState::kPaused); }
+
+  /// The same as ended: no tick follows. A fault stays reported as what it is.
+  void publish_ended() noexcept { publish_last_as(DriverState::kEnded); }
 
   /// A simulated machine has these faults from the next tick on.
   void inject(const InjectedFaults& faults) noexcept;
@@ -67,6 +70,7 @@ class DriverCycle {
 
  private:
   GateInput latch() noexcept;
+  void publish_last_as(DriverState state) noexcept;
 
   Driver& driver_;
   Channels channels_;

@@ -100,6 +100,7 @@ void DriverProcess::loop() noexcept {
   } else {
     loop_wall();
   }
+  if (!hold_.park_asked()) cycle_->publish_ended();  // parked, the cycle belongs to a reset
   hold_.end();
   finish();
 }

@@ -13,6 +13,7 @@ EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const Robo
 void EstimatorCycle::enter_run() noexcept {
   StateFrame last;
   const FrameReader<StateFrame> own(state_channel_.memory());
+  first_cycle_ = sensors_.head.cycle;
   estimator_.reset();
   if (own.newest(last) == Lookup::kFrame && last.head.run == sensors_.head.run) estimator_.resume(last);
 }
@@ -37,6 +38,7 @@ bool EstimatorCycle::step() noexcept {
     estimator_.set_pose(request.pose);
   }
   estimator_.step(sensors_, trace_.state);
+  trace_.state.first_cycle = first_cycle_;
   const FrameHead head{.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
   if (!out_.publish(state_channel_, head, sensors_.injected, trace_.state)) return false;
   trace_.timing = clock_.timing(woke_ns, sensors_);

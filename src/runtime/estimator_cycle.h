@@ -46,7 +46,8 @@ class EstimatorCycle {
   std::uint64_t robot_hash_;
   PoseRequest requested_;  ///< the requesting thread's
   LatestValue<PoseRequest> inbox_;
-  std::uint64_t received_ = 0;  ///< requests that were carried out
+  std::uint64_t received_ = 0;     ///< requests that were carried out
+  std::uint64_t first_cycle_ = 0;  ///< StateFrame::first_cycle
   SensorFrame sensors_;
   EstimatorTrace trace_;
 };

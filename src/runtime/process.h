@@ -55,6 +55,9 @@ class Process {
   virtual bool ready() = 0;          ///< may the real-time thread start?
   virtual void loop() noexcept = 0;  ///< its body; ends when `stopping()`
 
+  /// The real-time thread was started. Only for the thread that polls.
+  bool started() const noexcept { return thread_ != nullptr; }
+
   const std::atomic<bool>& stopping() const noexcept { return stopping_; }
   void finish() noexcept { finished_.store(true); }
   const LoopParameters& loop_parameters() const noexcept { return loop_; }

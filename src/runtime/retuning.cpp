@@ -23,6 +23,23 @@ double smallest_radius(const RobotModel& robot) {
   return std::ranges::min_element(robot.wheels, {}, &WheelModel::radius)->radius;
 }
 
+/// Derived values as if they had been set.
+DriveControllerParameters spelled_out(DriveControllerParameters given, const DriveTuning& tuning) {
+  const auto fill = [](std::optional<double>& value, double derived) { value = value.value_or(derived); };
+  const WheelTuning& wheel = tuning.wheels.front();
+  fill(given.max_linear_deceleration, tuning.linear.deceleration);
+  fill(given.max_angular_deceleration, tuning.angular.deceleration);
+  fill(given.pid_kp, wheel.kp);
+  fill(given.pid_ki, wheel.ki);
+  fill(given.tracking_bandwidth, tuning.tracking_bandwidth);
+  fill(given.feed_forward.mass, tuning.mass);
+  fill(given.feed_forward.yaw_inertia, tuning.yaw_inertia);
+  fill(given.feed_forward.wheel_inertia, wheel.inertia);
+  fill(given.feed_forward.wheel_damping, wheel.damping);
+  fill(given.feed_forward.wheel_friction, wheel.friction);
+  return given;
+}
+
 }  // namespace
 
 std::string sentence(const Retuned& retuned) {
@@ -77,6 +94,14 @@ Retuned Retuning::set(const std::string& request) {
   inbox_.store(tuning);
   parameters_ = std::move(change.parameters);
   return {.count = count_, .values = std::move(change.values)};
+}
+
+std::vector<LiveParameter> Retuning::live() const {
+  const std::lock_guard lock(mutex_);
+  Parameters parameters = parameters_;
+  const DriveTuning tuning = drive_tuning(parameters.controller, robot_, parameters.loop.period());
+  parameters.controller = spelled_out(parameters.controller, tuning);
+  return live_parameters(parameters, kBlock);
 }
 
 DriveControllerParameters Retuning::in_force() const {

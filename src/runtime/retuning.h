@@ -1,5 +1,6 @@
 #pragma once
-/// Limits and gains of the controller, changed while it drives: the service ~set_parameters, without ROS.
+/// Limits and gains of the controller, changed while it drives: the services ~set_parameters and
+/// ~set_parameter_map, without ROS.
 ///
 /// A request is taken as a whole or not at all. Against it stand all that would refuse a start (the schema's rules and
 /// contradictions, control_problems) and what was derived elsewhere at start and stays: the monitor stops a robot whose
@@ -46,6 +47,10 @@ class Retuning {
 
   /// What holds now, as the user would have to set it. Any ordinary thread.
   DriveControllerParameters in_force() const;
+
+  /// The same, each value with its range; those that are derived as the numbers that hold (of the first wheel). Any
+  /// ordinary thread.
+  std::vector<LiveParameter> live() const;
 
  private:
   std::string monitor_problem(const DriveControllerParameters& wanted) const;

@@ -1,7 +1,9 @@
 #include "runtime/safety_limits.h"
 
 #include <algorithm>
+#include <numbers>
 
+#include "control/wheel_loop_gains.h"
 #include "safety/derived_limits.h"
 
 namespace robot_control {
@@ -17,9 +19,19 @@ double commanded_wheel_speed(const DriveControllerParameters& controller, const 
   return fastest;
 }
 
+double count_ripple(const RobotModel& robot, const WheelModel& wheel, double period) {
+  constexpr double kRipple = 0.5;
+  const DriveControllerParameters derived;
+  const double kp = wheel_loop_gains(derived, robot, wheel, period).kp;
+  return kRipple * kp * 2 * std::numbers::pi * tracking_bandwidth(derived, period);
+}
+
 SafetyParameters safety_limits(const Parameters& parameters, const RobotModel& robot) {
-  return derived_limits(parameters.safety, robot, commanded_wheel_speed(parameters.controller, robot),
-                        parameters.loop.period());
+  const double period = parameters.loop.period();
+  SafetyParameters limits =
+      derived_limits(parameters.safety, robot, commanded_wheel_speed(parameters.controller, robot), period);
+  for (const WheelModel& wheel : robot.wheels) limits.count_ripple[wheel.joint] = count_ripple(robot, wheel, period);
+  return limits;
 }
 
 }  // namespace robot_control

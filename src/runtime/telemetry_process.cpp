@@ -1,6 +1,5 @@
 #include "runtime/telemetry_process.h"
 
-#include <filesystem>
 #include <optional>
 
 #include "runtime/trace_sink.h"
@@ -17,17 +16,8 @@ std::vector<std::string> joint_names(const RobotModel& robot) {
   return names;
 }
 
-/// An earlier run.csv is renamed to run.1.csv, run.2.csv …, never overwritten.
-std::string fresh_path(const std::string& directory) {
-  const std::filesystem::path path = std::filesystem::path(directory) / "run.csv";
-  std::error_code ignored;
-  if (std::filesystem::exists(path, ignored)) {
-    int number = 1;
-    const auto kept = [&] { return path.parent_path() / ("run." + std::to_string(number) + ".csv"); };
-    while (std::filesystem::exists(kept(), ignored)) ++number;
-    std::filesystem::rename(path, kept(), ignored);
-  }
-  return path.string();
+std::int64_t bytes_of(double gigabytes) {
+  return static_cast<std::int64_t>(gigabytes * 1.0e9);
 }
 
 }  // namespace
@@ -106,8 +96,10 @@ struct TelemetryProcess::Sources {
 
 TelemetryProcess::TelemetryProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : positions_(bus, ChannelNames::kTraceRead),
-      path_(fresh_path(parameters.telemetry.directory)),
-      csv_(path_, log_columns(joint_names(robot), parameters.loop.clock == ClockMode::kWall)),
+      folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
+      path_(folder_.begin()),
+      csv_(path_, log_columns(joint_names(robot), parameters.loop.clock == ClockMode::kWall),
+           [this](std::int64_t bytes) { return folder_.make_room(bytes); }),
       join_(parameters.loop.period(), [this](const JoinedRow& row) { write_down([&] { csv_.write(row); }); }),
       sources_(std::make_unique<Sources>(bus)) {
   positions_.memory()->head.attached_run.store(0);

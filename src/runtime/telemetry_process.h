@@ -5,7 +5,7 @@
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
 ///
 /// A disk that takes no more ends the log, not this process: the rings are emptied on, so that nobody waits for room,
-/// and what is not written is counted.
+/// and what is not written is counted. So does a log that fills telemetry.quota (log_folder.h).
 
 #include <cstdint>
 #include <memory>
@@ -18,6 +18,7 @@
 #include "rt/ring.h"
 #include "telemetry/csv_writer.h"
 #include "telemetry/join.h"
+#include "telemetry/log_folder.h"
 
 namespace robot_control {
 
@@ -52,6 +53,9 @@ class TelemetryProcess {
 
   TelemetryCounts counts() const;
 
+  /// Older logs that were removed since the last call, for telemetry.quota.
+  std::vector<std::string> take_removed() { return folder_.take_removed(); }
+
   /// Why the log has ended; empty: it has not.
   const std::string& problem() const noexcept { return problem_; }
   const std::string& path() const noexcept { return path_; }
@@ -66,6 +70,7 @@ class TelemetryProcess {
   void write_down(Act act);
 
   OwnedChannel<RingPositions> positions_;
+  LogFolder folder_;
   std::string path_;
   CsvWriter csv_;
   std::string problem_;

@@ -11,7 +11,8 @@ namespace robot_control {
 struct MonitorInput {
   const SensorFrame* sensors = nullptr;   ///< never null
   const CommandFrame* command = nullptr;  ///< of cycle k-1
-  bool state_seen = false;                ///< a state of cycle k-1 exists (its head alone was read)
+  bool state_seen = false;                ///< a state of cycle k-1 exists (of it, nothing but what follows is used)
+  std::uint64_t state_first_cycle = 0;    ///< StateFrame::first_cycle
   bool corrupt = false;                   ///< a checksum of this cycle's inputs was wrong
   OperatorInput operator_input;
 };

@@ -15,6 +15,7 @@ constexpr Entry kConditions[] = {
     {"wheel_acceleration", &SafetyParameters::wheel_acceleration},
     {"wheel_effort", &SafetyParameters::wheel_effort},
     {"power", &SafetyParameters::power},
+    {"torque_oscillation", &SafetyParameters::torque_oscillation},
     {"stall", &SafetyParameters::stall},
     {"runaway", &SafetyParameters::runaway},
     {"wrong_direction", &SafetyParameters::wrong_direction},

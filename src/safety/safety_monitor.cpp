@@ -9,12 +9,8 @@
 namespace robot_control {
 namespace {
 
-bool zero(const Vector3& vector) noexcept {
-  return vector[0] == 0 && vector[1] == 0 && vector[2] == 0;
-}
-
 bool asks_for_motion(const CommandFrame* command) noexcept {
-  return command != nullptr && !(zero(command->twist_requested.linear) && zero(command->twist_requested.angular));
+  return command != nullptr && !zero(command->twist_requested);
 }
 
 Finding counted(double count) noexcept {
@@ -35,6 +31,7 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
       targets_(robot.wheels.size()),
       wheel_limits_(parameters, robot, period),
       wheel_following_(parameters, robot, period),
+      torque_oscillation_(parameters, robot, period),
       yaw_agreement_(parameters.yaw_rate, robot, period),
       gate_facts_(parameters.loss_cycles, period),
       machine_facts_(parameters, period),
@@ -53,10 +50,12 @@ void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
   targets_.enter_run();
   wheel_limits_.enter_run();
   wheel_following_.enter_run();
+  torque_oscillation_.enter_run();
   yaw_agreement_.enter_run();
   gate_facts_.enter_run();
   machine_facts_.enter_run();
   body_facts_.enter_run();
+  release_.enter_run();
   active_.clear();
   warnings_.enter_run();
   supervisor_.enter_run();
@@ -65,12 +64,26 @@ void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
   resets_handled_ = operator_input.resets;
 }
 
-void SafetyMonitor::resume(const Permit& last) noexcept {
-  last_ = last;
+void SafetyMonitor::restore(const Permit& last) noexcept {
+  earlier_boot_ = last.boot;
+  supervisor_.restore(last.causes, last.first_cause);
+  evidence_.restore(last);
+  if ((last.active & kCauseEmergencyStopTopic) != 0) operator_facts_.hold_e_stop();
+}
+
+void SafetyMonitor::restore(std::uint64_t causes, std::uint64_t first_cause) noexcept {
+  supervisor_.restore(causes, first_cause);
 }
 
 void SafetyMonitor::driver_lost() noexcept {
   if (driver_ && !driver_paused_) pending_ |= kCauseDriverLost;
+}
+
+void SafetyMonitor::driver_ended() noexcept {
+  driver_paused_ = true;
+  presence_.enter_run();
+  release_.enter_run();
+  supervisor_.enter_run();
 }
 
 void SafetyMonitor::sensors_corrupt() noexcept {
@@ -89,21 +102,17 @@ bool SafetyMonitor::note_emergency_stop(const OperatorInput& operator_input) noe
 }
 
 void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {
-  const bool continued = last_ && last_->boot == sensors.boot;
-  const Permit last = continued ? *last_ : Permit{};
-  last_.reset();
-  if (!continued && sensors.gate.permit_cycle == 0) return;
-  supervisor_.restore(last.causes, last.first_cause, kCauseMonitorRestarted, sensors.head.cycle);
-  evidence_.restore(last);
-  pending_ |= kCauseMonitorRestarted;
-  if ((last.active & kCauseEmergencyStopTopic) != 0) operator_facts_.hold_e_stop();
+  const bool continued = earlier_boot_ == sensors.boot;
+  earlier_boot_.reset();
+  if (begun_) release_.begin(*begun_);
+  if (continued || sensors.gate.permit_cycle != 0) pending_ |= kCauseMonitorRestarted;
 }
 
 void SafetyMonitor::meet_driver(const SensorFrame& sensors) noexcept {
   if (!driver_) decide_restart(sensors);
   if (driver_ && *driver_ != sensors.boot) pending_ |= kCauseDriverLost;
   driver_ = sensors.boot;
-  driver_paused_ = sensors.driver_state == DriverState::kPaused;
+  driver_paused_ = sensors.driver_state == DriverState::kPaused || sensors.driver_state == DriverState::kEnded;
 }
 
 void SafetyMonitor::look(const MonitorInput& input) noexcept {
@@ -112,6 +121,7 @@ void SafetyMonitor::look(const MonitorInput& input) noexcept {
   const std::uint64_t elapsed = cycle_ ? cycle - *cycle_ : 1;
   active_.clear();
   presence_.step(input, elapsed, active_);
+  release_.step(input, elapsed);
   sensor_presence_.step(sensors, elapsed, active_);
   frame_facts_.step(input, active_);
   operator_facts_.step(input, supervisor_.state() == SupervisorState::kDrive, active_);
@@ -129,6 +139,7 @@ void SafetyMonitor::look_at_motion(const MonitorInput& input, std::uint64_t elap
   targets_.step(input);
   wheel_limits_.step(sensors, motion_, targets_.passed(), last_speed_limit_, elapsed, active_);
   wheel_following_.step(sensors, targets_, motion_, standstill_, elapsed, active_);
+  torque_oscillation_.step(input, targets_, motion_, elapsed, active_);
   yaw_agreement_.step(sensors, motion_, elapsed, active_);
   body_facts_.step(sensors, elapsed, standstill_.moving(), active_);
 }
@@ -153,7 +164,9 @@ void SafetyMonitor::supervise(const MonitorInput& input, bool again) noexcept {
   facts.brake = brake & ~facts.repair;
   facts.ramp = active_.with(Reaction::kRamp);
   facts.missing = presence_.missing();
+  facts.released = release_.released();
   facts.requested = asks_for_motion(input.command);
+  facts.no_motion_requested = release_.no_motion_requested();
   facts.moving = standstill_.moving();
   facts.standing = standstill_.standing();
   facts.sliding = standstill_.standing() && slide_.possible();
@@ -181,23 +194,36 @@ void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {
   add_pending();
   supervise(input, again);
   last_speed_limit_ = speed_limit(input.operator_input);
+  write(sensors.head.cycle, sensors.boot, out);
+  if (!again) gate_facts_.remember(out, sensors.head.cycle);
+}
 
+void SafetyMonitor::step_without_sensors(const OperatorInput& operator_input, Permit& out) noexcept {
+  active_.clear();
+  add_pending();
+  supervisor_.step({.brake = active_.with(Reaction::kBrake), .missing = presence_.missing()});
+  evidence_.latch(active_, 0);
+  last_speed_limit_ = speed_limit(operator_input);
+  write(0, earlier_boot_.value_or(0), out);
+}
+
+void SafetyMonitor::write(std::uint64_t cycle, std::uint64_t boot, Permit& out) const noexcept {
   out.state = supervisor_.state();
   out.action = action_in(out.state);
   out.ramp_until = supervisor_.ramp_until();
-  out.expiry = sensors.head.cycle + kPermitLife;
+  out.expiry = cycle + kPermitLife;
   out.causes = supervisor_.causes();
   out.active = active_.stopping();
   out.first_cause = supervisor_.first_cause();
   out.warnings = warnings_.bits();
   out.since_cycle = supervisor_.since_cycle();
   out.missing = presence_.missing();
-  out.boot = sensors.boot;
+  out.unreleased = release_.released() ? 0 : 1;
+  out.boot = boot;
   out.resets_handled = resets_handled_;
   out.reset_refusal = reset_refusal_;
   out.speed_limit = last_speed_limit_;
   evidence_.write(warnings_, out.evidence);
-  if (!again) gate_facts_.remember(out, sensors.head.cycle);
 }
 
 }  // namespace robot_control

@@ -4,19 +4,24 @@
 ///   facts ─► causes by reaction ─► warnings: told, slowed down for        ─► Permit
 ///            (ActiveCauses)    └─► Supervisor: latch, table ─► action
 ///
-///   presence.h, sensor_presence.h, frame_facts.h    who is missing, what cannot be believed
+///   presence.h, sensor_presence.h, frame_facts.h    what is missing, what cannot be trusted
+///   motion_release.h                                was a zero velocity requested since the last start
 ///   operator_facts.h, clearance.h                   what the operator says
-///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, yaw_agreement.h, standstill.h,
+///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, torque_oscillation.h, yaw_agreement.h, standstill.h,
 ///                      slide.h
 ///   gate_facts.h, machine_facts.h, body_facts.h     does the machine obey, is it well, what happens to its body
 ///
-/// INIT until sensors, state and command of this run were each seen; then READY or DRIVE permit motion until a cause
-/// latches a stop (stop_category.h, SafetyParameters). The permit of cycle k is alive until k + kPermitLife: a monitor
-/// that makes no progress permits nothing.
+/// INIT until sensors, state and command of this run were each seen and motion is released; then READY or DRIVE permit
+/// motion until a node is started again or a cause latches a stop (stop_category.h, SafetyParameters). The permit of
+/// cycle k is alive until k + kPermitLife: a monitor that makes no progress permits nothing.
 ///
-/// The driver is lost when it is silent (wall clock), and when a frame carries another SensorFrame::boot than the one
-/// before it (any clock): a driver that was started again is lost however soon it came back, whatever it last said.
-/// A simulation that is set down anew keeps its boot.
+/// The driver is lost when no current sensor frame comes (wall clock), and when a frame carries another
+/// SensorFrame::boot than the one before it (any clock): a driver that was restarted is lost however soon it came back,
+/// whatever it last reported. A simulation that is reset keeps its boot. A driver that reports its end
+/// (DriverState::kEnded) is missing, not lost: INIT, or what is latched.
+///
+/// A latch outlives its processes: a monitor that starts restores the causes of the last permit of the channel,
+/// whichever driver it was issued for, and those of latch_file; only an accepted reset clears them.
 ///
 /// The speed limit of a permit is the least of slow_speed, where a cause slows the robot down, and of what the
 /// clearance allows; it latches nothing.
@@ -33,6 +38,7 @@
 #include "safety/gate_facts.h"
 #include "safety/machine_facts.h"
 #include "safety/monitor_input.h"
+#include "safety/motion_release.h"
 #include "safety/operator_facts.h"
 #include "safety/presence.h"
 #include "safety/safety_parameters.h"
@@ -40,6 +46,7 @@
 #include "safety/slide.h"
 #include "safety/standstill.h"
 #include "safety/supervisor.h"
+#include "safety/torque_oscillation.h"
 #include "safety/warnings.h"
 #include "safety/wheel_following.h"
 #include "safety/wheel_limits.h"
@@ -52,9 +59,6 @@
 
 namespace robot_control {
 
-/// The monitor's wait for sensors ends after so many periods; then the driver is lost (wall clock only).
-inline constexpr std::int64_t kDriverLossPeriods = 20;
-
 class SafetyMonitor {
  public:
   /// `period` s. Limits that are absent are none: derived_limits.h fills them. Throws std::invalid_argument: what
@@ -65,16 +69,24 @@ class SafetyMonitor {
   /// resets and heartbeats in it are dropped, emergency stops that were not yet acted on are not.
   void reset(const OperatorInput& operator_input) noexcept;
 
-  /// After a restart of the monitor: `last` is what the channel still holds. Decided at the first step: if the
-  /// driver that `last` was issued for still runs, the monitor begins STOPPED with kCauseMonitorRestarted and
-  /// what was latched then; if both started anew, in INIT. Without a readable `last` the driver is the witness:
-  /// a gate that has used a permit of this run was served by an earlier monitor.
-  void resume(const Permit& last) noexcept;
+  /// After a restart of the monitor: `last` is what the channel still holds. Its causes are latched at once. If the
+  /// driver that `last` was issued for still runs at the first step, kCauseMonitorRestarted is added. Without a
+  /// readable `last` the gate shows it: one that has used a permit of this run was served by an earlier monitor.
+  void restore(const Permit& last) noexcept;
 
-  /// The driver has been silent for kDriverLossPeriods (wall clock only): latches kCauseDriverLost from the next step
-  /// on. No effect before the first step (a driver that was never there is missing, not lost) or while the
-  /// driver's last word was "paused".
+  /// Latches `causes` at once, as found in another record of an earlier stop.
+  void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept;
+
+  /// This monitor was started in this cycle of a run that was already going on. Before the first step of that run.
+  void begin(std::uint64_t cycle) noexcept { begun_ = cycle; }
+
+  /// No current sensor frame has come for loss_cycles periods (wall clock only): latches kCauseDriverLost from the next
+  /// step on. No effect before the first step (a driver that was never there is missing, not lost) or while the
+  /// driver's last frame reported that it is paused or has ended.
   void driver_lost() noexcept;
+
+  /// The driver reported its end: it is missing until a new run.
+  void driver_ended() noexcept;
 
   /// FrameFacts::kPersistence sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step on.
   void sensors_corrupt() noexcept;
@@ -89,7 +101,14 @@ class SafetyMonitor {
   /// Fills everything but `out.head`. A second step in the same cycle counts nothing twice.
   void step(const MonitorInput& input, Permit& out) noexcept;
 
+  /// The same before the first sensor frame: latches what came from outside, judges nothing.
+  void step_without_sensors(const OperatorInput& operator_input, Permit& out) noexcept;
+
+  /// Latched causes.
+  std::uint64_t causes() const noexcept { return supervisor_.causes(); }
+
  private:
+  void write(std::uint64_t cycle, std::uint64_t boot, Permit& out) const noexcept;
   void decide_restart(const SensorFrame& sensors) noexcept;
   void meet_driver(const SensorFrame& sensors) noexcept;
   void look(const MonitorInput& input) noexcept;
@@ -110,6 +129,7 @@ class SafetyMonitor {
   WheelTargets targets_;
   WheelLimits wheel_limits_;
   WheelFollowing wheel_following_;
+  TorqueOscillation torque_oscillation_;
   YawAgreement yaw_agreement_;
   GateFacts gate_facts_;
   MachineFacts machine_facts_;
@@ -118,8 +138,10 @@ class SafetyMonitor {
   Warnings warnings_;
   Evidence evidence_;
   Supervisor supervisor_;
-  std::optional<Permit> last_;          ///< of an earlier monitor, until the first step
-  std::optional<std::uint64_t> cycle_;  ///< of the last step in this run
+  MotionRelease release_;
+  std::optional<std::uint64_t> earlier_boot_;  ///< Permit::boot of an earlier monitor, until the first step
+  std::optional<std::uint64_t> begun_;         ///< see `begin`, until the first step
+  std::optional<std::uint64_t> cycle_;         ///< of the last step in this run
   double last_speed_limit_ = kNoSpeedLimit;
   std::uint64_t pending_ = 0;            ///< causes from outside a step
   std::optional<std::uint64_t> driver_;  ///< SensorFrame::boot of the last step

@@ -5,8 +5,11 @@
 /// → a reaction. What each limit means stands with its fact: wheel_limits.h, wheel_following.h,
 /// yaw_agreement.h, body_facts.h, sensor_presence.h, machine_facts.h.
 
+#include <array>
 #include <cstdint>
 #include <optional>
+
+#include "robot/robot_model.h"
 
 namespace robot_control {
 
@@ -41,6 +44,7 @@ struct SafetyParameters {
   Condition wheel_acceleration{{}, 0.01, Reaction::kBrake};  ///< rad/s²; derived
   Condition wheel_effort{1.05, 0.02, Reaction::kBrake};      ///< of the joint's effort limit
   Condition power{{}, 0.1, Reaction::kBrake};                ///< W, mechanical, all wheels; derived
+  Condition torque_oscillation{0.3, 1.0, Reaction::kBrake};  ///< of the joint's effort limit, RMS; warns before
   Condition stall{{}, 0, Reaction::kBrake};                  ///< rad that a standing wheel should have turned; derived
   Condition runaway{{}, 0.15, Reaction::kBrake};             ///< rad/s beyond the target; derived
   Condition wrong_direction{4.5, 0.05, Reaction::kBrake};    ///< rad/s against the target
@@ -57,6 +61,10 @@ struct SafetyParameters {
   Condition overruns{50, 1.0, Reaction::kWarn};              ///< per second
   Condition battery_low{{}, 1.0, Reaction::kSlow};           ///< V
   Condition battery_empty{{}, 1.0, Reaction::kRamp};         ///< V
+
+  /// N·m/rad, of each wheel: RMS of the torque that derived gains make of an encoder's counts, by the size of a count.
+  /// No user sets it: it follows from robot and rate (runtime/safety_limits.h).
+  std::array<double, kMaxWheels> count_ripple{};
 };
 
 }  // namespace robot_control

@@ -37,6 +37,7 @@ inline constexpr auto kStopRules = std::to_array<StopRule>({
     {kCauseCommandStale, StopCategory::kBrake},
     {kCauseGateRefuses, StopCategory::kBrake},
     {kCauseGateDisobeys, StopCategory::kBrakeForRepair},
+    {kCauseLatchUnreadable, StopCategory::kBrake},
 });
 
 /// All fixed causes of one category as bits.

@@ -7,19 +7,21 @@ namespace robot_control {
 void Supervisor::step(const SupervisorInput& input) noexcept {
   latch(input);
 
+  const bool complete = input.missing == 0 && input.released;
   TriggerSet triggers;
   if (input.reset_requested) {
     reset_refusal_ = refusal(input);
     if (reset_refusal_ == 0 && causes() != 0) {
       repair_ = brake_ = ramp_ = first_cause_ = 0;
-      triggers.add(input.missing == 0 ? Trigger::kResetComplete : Trigger::kResetIncomplete);
+      triggers.add(complete ? Trigger::kResetComplete : Trigger::kResetIncomplete);
     }
   }
   triggers.add(Trigger::kRepairCause, repair_ != 0);
   triggers.add(Trigger::kBrakeCause, brake_ != 0);
   triggers.add(Trigger::kRampCause, ramp_ != 0);
   triggers.add(Trigger::kRampEnded, input.standing || input.cycle >= ramp_until_);
-  triggers.add(Trigger::kComplete, input.missing == 0);
+  triggers.add(Trigger::kComplete, complete);
+  triggers.add(Trigger::kUnreleased, !input.released);
   triggers.add(Trigger::kMotion, input.requested || input.moving);
   triggers.add(Trigger::kRest, !input.requested && input.standing);
 
@@ -36,14 +38,11 @@ void Supervisor::enter_run() noexcept {
   ramp_until_ = 0;
 }
 
-void Supervisor::restore(std::uint64_t causes, std::uint64_t first_cause, StopCause cause,
-                         std::uint64_t cycle) noexcept {
+void Supervisor::restore(std::uint64_t causes, std::uint64_t first_cause) noexcept {
   if (first_cause_ == 0) first_cause_ = first_cause;
   causes &= kAllCauses;
   latch({.repair = for_repair(causes), .brake = causes & ~for_repair(causes)});
-  latch({.brake = cause});
   state_ = latched_state();
-  since_cycle_ = cycle;
 }
 
 void Supervisor::latch(const SupervisorInput& input) noexcept {
@@ -61,7 +60,7 @@ std::uint64_t Supervisor::refusal(const SupervisorInput& input) const noexcept {
     return refusal;
   }
   if ((input.repair | input.brake | input.ramp) != 0) refusal |= kRefusalCauseActive;
-  if (input.requested) refusal |= kRefusalCommand;
+  if (!input.no_motion_requested) refusal |= kRefusalCommand;
   if (!input.standing || state_ == SupervisorState::kStopping) refusal |= kRefusalMoving;
   if (input.sliding) refusal |= kRefusalSliding;
   return refusal;

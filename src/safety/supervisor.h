@@ -2,9 +2,13 @@
 /// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, how each stops, which came first.
 ///
 /// A cause once active stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused
-/// while a cause is active, a motion is asked for, a wheel turns, the body may still slide or a node is missing in
-/// INIT; during STOPPING it counts as moving. Where nothing is latched (READY, DRIVE) a reset is accepted without
-/// effect. The ramp of STOPPING ends at the cycle fixed when it began, or at standstill.
+/// while a cause is active, there is no evidence that no motion is requested (motion_release.h), a wheel turns, the
+/// body may still slide or a node is missing in INIT; during STOPPING it counts as moving. Where nothing is latched
+/// (READY, DRIVE) a reset is accepted without effect. The ramp of STOPPING ends at the cycle fixed when it began, or at
+/// standstill.
+///
+/// INIT ends when every node of this run was seen and motion is released (motion_release.h). A start that takes the
+/// release back ends READY and DRIVE in INIT and STOPPING in STOPPED: the robot brakes, and no cause is latched for it.
 
 #include <cstdint>
 
@@ -15,14 +19,16 @@ namespace robot_control {
 
 struct SupervisorInput {
   std::uint64_t cycle = 0;
-  std::uint64_t repair = 0;   ///< StopCause bits true in this cycle that brake and wait for a repair
-  std::uint64_t brake = 0;    ///< … that brake
-  std::uint64_t ramp = 0;     ///< … that ramp
-  std::uint64_t missing = 0;  ///< MissingNode bits of this run
-  bool requested = false;     ///< the controller asks for a motion
-  bool moving = false;        ///< a joint turns in this very cycle
-  bool standing = false;      ///< every joint has been slow for a while
-  bool sliding = false;       ///< … but the body may still slide
+  std::uint64_t repair = 0;          ///< StopCause bits true in this cycle that brake and wait for a repair
+  std::uint64_t brake = 0;           ///< … that brake
+  std::uint64_t ramp = 0;            ///< … that ramp
+  std::uint64_t missing = 0;         ///< MissingNode bits of this run
+  bool released = false;             ///< zero first is satisfied
+  bool requested = false;            ///< the controller asks for a motion
+  bool no_motion_requested = false;  ///< there is evidence that nothing does
+  bool moving = false;               ///< a joint turns in this very cycle
+  bool standing = false;             ///< every joint has been slow for a while
+  bool sliding = false;              ///< … but the body may still slide
   bool reset_requested = false;
 };
 
@@ -36,8 +42,8 @@ class Supervisor {
   /// A new run: INIT, or where a cause is latched STOPPED or FAULT.
   void enter_run() noexcept;
 
-  /// Takes over what an earlier monitor had latched, and adds `cause`: STOPPED, or FAULT. All of it brakes from now on.
-  void restore(std::uint64_t causes, std::uint64_t first_cause, StopCause cause, std::uint64_t cycle) noexcept;
+  /// Takes over what an earlier monitor had latched: STOPPED, or FAULT. All of it brakes from now on.
+  void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept;
 
   SupervisorState state() const noexcept { return state_; }
   std::uint64_t causes() const noexcept { return repair_ | brake_ | ramp_; }

@@ -4,8 +4,8 @@
 /// fits, the state stays.
 ///
 ///                 complete          motion
-///         INIT ────────────► READY ◄──────► DRIVE          any brake cause ─► STOPPED
-///          ▲                   │     rest     │            any repair cause ─► FAULT
+///         INIT ◄───────────► READY ◄──────► DRIVE          any brake cause ─► STOPPED
+///          ▲    unreleased     │     rest     │            any repair cause ─► FAULT
 ///          │ reset, incomplete └──── ramp ────┘
 ///          │                          ▼
 ///       STOPPED, FAULT ◄── ended ── STOPPING
@@ -24,13 +24,14 @@ enum class Trigger : std::uint8_t {
   kBrakeCause,       ///< a latched cause of stop category 0
   kRampCause,        ///< a latched cause of stop category 1
   kRampEnded,        ///< standing, or the ramp's last cycle is reached
-  kResetIncomplete,  ///< a reset was accepted, a node of this run is still missing
-  kResetComplete,    ///< a reset was accepted, all nodes of this run were seen
-  kComplete,         ///< sensors, state and command of this run were each seen
+  kUnreleased,       ///< a node was started, and no zero velocity was requested since (motion_release.h)
+  kResetIncomplete,  ///< a reset was accepted, a node of this run is still missing, or motion is not released
+  kResetComplete,    ///< a reset was accepted, all nodes of this run were seen, and motion is released
+  kComplete,         ///< sensors, state and command of this run were each seen, and motion is released
   kMotion,           ///< a motion is asked for or going on
   kRest,             ///< nothing is asked for and the robot stands
 };
-inline constexpr std::size_t kTriggers = 9;
+inline constexpr std::size_t kTriggers = 10;
 
 struct Transition {
   SupervisorState from;
@@ -47,15 +48,18 @@ inline constexpr auto kTransitions = std::to_array<Transition>({
     {SupervisorState::kReady, Trigger::kRepairCause, SupervisorState::kFault},
     {SupervisorState::kReady, Trigger::kBrakeCause, SupervisorState::kStopped},
     {SupervisorState::kReady, Trigger::kRampCause, SupervisorState::kStopping},
+    {SupervisorState::kReady, Trigger::kUnreleased, SupervisorState::kInit},
     {SupervisorState::kReady, Trigger::kMotion, SupervisorState::kDrive},
 
     {SupervisorState::kDrive, Trigger::kRepairCause, SupervisorState::kFault},
     {SupervisorState::kDrive, Trigger::kBrakeCause, SupervisorState::kStopped},
     {SupervisorState::kDrive, Trigger::kRampCause, SupervisorState::kStopping},
+    {SupervisorState::kDrive, Trigger::kUnreleased, SupervisorState::kInit},
     {SupervisorState::kDrive, Trigger::kRest, SupervisorState::kReady},
 
     {SupervisorState::kStopping, Trigger::kRepairCause, SupervisorState::kFault},
     {SupervisorState::kStopping, Trigger::kBrakeCause, SupervisorState::kStopped},
+    {SupervisorState::kStopping, Trigger::kUnreleased, SupervisorState::kStopped},
     {SupervisorState::kStopping, Trigger::kRampEnded, SupervisorState::kStopped},
 
     {SupervisorState::kStopped, Trigger::kRepairCause, SupervisorState::kFault},

@@ -19,7 +19,7 @@ inline constexpr auto kStopCauseNames = std::to_array<BitName>({
     {kCauseEmergencyStopService, "e_stop_service", "e_stop_trigger was called", "call e_stop_reset", "operator"},
     {kCauseEmergencyStopInput, "e_stop_input", "the emergency stop button is pressed",
      "release the button; where it is, look at its cable, then call e_stop_reset", "operator"},
-    {kCauseDriverLost, "driver_lost", "the driver published no sensors for 20 periods, or was started again",
+    {kCauseDriverLost, "driver_lost", "no current sensor frame came for loss_cycles periods, or the driver was restarted",
      "look whether the driver node runs and gets its core, then call e_stop_reset", "integrator"},
     {kCauseDriverFault, "driver_fault", "the driver reports a fault",
      "read the driver's fault, repair it, restart or reset the driver, then call e_stop_reset", "technician"},
@@ -82,6 +82,11 @@ inline constexpr auto kStopCauseNames = std::to_array<BitName>({
      "grant real-time privileges, keep other work off its core", "integrator", "1/s"},
     {kCauseBatteryLow, "battery_low", "the battery is low", "charge it soon", "operator", "V"},
     {kCauseBatteryEmpty, "battery_empty", "the battery is empty", "charge it, then call e_stop_reset", "operator", "V"},
+    {kCauseLatchUnreadable, "latch_unreadable", "the record of an earlier stop cannot be read",
+     "look at the robot and at latch_file, then call e_stop_reset", "operator"},
+    {kCauseTorqueOscillation, "torque_oscillation", "a motor pulls to and fro far more than the motion asks for",
+     "lower pid_kp, pid_ki and tracking_bandwidth, or leave them out; look for delays and play of that drive, then call "
+     "e_stop_reset", "integrator", "of its limit"},
 });
 // clang-format on
 

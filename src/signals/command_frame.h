@@ -51,6 +51,13 @@ struct CommandFrame {
   std::uint64_t requests_stale = 0;     ///< of these: for their stamp
   std::uint64_t requests_crowded = 0;   ///< of these: while more than one node sent
   std::uint64_t timeouts = 0;           ///< in this run, one per event
+
+  // What the monitor needs to know before it permits motion (safety/motion_release.h).
+  std::uint64_t first_cycle = 0;     ///< of this run, in which this process computed its first command
+  std::uint64_t zero_requests = 0;   ///< zero velocities accepted since then, while no other sender requested motion
+  std::uint64_t zero_requested = 0;  ///< 1: nothing but such zeros was received since the last of them
+  std::uint64_t silent_cycles = 0;  ///< since the last message of any sender, accepted or refused, or since first_cycle
+  std::uint64_t silence_needed = 0;  ///< cycles without a message after which no sender counts as requesting motion
 };
 
 }  // namespace robot_control

@@ -1,6 +1,6 @@
 #pragma once
 /// The limits and gains with which a drive controller runs, as numbers: what the user left out is derived. Handed to it
-/// between two cycles (~set_parameters), and in every row of its trace, so that a log tells which values held when.
+/// between two cycles (~set_parameter_map), and in every row of its trace, so that a log tells which values held when.
 
 #include <array>
 #include <cstddef>

@@ -28,4 +28,12 @@ inline bool finite(const Twist& twist) noexcept {
   return finite(twist.linear) && finite(twist.angular);
 }
 
+inline bool zero(const Vector3& vector) noexcept {
+  return vector[0] == 0 && vector[1] == 0 && vector[2] == 0;
+}
+
+inline bool zero(const Twist& twist) noexcept {
+  return zero(twist.linear) && zero(twist.angular);
+}
+
 }  // namespace robot_control

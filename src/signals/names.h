@@ -27,8 +27,8 @@ namespace robot_control {
 // clang-format off
 inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalCauseActive, "cause_active", "a cause of the stop persists", "remove the cause"},
-    {kRefusalCommand, "command", "a motion is still being asked for",
-     "stop the sender on cmd_vel, or let it send zero"},
+    {kRefusalCommand, "command", "a motion is still being requested, or it is not certain yet that none is",
+     "stop the sender on cmd_vel and wait for cmd_vel_timeout, or let it send zero"},
     {kRefusalMoving, "moving", "the robot has not come to rest", "wait until every wheel stands"},
     {kRefusalInit, "init", "the monitor still waits for a node", "start the missing node"},
     {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
@@ -158,7 +158,7 @@ constexpr std::string_view name_of(GateVerdict verdict) noexcept {
 }
 
 constexpr std::string_view name_of(DriverState state) noexcept {
-  constexpr std::array<std::string_view, 4> kNames{"starting", "running", "paused", "fault"};
+  constexpr std::array<std::string_view, 5> kNames{"starting", "running", "paused", "fault", "ended"};
   const auto index = static_cast<std::size_t>(state);
   return index < kNames.size() ? kNames[index] : "unknown";
 }

@@ -23,7 +23,7 @@ inline constexpr double kNoSpeedLimit = 1.0e9;
 inline constexpr std::uint64_t kPermitLife = 4;
 
 enum class SupervisorState : std::uint64_t {
-  kInit = 0,      ///< Sensors, state and command of this run were not all seen yet: brake, unlatched.
+  kInit = 0,      ///< A node of this run was not seen yet, or no zero velocity was requested: brake, unlatched.
   kReady = 1,     ///< Permit to drive, nothing asked.
   kDrive = 2,     ///< Permit to drive, motion asked or going on.
   kStopping = 3,  ///< Ramp under supervision (category 1).
@@ -68,8 +68,10 @@ enum StopCause : std::uint64_t {
   kCauseOverruns = std::uint64_t{1} << 32,
   kCauseBatteryLow = std::uint64_t{1} << 33,
   kCauseBatteryEmpty = std::uint64_t{1} << 34,
+  kCauseLatchUnreadable = std::uint64_t{1} << 35,    ///< What an earlier monitor had latched cannot be read.
+  kCauseTorqueOscillation = std::uint64_t{1} << 36,  ///< A motor pulls to and fro for nothing.
 };
-inline constexpr std::size_t kStopCauses = 35;
+inline constexpr std::size_t kStopCauses = 37;
 
 /// By what a cause was told: `value` beyond `limit`, in the unit of its row in cause_names.h.
 struct CauseEvidence {
@@ -84,7 +86,7 @@ inline constexpr std::size_t kMaxEvidence = 8;
 /// Why a reset was refused; bits of Permit::reset_refusal.
 enum ResetRefusal : std::uint64_t {
   kRefusalCauseActive = 1u << 0,  ///< A cause in `active` persists.
-  kRefusalCommand = 1u << 1,      ///< A motion is still being asked for.
+  kRefusalCommand = 1u << 1,      ///< A motion is requested, or there is no evidence that none is.
   kRefusalMoving = 1u << 2,       ///< A wheel still turns.
   kRefusalInit = 1u << 3,         ///< Still waiting for a node.
   kRefusalSilent = 1u << 4,       ///< No sensor frame comes: nothing can be judged.
@@ -106,7 +108,8 @@ struct Permit {
   std::uint64_t first_cause = 0;     ///< one bit: what stopped the robot first
   std::uint64_t warnings = 0;        ///< true now or a moment ago, told or slowed down for, not latched
   std::uint64_t since_cycle = 0;     ///< in which `state` was entered (of this run; 0 after a new run)
-  std::uint64_t missing = 0;         ///< who has not been seen in this run
+  std::uint64_t missing = 0;         ///< nodes that were not seen in this run
+  std::uint64_t unreleased = 0;      ///< 1: since a start, no zero velocity was requested (safety/motion_release.h)
   std::uint64_t boot = 0;            ///< SensorFrame::boot of the driver it was issued for
   std::uint64_t resets_handled = 0;  ///< counter of the last reset request that was answered
   std::uint64_t reset_refusal = 0;   ///< why that one was refused; 0 = accepted

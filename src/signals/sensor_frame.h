@@ -22,7 +22,13 @@ struct ImuSample {
   Quaternion orientation{};       ///< all zero where the device has none
 };
 
-enum class DriverState : std::uint64_t { kStarting = 0, kRunning = 1, kPaused = 2, kFault = 3 };
+enum class DriverState : std::uint64_t {
+  kStarting = 0,
+  kRunning = 1,
+  kPaused = 2,
+  kFault = 3,
+  kEnded = 4,  ///< The driver ends and stops its machine: no further frame comes from this process.
+};
 
 /// Bits of SensorFrame::faults.
 enum DriverFault : std::uint64_t {

@@ -21,6 +21,8 @@ enum SensorIndex : std::size_t {
 };
 inline constexpr std::size_t kMaxConfidences = 8;
 
+inline constexpr std::size_t kMaxWheelVelocities = 8;  ///< kMaxWheels of robot/, which this folder does not see
+
 /// Bits of StateFrame::flags.
 enum StateFlag : std::uint64_t {
   kStateValid = 1u << 0,            ///< Pose and twist may be used.
@@ -64,6 +66,7 @@ struct WheelOdometry {
 
 struct StateFrame {
   FrameHead head;
+  std::uint64_t first_cycle = 0;    ///< of this run, in which this process computed its first state
   Pose pose_odom;                   ///< base_link in odom
   Twist twist_base;                 ///< of base_link in its own axes
   Matrix6 pose_covariance{};        ///< m², m·rad, rad²; odom axes
@@ -75,7 +78,8 @@ struct StateFrame {
   Vector3 gyro_bias_deviation{};                ///< rad/s, standard deviation, IMU axes
   WheelCalibration calibration;
   WheelOdometry wheels;
-  std::array<double, kMaxConfidences> confidence{};  ///< 0 (not used) … 1 (agrees fully), by SensorIndex
+  std::array<double, kMaxWheelVelocities> wheel_velocity{};  ///< rad/s, tracked, of RobotModel::wheels, joint's sign
+  std::array<double, kMaxConfidences> confidence{};          ///< 0 (not used) … 1 (agrees fully), by SensorIndex
   std::array<double, kMaxConfidences>
       nis{};  ///< normalised innovation squared per degree of freedom, smoothed; ideal 1
   std::array<std::uint64_t, kMaxConfidences> rejected{};  ///< samples of this run that the chi-square gate refused

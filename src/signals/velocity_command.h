@@ -17,6 +17,10 @@ struct VelocityCommand {
   std::uint64_t stale = 0;         ///< grows with every message refused for its stamp: too old, or of the future
   std::uint64_t crowded = 0;       ///< grows with every message refused because more than one node sends
   std::uint64_t many_senders = 0;  ///< 1: more than one node sends now, and one_sender forbids it
+
+  /// 1: when the command arrived, another sender's newest message within cmd_vel_timeout (1 s where that is 0) was not
+  /// a zero velocity, or was refused. A zero velocity then is no evidence that no motion is requested.
+  std::uint64_t contested = 0;
 };
 
 /// The operator's inputs to the safety monitor. Each counter grows by one with every event.

@@ -19,6 +19,13 @@ namespace {
 
 constexpr std::uint64_t kBoot = 1;  // any number but 0, as for a run: nobody else is on these channels
 
+/// ClosedLoop is the only sender of commands: each run begins with a zero request.
+CommandScript script_of(const Parameters& parameters) {
+  CommandScript script = load_script(parameters.loop.command_script);
+  script.begin_with_zero();
+  return script;
+}
+
 /// A channel in private memory, with its two ends.
 template <class Frame>
 struct Channel {
@@ -44,8 +51,7 @@ struct ClosedLoop::Parts {
                nullptr, gate_parameters(given)),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
-                   {&sensors.reader, &state.reader, &permit.reader, command.writer},
-                   load_script(given.loop.command_script), nullptr),
+                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr),
         monitor(safety_limits(given, robot), robot, given.loop.period(),
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
                 load_script(given.loop.command_script), nullptr),

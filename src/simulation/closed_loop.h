@@ -43,7 +43,7 @@ class ClosedLoop {
   /// DriverError.
   void reset();
 
-  /// As `~set_parameters` of diff_drive_controller: a YAML map of its limits and gains, from the next step on, and
+  /// As `~set_parameter_map` of diff_drive_controller: a YAML map of its limits and gains, from the next step on, and
   /// beyond `reset`. Throws ParameterError with every reason; then nothing has changed.
   void set_parameters(const std::string& request);
 

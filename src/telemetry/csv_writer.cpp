@@ -37,8 +37,8 @@ void append_real(std::string& to, double value) {
 
 }  // namespace
 
-CsvWriter::CsvWriter(std::string path, std::vector<Column> columns)
-    : path_(std::move(path)), columns_(std::move(columns)) {
+CsvWriter::CsvWriter(std::string path, std::vector<Column> columns, Room room)
+    : path_(std::move(path)), columns_(std::move(columns)), room_(std::move(room)) {
   open();
   buffer_.reserve(kBufferBytes + 4096);
   for (const Column& column : columns_) buffer_.append(column.name).push_back(',');
@@ -81,6 +81,12 @@ void CsvWriter::write(const JoinedRow& row) {
 
 void CsvWriter::flush() {
   std::size_t done = 0;
+  if (file_ >= 0 && room_ && !room_(bytes_ + static_cast<std::int64_t>(buffer_.size()))) {
+    end();
+    throw LogError("log " + path_ +
+                   " has ended: telemetry.quota is reached and no older log can be removed; remedy: start telemetry "
+                   "again, then this log may be removed, or raise telemetry.quota or make room");
+  }
   while (file_ >= 0 && done < buffer_.size()) {
     const ssize_t taken = ::write(file_, buffer_.data() + done, buffer_.size() - done);
     if (taken < 0 && errno == EINTR) continue;
@@ -113,9 +119,13 @@ void CsvWriter::close() {
   if (::close(file) != 0) fail("cannot be closed", errno);
 }
 
-void CsvWriter::fail(const std::string& what, int error) {
+void CsvWriter::end() noexcept {
   if (file_ >= 0) ::close(std::exchange(file_, -1));
   buffer_.clear();
+}
+
+void CsvWriter::fail(const std::string& what, int error) {
+  end();
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
   throw LogError("log " + path_ + " " + what + ": " + std::strerror(error) +
                  (full ? "; make room or name another folder" : "; name a folder that can be written") +

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,9 +23,12 @@ class LogError : public std::runtime_error {
 
 class CsvWriter {
  public:
-  /// Makes the folders above `path` where they are missing, replaces the file and writes the header line.
-  /// Throws LogError.
-  CsvWriter(std::string path, std::vector<Column> columns);
+  /// Whether the file may grow to so many bytes.
+  using Room = std::function<bool(std::int64_t)>;
+
+  /// Makes the folders above `path` where they are missing, replaces the file and writes the header line. Without
+  /// `room` for its buffer the log ends as on a full disk. Throws LogError.
+  CsvWriter(std::string path, std::vector<Column> columns, Room room = {});
 
   /// Closes without a word; call `close` to learn of errors.
   ~CsvWriter();
@@ -47,10 +51,12 @@ class CsvWriter {
  private:
   void open();
   void count(std::size_t taken);
+  void end() noexcept;
   [[noreturn]] void fail(const std::string& what, int error);
 
   std::string path_;
   std::vector<Column> columns_;
+  Room room_;
   std::string buffer_;
   int file_ = -1;
   std::int64_t bytes_ = 0;   ///< up to the end of the last whole line

@@ -242,6 +242,35 @@ TEST_F(CommandInputTest, AFlickeringCrowdIsToldEveryTenSecondsAtMost) {
   EXPECT_EQ(warnings, 6u);
 }
 
+TEST_F(CommandInputTest, AZeroIsContestedWhileAnotherSenderRequestsMotion) {
+  hear("/teleop", 1);
+  hear("/planner", 0);
+  EXPECT_EQ(value().contested, 1u);
+  pass(kSecond);
+  hear("/planner", 0);
+  EXPECT_EQ(value().contested, 1u);
+  hear("/teleop", 0);  // its own zero ends its request
+  EXPECT_EQ(value().contested, 0u);
+  hear("/planner", 0);
+  EXPECT_EQ(value().contested, 0u);
+}
+
+TEST_F(CommandInputTest, ARequestForMotionContestsForTheTimeoutOnly) {
+  hear("/teleop", 1);
+  pass(5 * kSecond / 4 + 1);
+  hear("/planner", 0);
+  EXPECT_EQ(value().contested, 0u);
+}
+
+TEST_F(CommandInputTest, ARefusedMessageIsARequestForMotionWhateverItHolds) {
+  hear_stamped("/teleop", 0, -kHour);
+  hear("/planner", 0);
+  EXPECT_EQ(value().contested, 1u);
+  hear("/teleop", std::numeric_limits<double>::quiet_NaN());
+  hear("/planner", 0);
+  EXPECT_EQ(value().contested, 1u);
+}
+
 TEST_F(CommandInputTest, NaNIsPassedOnForTheControllerToRefuse) {
   hear("/teleop", std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(value().count, 1u);

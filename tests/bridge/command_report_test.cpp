@@ -10,20 +10,38 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
+constexpr std::int64_t kLookTick = 20'000'000;  // ns between two looks
+constexpr std::int64_t kLookSecond = 1'000'000'000;
+
+/// Unless said otherwise, two events are further apart than the report's gap.
 class CommandReportTest : public testing::Test {
  protected:
   CommandReportTest() { frame_.head.run = 1; }
 
   /// A message arrives and is accepted.
-  std::vector<ReportLine> receive(double linear, double angular) {
+  std::vector<ReportLine> receive(double linear, double angular, std::uint64_t reasons = 0,
+                                  std::int64_t later_ns = kLookSecond) {
+    frame_.head.stamp_ns += later_ns;
     ++frame_.requests_received;
-    frame_.reasons = 0;
+    frame_.reasons = reasons;
     frame_.twist_requested.linear[0] = linear;
     frame_.twist_requested.angular[2] = angular;
     return report().look(frame_);
   }
 
+  /// The same goes on for `reasons`; all lines until `seconds` later.
+  std::vector<ReportLine> go_on(std::uint64_t reasons, double seconds = 1.5) {
+    frame_.reasons = reasons;
+    std::vector<ReportLine> lines;
+    for (double t = 0; t < seconds; t += static_cast<double>(kLookTick) / 1e9) {
+      frame_.head.stamp_ns += kLookTick;
+      for (const ReportLine& line : report().look(frame_)) lines.push_back(line);
+    }
+    return lines;
+  }
+
   std::vector<ReportLine> refuse() {
+    frame_.head.stamp_ns += kLookSecond;
     ++frame_.requests_received;
     ++frame_.requests_refused;
     frame_.reasons = kReasonRefused;
@@ -32,6 +50,7 @@ class CommandReportTest : public testing::Test {
   }
 
   std::vector<ReportLine> time_out() {
+    frame_.head.stamp_ns += kLookSecond;
     ++frame_.timeouts;
     frame_.reasons = kReasonTimedOut;
     frame_.twist_requested = {};
@@ -136,6 +155,80 @@ TEST_F(CommandReportTest, LeavesStampsAndSendersToTheirOwnWarnings) {
   frame_.reasons = kReasonManySenders;
   frame_.twist_requested = {};
   EXPECT_THAT(report().look(frame_), IsEmpty()) << "no zero was commanded";
+}
+
+TEST_F(CommandReportTest, TellsWhatIsDoneAndNotWhatIsAskedWhileARobotIsStopped) {
+  for (const std::uint64_t reason : {kReasonPermitBrake, kReasonPermitRamp, kReasonNoPermit, kReasonBadSensors}) {
+    ++frame_.head.run;
+    const std::vector<ReportLine> lines = receive(0.5, 0.2, reason | kReasonAccelerationLimited);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_THAT(lines[0].text, HasSubstr("cmd_vel 0.5 m/s, 0.2 rad/s has no effect: "));
+    EXPECT_THAT(lines[0].text, Not(HasSubstr("left")));
+    EXPECT_TRUE(lines[0].warning);
+  }
+}
+
+TEST_F(CommandReportTest, TellsThatAStopTookTheEffectAndThatAReleaseGaveItBack) {
+  receive(0.5, 0.2);
+  std::vector<ReportLine> lines = go_on(kReasonPermitBrake);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0].text, HasSubstr("has no effect: the permit orders the brake (read the cause in safety_status)"));
+  lines = go_on(0);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0].text, HasSubstr("left 0.45 m/s, right 0.55 m/s"));
+}
+
+TEST_F(CommandReportTest, ASingleLateCycleIsNoStop) {
+  receive(0.5, 0.2);
+  EXPECT_THAT(go_on(kReasonNoPermit, 0.02), IsEmpty());
+  EXPECT_THAT(go_on(0), IsEmpty());
+}
+
+TEST_F(CommandReportTest, TellsThatTheMonitorSlowsItDown) {
+  EXPECT_THAT(receive(0.5, 0.2, kReasonPermitSlow).at(0).text, HasSubstr("but the safety monitor limits the speed"));
+}
+
+TEST_F(CommandReportTest, AStandingRobotThatIsToldToStandIsNoNews) {
+  EXPECT_THAT(receive(0, 0), IsEmpty());
+  EXPECT_THAT(go_on(kReasonPermitBrake), IsEmpty());
+  EXPECT_THAT(go_on(0), IsEmpty());
+}
+
+TEST_F(CommandReportTest, AChangingCommandIsToldOnceASecond) {
+  std::size_t lines = 0;
+  for (int i = 0; i < 200; ++i) lines += receive(0.2 + 0.001 * i, 0.3, 0, kLookSecond / 20).size();
+  EXPECT_GE(lines, 9u);
+  EXPECT_LE(lines, 10u);
+}
+
+TEST_F(CommandReportTest, TheLastOfManyChangesIsTold) {
+  receive(0.5, 0.2);
+  EXPECT_THAT(receive(0.1, 0, 0, kLookTick), IsEmpty());
+  EXPECT_THAT(receive(0.3, 0, 0, kLookTick), IsEmpty());
+  const std::vector<ReportLine> lines = go_on(0);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0].text, HasSubstr("left 0.30 m/s"));
+}
+
+TEST_F(CommandReportTest, AChangeThatNoWheelShowsIsNoNews) {
+  receive(0.5, 0.2);
+  EXPECT_THAT(receive(0.504, 0.2), IsEmpty());
+}
+
+TEST_F(CommandReportTest, TimeoutsAndRefusalsOfAFlickeringSenderAreToldOnceASecond) {
+  std::size_t lines = 0;
+  for (int i = 0; i < 100; ++i) {
+    lines += receive(0.5, 0.2, 0, kLookTick).size();
+    ++frame_.timeouts;
+    frame_.head.stamp_ns += kLookTick;
+    lines += report().look(frame_).size();
+    ++frame_.requests_received;
+    ++frame_.requests_refused;
+    frame_.reasons = kReasonRefused;
+    frame_.head.stamp_ns += kLookTick;
+    lines += report().look(frame_).size();
+  }
+  EXPECT_LE(lines, 3u * 6 + 3) << "three kinds, 6 s";
 }
 
 TEST_F(CommandReportTest, BeginsAnewWithARun) {

@@ -39,12 +39,19 @@ TEST_F(MotionMessagesTest, JointStatesCarryEveryJointInFrameOrder) {
     const auto value = static_cast<double>(i);
     sensors_.joints[i] = {.position = 1 + value, .velocity = 10 + value, .effort = 100 + value};
   }
-  const msg::JointState message = joint_states(sensors_, robot_, stamp_);
+  const msg::JointState message = joint_states(sensors_, nullptr, robot_, stamp_);
   EXPECT_THAT(message.name, ElementsAre("left", "right", "mast"));
   EXPECT_THAT(message.position, ElementsAre(1, 2, 3));
   EXPECT_THAT(message.velocity, ElementsAre(10, 11, 12));
   EXPECT_THAT(message.effort, ElementsAre(100, 101, 102));
   EXPECT_EQ(message.header.stamp, stamp_);
+}
+
+// What an encoder reports jumps by a count per period.
+TEST_F(MotionMessagesTest, JointStatesCarryTheWheelsTrackedVelocities) {
+  for (std::size_t i = 0; i < 3; ++i) sensors_.joints[i].velocity = 4.60;
+  state_.wheel_velocity = {4.5, 5.5, 7};
+  EXPECT_THAT(joint_states(sensors_, &state_, robot_, stamp_).velocity, ElementsAre(4.5, 5.5, 4.60));
 }
 
 TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {

@@ -183,5 +183,60 @@ TEST_F(CommandWatchTest, ForgetsInANewRunWhatTheInboxHolds) {
   EXPECT_EQ(watch.refused(), 0u);
 }
 
+// Evidence that no motion is requested.
+
+TEST_F(CommandWatchTest, AZeroRequestIsEvidenceUntilAnythingElseIsReceived) {
+  watch.step(request, 0);
+  EXPECT_FALSE(watch.zero_requested());
+  send(0);
+  watch.step(request, 1);
+  EXPECT_TRUE(watch.zero_requested());
+  EXPECT_EQ(watch.zero_requests(), 1u);
+  for (auto disturb : {+[](VelocityCommand& r) { r.twist.angular[2] = 1, ++r.count; },
+                       +[](VelocityCommand& r) { ++r.stale; }, +[](VelocityCommand& r) { ++r.crowded; },
+                       +[](VelocityCommand& r) { r.twist.linear[0] = std::nan(""), ++r.count; },
+                       +[](VelocityCommand& r) { r.contested = 1, ++r.count; }}) {
+    disturb(request);
+    watch.step(request, 2);
+    EXPECT_FALSE(watch.zero_requested());
+    request.twist = {};
+    request.contested = 0;
+    ++request.count;
+    watch.step(request, 3);
+    EXPECT_TRUE(watch.zero_requested());
+  }
+}
+
+TEST_F(CommandWatchTest, SilenceCountsFromTheLastMessageAcceptedOrRefused) {
+  watch.step(request, 100);
+  watch.step(request, 150);
+  EXPECT_EQ(watch.silent_cycles(150), 50u);
+  ++request.crowded;
+  watch.step(request, 151);
+  EXPECT_EQ(watch.silent_cycles(151), 0u);
+  ++request.stale;
+  watch.step(request, 160);
+  EXPECT_EQ(watch.silent_cycles(161), 1u);
+  EXPECT_EQ(watch.silence_needed(), 1250u);
+  watch.limit(0);
+  EXPECT_EQ(watch.silence_needed(), 1000u) << "without a timeout one second";
+}
+
+TEST_F(CommandWatchTest, WhatTheInboxHoldsAtTheFirstStepIsNoZeroRequest) {
+  send(0);
+  watch.step(request, 7);
+  EXPECT_EQ(watch.zero_requests(), 0u);
+  EXPECT_FALSE(watch.zero_requested());
+  EXPECT_EQ(watch.first_cycle(), 7u);
+}
+
+TEST_F(CommandWatchTest, ARunMayBeginWithAZeroRequest) {
+  watch.reset({}, true);
+  send(1);
+  EXPECT_EQ(watch.step(request, 0).linear[0], 1);
+  EXPECT_EQ(watch.zero_requests(), 1u);
+  EXPECT_FALSE(watch.zero_requested());
+}
+
 }  // namespace
 }  // namespace robot_control

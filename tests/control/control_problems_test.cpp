@@ -12,6 +12,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Each;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -48,20 +49,32 @@ TEST(ControlProblems, RefusesTheGainsOf1kHzAt100HzAndItsRemedyIsAccepted) {
   EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-2), IsEmpty());
 }
 
+TEST(ControlProblems, RefusesALoopThatSwingsAndItsRemedyIsAccepted) {
+  DriveControllerParameters parameters;
+  parameters.pid_kp = 0.05;
+  parameters.pid_ki = 10;
+  const std::vector<std::string> problems = control_problems(parameters, make_test_robot(), 1e-3);
+  ASSERT_THAT(problems, ElementsAre(AllOf(HasSubstr("swings"), HasSubstr("damping ratio"), HasSubstr("pid_ki"))));
+  parameters.pid_ki = 0.9 * std::stod(problems[0].substr(problems[0].find("at most pid_ki ") + 15));
+  for (const std::string& problem : control_problems(parameters, make_test_robot(), 1e-3)) {
+    EXPECT_EQ(problem.find("swings"), std::string::npos) << problem;
+  }
+}
+
 TEST(ControlProblems, RefusesAWheelWithoutTorque) {
   RobotModel robot = make_test_robot();
   robot.joints[1].effort_limit = 0;
-  EXPECT_THAT(control_problems({}, robot, 1e-3),
-              testing::ElementsAre(
-                  AllOf(HasSubstr("right_wheel_joint"), HasSubstr("effort limit"), HasSubstr("wheel_effort_limit"))));
+  EXPECT_THAT(
+      control_problems({}, robot, 1e-3),
+      ElementsAre(AllOf(HasSubstr("right_wheel_joint"), HasSubstr("effort limit"), HasSubstr("wheel_effort_limit"))));
 }
 
 TEST(ControlProblems, RefuseAMassThatIsASlipOfThePen) {
   const RobotModel robot = make_test_robot();  // 12 kg
   DriveControllerParameters parameters;
-  for (const double mass : {6.0, 40.0}) {
+  for (const double mass : {9.0, 24.0}) {
     parameters.feed_forward.mass = mass;
-    EXPECT_TRUE(control_problems(parameters, robot, 1e-3).empty()) << mass;
+    EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty()) << mass;
   }
   for (const double mass : {1.2, 120.0}) {
     parameters.feed_forward.mass = mass;
@@ -73,6 +86,74 @@ TEST(ControlProblems, RefuseAMassThatIsASlipOfThePen) {
   parameters.feed_forward.mass.reset();
   parameters.feed_forward.wheel_inertia = 5;
   EXPECT_FALSE(control_problems(parameters, robot, 1e-3).empty());
+}
+
+/// One value of feed_forward, with the gains given.
+std::vector<std::string> problems_of(std::optional<double> FeedForwardParameters::*key, double value,
+                                     std::optional<double> kp = {}) {
+  DriveControllerParameters parameters;
+  parameters.feed_forward.*key = value;
+  parameters.pid_kp = kp;
+  return control_problems(parameters, make_test_robot(), 1e-3);
+}
+
+// 5 N·m and 15 rad/s at most: a quarter of the torque is 1.25 N·m, 0.083 N·m·s/rad.
+TEST(ControlProblems, RefuseLossesInTheJointsThatTheMotorsCouldHardlyBear) {
+  using Forward = FeedForwardParameters;
+  for (const double damping : {0.1, 2.0, 1000.0}) {
+    EXPECT_THAT(problems_of(&Forward::wheel_damping, damping),
+                testing::Contains(AllOf(HasSubstr("wheel_damping = "), HasSubstr("0 … 0.08333 N·m·s/rad"))))
+        << damping;
+  }
+  EXPECT_THAT(problems_of(&Forward::wheel_damping, 0.02), IsEmpty());
+  for (const double friction : {1.3, 9.0}) {
+    EXPECT_THAT(problems_of(&Forward::wheel_friction, friction, 0.05),
+                testing::Contains(AllOf(HasSubstr("wheel_friction = "), HasSubstr("0 … 1.25 N·m"))))
+        << friction;
+  }
+  EXPECT_THAT(problems_of(&Forward::wheel_friction, 0.1), IsEmpty());
+}
+
+TEST(ControlProblems, LeaveARobotItsOwnLossesHoweverLargeTheyAre) {
+  RobotModel robot = make_test_robot();
+  for (JointModel& joint : robot.joints) joint.friction = 2;
+  DriveControllerParameters parameters;
+  parameters.feed_forward.wheel_friction = 2.05;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty());
+}
+
+// Stable with the wheels that the set makes heavier, and unstable with those that are there.
+TEST(ControlProblems, RefuseGainsThatOnlyTheRobotOfTheSetBears) {
+  DriveControllerParameters parameters;
+  parameters.feed_forward.wheel_inertia = 0.03;
+  parameters.pid_kp = 20;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3),
+              Each(AllOf(HasSubstr("unstable"), HasSubstr("by the description"), HasSubstr("Use at most"))));
+  parameters.pid_kp.reset();
+  parameters.feed_forward.mass = 59;
+  parameters.feed_forward.wheel_inertia = 0.149;
+  parameters.feed_forward.yaw_inertia = 3.5;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3), SizeIs(1));
+}
+
+// Every value by itself is plausible, and the gains are stable; but they do not hold the robot that is there.
+TEST(ControlProblems, RefuseASetThatWouldExceedTheSpeedOnTheDescribedRobot) {
+  using Forward = FeedForwardParameters;
+  EXPECT_THAT(problems_of(&Forward::wheel_friction, 0.2), IsEmpty());
+  EXPECT_THAT(problems_of(&Forward::wheel_friction, 0.2, 0.05),
+              ElementsAre(AllOf(HasSubstr("the robot as its description has it would reach"), HasSubstr("4 %"))));
+  EXPECT_THAT(problems_of(&Forward::wheel_damping, 0.05, 0.05), SizeIs(1));
+  EXPECT_THAT(problems_of(&Forward::mass, 40), SizeIs(1));
+}
+
+// What a robot of weak motors does by itself at its own limits is not said of the first set that is given.
+TEST(ControlProblems, BlameNoSetForWhatDerivedGainsWouldDoAsWell) {
+  RobotModel robot = make_test_robot();
+  for (JointModel& joint : robot.joints) joint.effort_limit = 0.2;
+  DriveControllerParameters parameters;
+  parameters.pid_kp = 2.0;
+  parameters.pid_ki = 20.0;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty());
 }
 
 }  // namespace

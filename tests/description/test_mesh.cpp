@@ -213,11 +213,11 @@ TEST_F(Mesh, CountsThatAreNotMetAreRefusedOrIgnored) {
 
 TEST_F(Mesh, CornersAreReadAgainWhenTheFileIsAnother) {
   const auto file = folder_.write("a.stl", kBinaryStl);
-  EXPECT_EQ(mesh_corners(file), kTriangle);
+  EXPECT_EQ(mesh_corners(file).points, kTriangle);
   const auto before = std::filesystem::last_write_time(file);
   folder_.write("a.stl", binary_stl("", {{0, 0, 0, 1, 0, 0, 0, 3, 0}}));
   std::filesystem::last_write_time(file, before + std::chrono::seconds(1));
-  EXPECT_EQ(mesh_corners(file)[1], Corner(0, 3, 0));
+  EXPECT_EQ(mesh_corners(file).points[1], Corner(0, 3, 0));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "description/resource.h"
 #include "support/temporary_folder.h"
@@ -54,6 +55,14 @@ TEST_F(Resource, FirstEntryOfTheSearchPathCounts) {
   const auto over = folder_.write("over/bot_description/meshes/base.stl", "solid");
   const ScopedVariable both("ROS_PACKAGE_PATH", (folder_.path() / "over:").string() + (folder_.path() / "ws").string());
   EXPECT_EQ(resolved("package://bot_description/meshes/base.stl"), over);
+}
+
+// A FIFO would hold the search for ever.
+TEST_F(Resource, AManifestThatIsNoRegularFileNamesNoPackage) {
+  std::filesystem::create_directories(folder_.path() / "ws/src/odd");
+  ASSERT_EQ(mkfifo((folder_.path() / "ws/src/odd/package.xml").c_str(), 0600), 0);
+  folder_.write("ws/src/odd/meshes/base.stl", "solid");
+  EXPECT_EQ(resolved("package://bot_description/meshes/base.stl"), mesh_);
 }
 
 TEST_F(Resource, PackageWithoutNameIsCalledLikeItsFolder) {

@@ -85,7 +85,21 @@ TEST_F(Xacro, RefusesInItsOwnWords) {
 }
 
 TEST_F(Xacro, AbsentFileIsRefused) {
-  EXPECT_THAT(refusal("nowhere.xacro"), AllOf(HasSubstr("nowhere.xacro"), HasSubstr("no such file")));
+  EXPECT_THAT(refusal("nowhere.xacro"), AllOf(HasSubstr("nowhere.xacro"), HasSubstr("No such file")));
+}
+
+TEST_F(Xacro, WhatIsNoRegularFileIsRefusedBeforeItIsRead) {
+  std::filesystem::create_symlink("/dev/zero", folder_.path() / "zero.xacro");
+  EXPECT_THAT(refusal("zero.xacro"), HasSubstr("is a device; only a regular file is read"));
+  EXPECT_THROW(load_description("/dev/zero"), RobotError);
+  EXPECT_THROW(load_description(folder_.path()), RobotError);
+}
+
+TEST_F(Xacro, WhatItIncludesIsARegularFile) {
+  SKIP_WITHOUT_XACRO();
+  folder_.write("including.xacro",
+                "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:include filename=\"/dev/zero\"/></robot>");
+  EXPECT_THAT(refusal("including.xacro"), HasSubstr("/dev/zero is a device"));
 }
 
 TEST_F(Xacro, AbsentPythonIsNamedWithTheRemedy) {

@@ -7,6 +7,7 @@
 #include "drivers/constants.h"
 #include "hal/driver.h"
 #include "made_robot.h"
+#include "robot/tipping.h"
 #include "support/diffbot_urdf.h"
 
 namespace robot_control {

@@ -42,7 +42,7 @@ TEST_F(Standing, OnItsBodyWithTheWheelsInTheAirIsRefused) {
     FAIL() << "accepted";
   } catch (const DriverError& error) {
     EXPECT_THAT(error.what(), HasSubstr("its left wheels bear no load"));
-    EXPECT_THAT(error.what(), HasSubstr("base_link"));
+    EXPECT_THAT(error.what(), HasSubstr("what stands on the ground is bumper"));
   }
 }
 

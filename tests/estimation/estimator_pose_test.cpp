@@ -393,7 +393,7 @@ TEST(EstimatorConstruction, RefusesWhatCannotBe) {
   for (double Parameters::*const positive :
        {&Parameters::gyro_noise, &Parameters::accelerometer_noise, &Parameters::encoder_noise,
         &Parameters::standstill_speed, &Parameters::standstill_time, &Parameters::standstill_acceleration,
-        &Parameters::speed_bandwidth}) {
+        &Parameters::speed_bandwidth, &Parameters::rate_bandwidth}) {
     for (const double value : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
       Parameters parameters;
       parameters.*positive = value;

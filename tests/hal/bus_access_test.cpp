@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -184,6 +185,50 @@ TEST_F(BusAccessTest, AChildProgramInheritsNoObject) {
     EXPECT_NE(fcntl(std::stoi(entry.path().filename()), F_GETFD) & FD_CLOEXEC, 0);
   }
   EXPECT_EQ(found, 1);
+}
+
+/// As long as it lives no file can be opened.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{.rlim_cur = 0, .rlim_max = before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+  ~NoDescriptors() { setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(BusAccessTest, AShortageOfDescriptorsPasses) {
+  OwnedChannel<Frames> writer(bus_.name(), ChannelNames::kState);
+  ForeignChannel<Frames> reader(bus_.name(), ChannelNames::kState);
+  {
+    const NoDescriptors shortage;
+    EXPECT_FALSE(reader.poll());
+    EXPECT_THAT(reader.obstacle(), HasSubstr("too many open files"));
+  }
+  EXPECT_TRUE(reader.poll());
+  const Frames* const mapped = reader.memory();
+  ASSERT_NE(mapped, nullptr);
+  {
+    const NoDescriptors shortage;
+    EXPECT_FALSE(reader.poll());
+    EXPECT_EQ(reader.memory(), mapped);
+  }
+  EXPECT_FALSE(reader.poll());
+  EXPECT_EQ(reader.obstacle(), "");
+}
+
+TEST_F(BusAccessTest, AWriterThatStartsWithoutDescriptorsNamesThem) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer needs descriptors for its look at the exception";
+#endif
+  const NoDescriptors shortage;
+  EXPECT_THAT(write_error(), AllOf(HasSubstr("Too many open files"), HasSubstr("ulimit -n")));
 }
 
 }  // namespace

@@ -80,6 +80,21 @@ TEST_F(CalibrationFile, ThatIsNotThereYetIsNone) {
   EXPECT_FALSE(read());
 }
 
+// A robot keeps it on another partition.
+TEST_F(CalibrationFile, BehindALinkIsKeptWhereTheLinkLeadsTo) {
+  std::filesystem::create_symlink("elsewhere.yaml", path());
+  EXPECT_FALSE(read());
+  write();
+  EXPECT_TRUE(std::filesystem::is_symlink(path()));
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder_.path() / "elsewhere.yaml"));
+  EXPECT_TRUE(read());
+}
+
+TEST_F(CalibrationFile, ThatIsNoRegularFileIsRefused) {
+  std::filesystem::create_symlink("/dev/zero", path());
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("1 problem"), HasSubstr("is a device; only a regular file is read")));
+}
+
 TEST_F(CalibrationFile, LeavesNothingBesideItself) {
   write();
   learned_.wheels.wheel_base_factor = 1.01;

@@ -106,6 +106,7 @@ TEST_F(LiveParameters, RefusesContradictionsWithWhatHolds) {
   EXPECT_EQ(problem("{max_linear_emergency_deceleration: 0.9}"),
             "diff_drive_controller.max_linear_emergency_deceleration = 0.9: must not be below "
             "diff_drive_controller.max_linear_acceleration = 1 [in force] [request]");
+  base.controller.max_angular_emergency_deceleration = 8;
   EXPECT_THAT(problem("{max_angular_acceleration: 9}"),
               AllOf(HasSubstr("= 8: must not be below"), HasSubstr("max_angular_acceleration = 9 [request]")));
   EXPECT_THAT(read("{max_angular_acceleration: 9, max_angular_emergency_deceleration: 9}").problems, IsEmpty());
@@ -140,7 +141,7 @@ TEST_F(LiveParameters, RefusesWhatIsNoMap) {
 }
 
 TEST_F(LiveParameters, QuotesWhatWasSentUpToAWholeCharacter) {
-  const std::string start(59, 'x');
+  const std::string start(199, 'x');
   EXPECT_THAT(problem(start + "éx"), HasSubstr("request = " + start + "…: "));
 }
 

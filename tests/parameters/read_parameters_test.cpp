@@ -397,28 +397,31 @@ TEST_F(ReadParameters, RefusesATimeoutUnderTwoPeriods) {
 }
 
 TEST_F(ReadParameters, RefusesEveryContradictionOfTheDrivesLimitsInOneMessage) {
-  const std::map<std::string, std::string> broken{{"max_linear_speed", "-1"},
-                                                  {"max_angular_speed", "0"},
-                                                  {"max_linear_acceleration", ".nan"},
-                                                  {"max_angular_acceleration", "0"},
-                                                  {"max_linear_emergency_deceleration", "0"},
-                                                  {"max_angular_emergency_deceleration", ".inf"},
-                                                  {"max_linear_jerk", "-10"},
-                                                  {"max_angular_jerk", "-1e-9"},
-                                                  {"cmd_vel_timeout", "0.0019"},
-                                                  {"one_sender", "2"}};
+  const std::map<std::string, std::string> broken{
+      {"max_linear_speed", "-1"},        {"max_angular_speed", "0"},    {"max_linear_acceleration", ".nan"},
+      {"max_angular_acceleration", "0"}, {"cmd_vel_timeout", "0.0019"}, {"one_sender", "2"}};
   for (const auto& [key, value] : broken) file.set(key, "  " + key + ": " + value);
-  const std::string refusal = file.refusal();
+  const std::map<std::string, std::string> broken_and_derived{{"max_linear_emergency_deceleration", "0"},
+                                                              {"max_angular_emergency_deceleration", ".inf"},
+                                                              {"max_linear_jerk", "-10"},
+                                                              {"max_angular_jerk", "-1e-9"}};
+  std::vector<Overlay> overlays;
+  for (const auto& [key, value] : broken_and_derived)
+    overlays.push_back({"diff_drive_controller." + key, value, "test"});
+  const std::string refusal = file.refusal(overlays);
   EXPECT_THAT(refusal, HasSubstr("10 problems"));
-  for (const auto& [key, value] : broken) {
-    EXPECT_THAT(refusal, HasSubstr("diff_drive_controller." + key + " = " + value)) << refusal;
+  for (const auto& some : {broken, broken_and_derived}) {
+    for (const auto& [key, value] : some) {
+      EXPECT_THAT(refusal, HasSubstr("diff_drive_controller." + key + " = " + value)) << refusal;
+    }
   }
 }
 
 TEST_F(ReadParameters, RefusesAnEmergencyThatStopsLaterThanTheUsualRamp) {
-  file.set("max_linear_emergency_deceleration", "  max_linear_emergency_deceleration: 0.9");
-  EXPECT_THAT(file.refusal(), HasSubstr("max_linear_emergency_deceleration = 0.9: must not be below "
-                                        "diff_drive_controller.max_linear_acceleration = 1.0"));
+  const std::string path = "diff_drive_controller.max_linear_emergency_deceleration";
+  EXPECT_THAT(file.refusal({{path, "0.9", "test"}}),
+              HasSubstr("max_linear_emergency_deceleration = 0.9: must not be below "
+                        "diff_drive_controller.max_linear_acceleration = 1.0"));
 }
 
 TEST_F(ReadParameters, AsksTwoPeriodsOfTheHeartbeatToo) {
@@ -514,7 +517,9 @@ TEST(Schema, EveryMemberOfALawsParametersHasAKey) {
   EXPECT_EQ(bytes_in(parameters.estimator), sizeof(EstimatorParameters));
   EXPECT_EQ(bytes_in(parameters.controller), sizeof(DriveControllerParameters));
   constexpr std::size_t kWithoutLimit = 3;  // encoders_lost, imu_lost, imu_stuck: lost or not
-  EXPECT_EQ(bytes_in(parameters.safety), sizeof(SafetyParameters) - kWithoutLimit * sizeof(Condition::limit));
+  constexpr std::size_t kDerivedAlways = sizeof(SafetyParameters::count_ripple);
+  EXPECT_EQ(bytes_in(parameters.safety),
+            sizeof(SafetyParameters) - kWithoutLimit * sizeof(Condition::limit) - kDerivedAlways);
 }
 
 TEST(Schema, EveryNumberHasARange) {
@@ -562,15 +567,19 @@ TEST(Suggestion, IsSilentWhenNothingIsNear) {
 
 TEST_F(ReadParameters, RefusesAnEmergencyWeakerThanAUsualStopAndAJerkThatHoldsItUp) {
   const std::string block = "diff_drive_controller.";
-  EXPECT_THAT(file.refusal({{block + "max_linear_deceleration", "2.5", "test"}}),
+  const Overlay linear{block + "max_linear_emergency_deceleration", "2.0", "test"};
+  const Overlay angular{block + "max_angular_emergency_deceleration", "8.0", "test"};
+  EXPECT_THAT(file.refusal({linear, {block + "max_linear_deceleration", "2.5", "test"}}),
               HasSubstr("max_linear_emergency_deceleration = 2.0: must not be below diff_drive_controller."
                         "max_linear_deceleration = 2.5 [test]"));
-  EXPECT_THAT(file.refusal({{block + "max_angular_acceleration", "9", "test"}}),
+  EXPECT_THAT(file.refusal({angular, {block + "max_angular_acceleration", "9", "test"}}),
               HasSubstr("max_angular_emergency_deceleration = 8.0: must not be below diff_drive_controller."
                         "max_angular_acceleration = 9 [test]"));
-  EXPECT_THAT(file.refusal({{block + "max_linear_jerk", "1.9", "test"}}),
+  EXPECT_THAT(file.refusal({linear, {block + "max_linear_jerk", "1.9", "test"}}),
               HasSubstr("max_linear_jerk = 1.9: must be 0 (off) or reach diff_drive_controller."
                         "max_linear_emergency_deceleration = 2.0"));
+  EXPECT_THAT(file.refusal({{block + "max_linear_jerk", "1.9", "test"}}),
+              HasSubstr("max_linear_emergency_deceleration = 2 (derived) within 1 s"));
   EXPECT_NO_THROW(read_parameters(file.path(), {{block + "max_linear_jerk", "2", "test"}}));
   EXPECT_NO_THROW(read_parameters(file.path(), {{block + "max_linear_jerk", "0", "test"}}));
 }

@@ -89,10 +89,10 @@ TEST(RobotAssumptions, AWheelWithoutARotorGetsOne) {
   EXPECT_EQ(read_robot(robot_of(two_wheels()), {}).wheels[0].rotor_inertia, 0);
 }
 
-// 0.01, 0.01, 0.5 (create_2): A and B grow by (0.5 − 0.02)/2.
+// 0.01, 0.01, 0.5 (create_2): A and B grow by ((1 + ε) 0.5 − 0.02)/2.
 TEST(RobotAssumptions, ABrokenTriangleIsClosedFromBelow) {
   const Eigen::Matrix3d given = Eigen::Vector3d(0.01, 0.01, 0.5).asDiagonal();
-  const Eigen::Matrix3d expected = Eigen::Vector3d(0.25, 0.25, 0.5).asDiagonal();
+  const Eigen::Matrix3d expected = Eigen::Vector3d(0.25 * (1 + kThickness), 0.25 * (1 + kThickness), 0.5).asDiagonal();
   EXPECT_NEAR((possible_inertia(given, 2) - expected).norm(), 0, kRounding);
 }
 

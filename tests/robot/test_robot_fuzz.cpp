@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <random>
 
+#include "robot/random_text.h"
 #include "robot/rigid_bodies.h"
 #include "robot/urdf_text.h"
 #include "signals/joint.h"
@@ -19,12 +19,6 @@ namespace {
 // A reading takes about 0.3 ms, ten times that in a sanitizer build: the time ends the test, not the count.
 constexpr int kRounds = 4000;
 constexpr std::chrono::seconds kEnough{4};
-
-using Random = std::mt19937_64;
-
-std::size_t below(Random& random, std::size_t end) {
-  return end == 0 ? 0 : std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
-}
 
 /// [begin, end) of a random quoted value; empty when there is none.
 std::pair<std::size_t, std::size_t> quoted(const std::string& text, Random& random) {
@@ -103,7 +97,7 @@ void expect_sound(const RobotModel& robot) {
 std::vector<RobotDescription> seeds() {
   return {diffbot_urdf(),
           robot_of(two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0") +
-                   transmission("left")),
+                   transmission("left") + transmission("right")),
           robot_of(two_wheels() + link("arm", inertial("1")) +
                    joint({.name = "arm_joint",
                           .child = "arm",

@@ -34,6 +34,17 @@ std::string refusal(const std::string& text) {
   }
 }
 
+TEST(CommandScript, ThatIsNoRegularFileIsRefused) {
+  for (const char* path : {"/dev/zero", "/tmp", "/nowhere.csv"}) {
+    try {
+      CommandScript script(path);
+      ADD_FAILURE() << path << " was accepted";
+    } catch (const ParameterError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(std::string(path) + ": cannot be read: "));
+    }
+  }
+}
+
 TEST(CommandScript, DeliversARowInItsCycleAndOnlyThere) {
   CommandScript script = CommandScript::parse(kHealthy, "script.csv");
   const ScriptEvents first = script.advance(0);

@@ -64,6 +64,13 @@ struct TestChannel {
   FrameReader<Frame> reader{memory.get()};
 };
 
+/// Each run begins with a zero request: it is released at once.
+inline CommandScript script_with_zero() {
+  CommandScript script;
+  script.begin_with_zero();
+  return script;
+}
+
 struct Loop {
   Loop() {
     driver.set_boot(99);
@@ -81,7 +88,7 @@ struct Loop {
   void restart_controller() {
     controller = std::make_unique<ControllerCycle>(
         DriveControllerParameters{}, robot, kPeriod,
-        ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, CommandScript(),
+        ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, script_with_zero(),
         nullptr);
   }
   void restart_monitor() {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "control/wheel_loop_gains.h"
 #include "cycle_fixture.h"
 #include "safety/derived_limits.h"
 
@@ -41,6 +42,18 @@ TEST(SafetyLimits, KeepWhatIsGivenAndDeriveTheRest) {
   EXPECT_EQ(filled.power.limit, 7);
   ASSERT_TRUE(filled.wheel_speed.limit.has_value());
   EXPECT_GT(*filled.wheel_speed.limit, commanded_wheel_speed(parameters.controller, two_wheels()));
+}
+
+// 20 Hz, and the gain of control/wheel_loop_gains.h: 0.5·2·2π·20 Hz per N·m·s/rad.
+TEST(SafetyLimits, KnowWhatTheDerivedGainsMakeOfACount) {
+  const RobotModel robot = two_wheels();
+  const double kp = wheel_loop_gains(DriveControllerParameters{}, robot, robot.wheels[0], 1e-3).kp;
+  Parameters parameters;
+  parameters.controller.pid_kp = 0.1;
+  const SafetyParameters filled = safety_limits(parameters, robot);
+  EXPECT_NEAR(filled.count_ripple[0], 62.83 * kp, 0.01) << "whatever the user has set";
+  EXPECT_EQ(filled.count_ripple[1], filled.count_ripple[0]);
+  EXPECT_EQ(filled.count_ripple[2], 0);
 }
 
 }  // namespace

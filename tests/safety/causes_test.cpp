@@ -396,7 +396,7 @@ TEST_F(CausesTest, StepsWithoutAllocating) {
   request_reset();
   step();
   monitor_.reset(input_.operator_input);
-  monitor_.resume(permit_);
+  monitor_.restore(permit_);
   monitor_.driver_lost();
   step();
   EXPECT_EQ(guard.count(), 0u);

@@ -22,6 +22,7 @@ constexpr std::uint64_t kWindow = 20;
 /// What a row may change in each cycle.
 struct Robot {
   SensorFrame& sensors;
+  CommandFrame& command;
   std::array<double, 2>& speed;
   bool& noisy;
   double t = 0;  ///< s since the onset
@@ -51,6 +52,12 @@ const std::vector<Row>& rows() {
       {kCauseRunaway, &P::runaway, 4, 0.05, kWindow, [](Robot& r) { r.speed[1] = 12; }},
       {kCauseWrongDirection, &P::wrong_direction, 1.5, 0.05, kWindow, [](Robot& r) { r.speed[1] = -5; }},
       {kCauseNotStopping, &P::not_stopping, 1.0, 0, 1001, [](Robot&) {}, true},
+      // A ripple of 0.9 of the limit, the mean of 0.5 s: 0.3 after −0.5 s·ln(1 − (0.3/0.9)²) = 59 ms, and a swing.
+      {kCauseTorqueOscillation, &P::torque_oscillation, 0.3, 0, 80,
+       [](Robot& r) {
+         r.command.joints[1].effort = std::lround(r.t * 1000) / 8 % 2 == 0 ? 3 : -3;
+         r.sensors.joints[1].effort = r.command.joints[1].effort;
+       }},
       {kCauseYawRate, &P::yaw_rate, 1.0, 0.2, 0, [](Robot& r) { r.sensors.imu.angular_velocity[2] = -1.2; }},
       // It rolls at 1 rad/s up to 0.6 rad, and the accelerometer with it.
       {kCauseTilt, &P::tilt, 0.35, 0.05, 400,
@@ -120,7 +127,7 @@ class Conditions : public MonitorTest, public testing::WithParamInterface<std::t
   /// Cycles from the onset to the first in which `told` says so; `patience` at most.
   template <class Told>
   std::uint64_t break_until(std::uint64_t patience, Told told) {
-    Robot robot{sensors_, speed_, noisy_gyro_};
+    Robot robot{sensors_, command_, speed_, noisy_gyro_};
     for (JointCommand& joint : command_.joints) joint.velocity *= row_.told_to_stand ? 0 : 1;
     for (std::uint64_t k = 0; k < patience; ++k) {
       robot.t = static_cast<double>(k) * kPeriod;

@@ -115,7 +115,7 @@ TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
   input_.command = &command_;
   input_.operator_input = {};
   monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-  monitor_.resume(last);
+  monitor_.restore(last);
   monitor_.reset({});
   step();
   EXPECT_EQ(told(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));

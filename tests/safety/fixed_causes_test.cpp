@@ -50,7 +50,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<StopR
         return kHeartbeat + 1;
       case kCauseMonitorRestarted:
         monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-        monitor_.resume(permit_);
+        monitor_.restore(permit_);
         monitor_.reset(input_.operator_input);
         return 1;
       case kCauseCorruptFrame:
@@ -71,6 +71,9 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<StopR
       case kCauseGateDisobeys:  // it passes what has expired
         gate_obeys_ = false;
         skip(kPermitLife + 2);
+        return 1;
+      case kCauseLatchUnreadable:
+        monitor_.restore(kCauseLatchUnreadable, kCauseLatchUnreadable);
         return 1;
       default:
         return 0;

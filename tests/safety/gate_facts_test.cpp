@@ -111,7 +111,7 @@ TEST_F(GateFactsTest, ThePermitOnItsWayIsNoDisobedience) {
 TEST_F(GateFactsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
   const Permit last = permit_;
   monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-  monitor_.resume(last);
+  monitor_.restore(last);
   monitor_.reset({});
   steps(10);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});

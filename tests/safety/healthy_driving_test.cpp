@@ -89,7 +89,13 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
     if (cycle_ < 3) sensors_.gate = {};
     command_.head.cycle = command_.state_cycle = cycle_ == 0 ? 0 : cycle_ - 1;
     command_.twist_requested.linear[0] = wish(static_cast<double>(cycle_) / GetParam().rate);
-    input_ = {.sensors = &sensors_, .command = &command_, .state_seen = true, .corrupt = false, .operator_input = {}};
+    command_.zero_requests = 1;  // the run begins with a zero request
+    input_ = {.sensors = &sensors_,
+              .command = &command_,
+              .state_seen = true,
+              .state_first_cycle = 0,
+              .corrupt = false,
+              .operator_input = {}};
   }
 
   static RobotModel make_robot() {

@@ -28,6 +28,7 @@ class MonitorTest : public testing::Test {
   static constexpr std::uint64_t kLoss = 20;
   static constexpr std::uint64_t kHeartbeat = 300;
   static constexpr std::uint64_t kRamp = 300;
+  static constexpr std::uint64_t kSilence = 1250;  ///< cycles of cmd_vel_timeout
   static constexpr std::uint64_t kStands = 102;  ///< cycles until it is believed: kStandingTime, the anchor, the count
   static constexpr std::uint64_t kStart = 120;
   static constexpr double kQuantum = 2 * std::numbers::pi / 4096;
@@ -83,6 +84,10 @@ class MonitorTest : public testing::Test {
     if (noisy_gyro_) sensors_.imu.linear_acceleration[0] = cycle % 2 == 0 ? 1e-3 : -1e-3;
     command_.head.cycle = cycle == 0 ? 0 : cycle - 1;
     if (fresh_state_) command_.state_cycle = command_.head.cycle;
+    if (zero(command_.twist_requested)) ++command_.zero_requests;  // a sender that repeats its request every cycle
+    command_.zero_requested = zero(command_.twist_requested) ? 1 : 0;
+    command_.silent_cycles = 0;
+    command_.silence_needed = kSilence;
     Permit given = permit_;
     given.head = given_head_;
     if (sensors_.head.run != given.head.run) {
@@ -104,6 +109,7 @@ class MonitorTest : public testing::Test {
     ++sensors_.head.run;
     sensors_.head.cycle = 0;
     begun_ = false;
+    command_.zero_requests = command_.first_cycle = input_.state_first_cycle = 0;
     monitor_.reset(input_.operator_input);
   }
   /// `linear` m/s wished, and the wheels' targets; 0: the brake holds.

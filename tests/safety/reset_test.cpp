@@ -95,16 +95,17 @@ TEST_F(ResetTest, ARefusedRequestIsNotTriedAgain) {
   EXPECT_EQ(permit_.reset_refusal, std::uint64_t{kRefusalCommand});
 }
 
-TEST_F(ResetTest, IsAcceptedWithoutAnyCommandAsLongAsTheControllerIsNotLost) {
+TEST_F(ResetTest, IsRefusedInACycleWithoutACommand) {
   input_.command = nullptr;
-  EXPECT_EQ(reset(), 0u);
+  EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
 }
 
 TEST_F(ResetTest, IsRefusedWhileTheControllerIsLost) {
   input_.command = nullptr;
   steps(kLoss);
-  EXPECT_EQ(reset(), std::uint64_t{kRefusalCauseActive});
+  EXPECT_EQ(reset(), kRefusalCauseActive | kRefusalCommand);
   input_.command = &command_;
+  step();  // the next zero request is the first one after the gap
   EXPECT_EQ(reset(), 0u);
 }
 
@@ -165,7 +166,7 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
     for (int i = 0; i < 2000; ++i) {
       if (chance(300)) new_run();
       if (chance(400)) monitor_.driver_lost();
-      if (chance(500)) monitor_.resume(permit_);
+      if (chance(500)) monitor_.restore(permit_);
       OperatorInput& operator_input = input_.operator_input;
       if (chance(300)) ++operator_input.e_stop_services;
       if (chance(300)) ++operator_input.e_stop_triggers;

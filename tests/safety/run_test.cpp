@@ -32,12 +32,16 @@ TEST_F(RunTest, InitBrakesUnlatchedAndNamesWhoIsMissing) {
   EXPECT_EQ(permit_.missing, std::uint64_t{kMissingCommand});
 }
 
-TEST_F(RunTest, EachNeedsToBeSeenOnceNotAtTheSameTime) {
+TEST_F(RunTest, StateAndCommandNeedToBeSeenInOneCycle) {
   new_run();
   input_.command = nullptr;
   step();
   input_.command = &command_;
   input_.state_seen = false;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kInit);
+  EXPECT_EQ(permit_.missing, 0u);
+  input_.state_seen = true;
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
   EXPECT_EQ(permit_.missing, 0u);
@@ -52,16 +56,13 @@ TEST_F(RunTest, AStopInInitLatches) {
   EXPECT_EQ(permit_.since_cycle, 0u);
 }
 
-TEST_F(RunTest, ResetOfAStopInAnIncompleteRunLeadsToInit) {
+TEST_F(RunTest, ResetOfAStopInARunWithoutAControllerIsRefused) {
   new_run();
   input_.command = nullptr;
   e_stop();
   stand();
-  EXPECT_EQ(reset(), 0u);
-  EXPECT_EQ(permit_.state, SupervisorState::kInit);
-  input_.command = &command_;
-  step();
-  EXPECT_EQ(permit_.state, SupervisorState::kReady);
+  EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
 // A new run.
@@ -203,9 +204,10 @@ TEST_F(RunTest, EachRestartOfTheDriverIsAnother) {
 TEST_F(RunTest, ANewRunOfTheSameDriverIsNoLoss) {
   drive();
   new_run();
+  ask_for(0);
   steps(5);
   EXPECT_EQ(permit_.causes, 0u);
-  EXPECT_EQ(permit_.state, SupervisorState::kDrive);
+  EXPECT_EQ(permit_.action, PermitAction::kDrive);
 }
 
 // A restart of the monitor.
@@ -216,7 +218,7 @@ class RestartTest : public RunTest {
     const Permit last = permit_;
     input_.operator_input = {};
     monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-    monitor_.resume(last);
+    monitor_.restore(last);
     monitor_.reset(input_.operator_input);
   }
 };
@@ -269,8 +271,18 @@ TEST_F(RestartTest, TheDriversResetInBetweenChangesNothing) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-TEST_F(RestartTest, BesideANewDriverBeginsInInit) {
+TEST_F(RestartTest, BesideANewDriverKeepsWhatWasLatched) {
   e_stop();
+  restart();
+  sensors_.boot = 78;
+  new_run();
+  steps(5);
+  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEmergencyStopService});
+  EXPECT_EQ(permit_.evidence[0].cause, std::uint64_t{kCauseEmergencyStopService});
+}
+
+TEST_F(RestartTest, BesideANewDriverBeginsInInitWhereNothingWasLatched) {
   restart();
   sensors_.boot = 78;
   new_run();

@@ -24,13 +24,14 @@ SupervisorState after(SupervisorState state, std::initializer_list<Trigger> trig
 // The specification, written down a second time as a full matrix: '-' stays.
 TEST(SupervisorTable, EveryStateAnswersEveryTriggerAsSpecified) {
   const std::map<SupervisorState, std::array<SupervisorState, kTriggers>> expected{
-      // repair, brake, ramp, ramp ended, reset incomplete, reset complete, complete, motion, rest
-      {kInit, {kFault, kStopped, kStopped, kInit, kInit, kInit, kReady, kInit, kInit}},
-      {kReady, {kFault, kStopped, kStopping, kReady, kReady, kReady, kReady, kDrive, kReady}},
-      {kDrive, {kFault, kStopped, kStopping, kDrive, kDrive, kDrive, kDrive, kDrive, kReady}},
-      {kStopping, {kFault, kStopped, kStopping, kStopped, kStopping, kStopping, kStopping, kStopping, kStopping}},
-      {kStopped, {kFault, kStopped, kStopped, kStopped, kInit, kReady, kStopped, kStopped, kStopped}},
-      {kFault, {kFault, kFault, kFault, kFault, kInit, kReady, kFault, kFault, kFault}},
+      // repair, brake, ramp, ramp ended, unreleased, reset incomplete, reset complete, complete, motion, rest
+      {kInit, {kFault, kStopped, kStopped, kInit, kInit, kInit, kInit, kReady, kInit, kInit}},
+      {kReady, {kFault, kStopped, kStopping, kReady, kInit, kReady, kReady, kReady, kDrive, kReady}},
+      {kDrive, {kFault, kStopped, kStopping, kDrive, kInit, kDrive, kDrive, kDrive, kDrive, kReady}},
+      {kStopping,
+       {kFault, kStopped, kStopping, kStopped, kStopped, kStopping, kStopping, kStopping, kStopping, kStopping}},
+      {kStopped, {kFault, kStopped, kStopped, kStopped, kStopped, kInit, kReady, kStopped, kStopped, kStopped}},
+      {kFault, {kFault, kFault, kFault, kFault, kFault, kInit, kReady, kFault, kFault, kFault}},
   };
   for (const SupervisorState state : kStates) {
     for (std::size_t i = 0; i < kTriggers; ++i) {
@@ -41,8 +42,8 @@ TEST(SupervisorTable, EveryStateAnswersEveryTriggerAsSpecified) {
 }
 
 TEST(SupervisorTable, OfEverySetOfTriggersTheSeverestThatFitsWins) {
-  constexpr std::array kBySeverity{kRepairCause,   kBrakeCause, kRampCause, kRampEnded, kResetIncomplete,
-                                   kResetComplete, kComplete,   kMotion,    kRest};
+  constexpr std::array kBySeverity{kRepairCause,     kBrakeCause,    kRampCause, kUnreleased, kRampEnded,
+                                   kResetIncomplete, kResetComplete, kComplete,  kMotion,     kRest};
   static_assert(kBySeverity.size() == kTriggers);
   for (const SupervisorState state : kStates) {
     for (unsigned set = 0; set < 1u << kTriggers; ++set) {

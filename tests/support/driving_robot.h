@@ -149,7 +149,7 @@ class DrivingRobot {
     if (node == LoopNode::kMonitor) operator_input_ = {};
   }
 
-  /// All of them anew, as if nothing had been: with driver and monitor both gone no latch is left.
+  /// Ends and starts all of them. What was latched stays latched.
   void restart_all() {
     for (const LoopNode node : kLoop) nodes_.end(node);
     for (const LoopNode node : kLoop) restart(node);
@@ -176,12 +176,13 @@ class DrivingRobot {
   void drive_at_full_speed() {
     const auto fast = [&] { return !log_.empty() && log_.last().speed > 0.97 * kFullSpeed; };
     const auto latched = [&] { return permit().state == SupervisorState::kStopped; };
-    const auto ready = [&] { return permit().state != SupervisorState::kInit && !log_.empty(); };
-    if (!await(ready)) throw std::runtime_error("not ready: " + situation());
+    const auto unreleased = [&] { return permit().state == SupervisorState::kInit || log_.empty(); };
     for (int tries = 0; tries < kTries; ++tries) {
+      if (unreleased()) ask_for(0);
+      if (!await([&] { return !unreleased(); })) throw std::runtime_error("not ready: " + situation());
       if (latched()) release();
       ask_for(kFullSpeed);
-      if (await([&] { return fast() || latched(); }) && fast()) return;
+      if (await([&] { return fast() || latched() || unreleased(); }) && fast()) return;
     }
     throw std::runtime_error("does not reach full speed: " + situation());
   }

@@ -12,7 +12,7 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu, JointState
-from system_support import CONTROLLER, ESTIMATOR, LOOP, RobotTestCase, page_faults_of, schedule_of, wait_for
+from system_support import CONTROLLER, ESTIMATOR, LOOP, MONITOR, RobotTestCase, page_faults_of, schedule_of, wait_for
 from tf2_msgs.msg import TFMessage
 
 
@@ -84,6 +84,7 @@ class DrivesTest(RobotTestCase):
     def test_latches_e_stop_until_a_reset_that_says_why_not(self) -> None:
         robot = self.robot
         robot.drive_until("0.5 m/s", robot.driving)
+        said = {name: len(robot.nodes[name].output) for name in (MONITOR, CONTROLLER)}
         robot.send_e_stop(True)
         wait_for("STOPPED", lambda: robot.state == SafetyStatus.STOPPED and "e_stop_topic" in robot.causes)
         wait_for("standstill", lambda: abs(robot.speed) < 0.01, every=lambda: robot.send(0.5, 0.2))
@@ -95,11 +96,19 @@ class DrivesTest(RobotTestCase):
         wait_for("the release of the topic", lambda: not robot.status.active, every=lambda: robot.send(0.5, 0.2))
         self.assertEqual(robot.state, SafetyStatus.STOPPED, "false alone does not reset")
         robot.send(0.5, 0.2)
+        self.assertIn("STOPPED: e_stop_topic: ", robot.nodes[MONITOR].output[said[MONITOR] :])
+        wait_for(
+            "what is done with the command",
+            lambda: "has no effect: the permit orders the brake" in robot.nodes[CONTROLLER].output[said[CONTROLLER] :],
+            every=lambda: robot.send(0.5, 0.2),
+        )
+        self.assertNotIn("left 0.45 m/s", robot.nodes[CONTROLLER].output[said[CONTROLLER] :])
         refused = robot.call("e_stop_reset")
         self.assertFalse(refused.success)
         self.assertIn(rospy.get_name(), refused.message, "the answer names who still sends")
 
         robot.release()
+        wait_for("a line about it", lambda: "released: " in robot.nodes[MONITOR].output[said[MONITOR] :])
         robot.drive_until("0.5 m/s again", robot.driving)
 
     def test_stops_on_the_service_too(self) -> None:

@@ -27,13 +27,15 @@ LAUNCH_LIMIT = 3 * LIMIT
 class Launch:
     """sim.launch with its output in a file."""
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments: str, folder: Path | None = None) -> None:
         self._output = tempfile.NamedTemporaryFile(prefix="sim-launch-", suffix=".log")
         self._process = subprocess.Popen(
             ["roslaunch", str(repository() / "launch" / "sim.launch"), *arguments],
             stdin=subprocess.DEVNULL,
             stdout=self._output,
             stderr=subprocess.STDOUT,
+            cwd=folder,
+            env=os.environ | ({} if folder is None else {"PWD": str(folder)}),
         )
 
     @property
@@ -95,6 +97,9 @@ class LaunchTest(unittest.TestCase):
         script.write_text("cycle,linear,angular\n0,0.5,0.2\n1000,0.5,0.2\n")
         launch = self.launch("clock:=lockstep", f"cycles:={cycles}", f"command_script:={script}", *arguments)
         self.assertEqual(launch.wait(), 0, launch.output)
+        for alarm in ("REQUIRED process", "has died", " overrides "):
+            self.assertNotIn(alarm, launch.output)
+        self.assertIn(f"the run has ended after {cycles} cycles", launch.output)
         lines = (self.out / "run.csv").read_text().splitlines()
         rows = [line for line in lines if line[0].isdigit()]
         self.assertEqual(len(rows), cycles, launch.output)
@@ -129,6 +134,24 @@ class LaunchTest(unittest.TestCase):
         self.assertEqual((rospy.get_param("/use_sim_time"), rospy.get_param("/robot/clock")), (True, "lockstep"))
         rospy.set_param("/use_sim_time", False)
         self.assertIn("`rosparam delete /robot/clock`", refusal(MONITOR))
+
+    def test_no_argument_of_a_launch_outlives_it_and_paths_count_from_the_caller(self) -> None:
+        folder = self.out.parents[2]
+        (folder / "two_lines.yaml").write_text("diff_drive_controller:\n  max_linear_speed: 0.4\n")
+        (folder / "stop.csv").write_text("cycle,linear,angular\n0,0,0\n")
+        given = ["scene:=slope_5deg", "seed:=7", "params:=two_lines.yaml", "command_script:=stop.csv"]
+        first = Launch("clock:=lockstep", "cycles:=200", "telemetry:=true", "out:=rel", *given, folder=folder)
+        self.addCleanup(first.end)
+        self.assertEqual(first.wait(), 0, first.output)
+        self.assertTrue((folder / "rel" / "run.csv").is_file(), first.output)
+        self.assertTrue(rospy.get_param("/mujoco_plant/scene").endswith("/slope_5deg.xml"))
+
+        second = Launch("clock:=lockstep", "cycles:=200")
+        self.addCleanup(second.end)
+        self.assertEqual(second.wait(), 0, second.output)
+        self.assertEqual(set(rospy.get_param("/mujoco_plant")), {"config", "cycles"})
+        self.assertEqual([rospy.get_param(f"/robot/{name}") for name in ("urdf", "command_script", "bus")], [""] * 3)
+        self.assertTrue(rospy.get_param("/diff_drive_controller/config").endswith("/robot_params.yaml"))
 
     def test_drives_the_urdf_it_is_given(self) -> None:
         urdf = self.out.parents[2] / "other.urdf"

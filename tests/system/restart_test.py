@@ -10,7 +10,7 @@ import rostest
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import JointState
-from system_support import CONTROLLER, ESTIMATOR, MONITOR, PLANT, RobotTestCase, wait_for
+from system_support import CONTROLLER, ESTIMATOR, LOOP, MONITOR, PLANT, RobotTestCase, wait_for
 
 
 class RestartTest(RobotTestCase):
@@ -96,6 +96,39 @@ class RestartTest(RobotTestCase):
             subscriber.unregister()
         for name, times in stamps.items():
             self.assertGreater(min(b - a for a, b in itertools.pairwise(times)), 0, f"{name}: stamps grow")
+
+    def test_a_latch_outlives_plant_and_monitor(self) -> None:
+        robot = self.robot
+        for order, number in (((PLANT, MONITOR), signal.SIGKILL), ((MONITOR, PLANT), signal.SIGTERM)):
+            robot.call("e_stop_trigger")
+            wait_for("the stop", lambda: "e_stop_service" in robot.causes)
+            for name in order:
+                robot.nodes[name].send_signal(number)
+                robot.nodes[name].wait()
+            robot.status = None
+            robot.start(*order)
+            wait_for("safety_status", lambda: robot.status is not None and robot.status.run > 1)
+            self.expect_latched("e_stop_service")
+
+    def test_a_start_beside_a_living_sender_waits_for_a_zero_request(self) -> None:
+        robot = self.robot
+        for name in LOOP:
+            robot.nodes[name].end()
+        robot.status = None
+        robot.start()
+        wait_for(
+            "a robot that waits for a zero request",
+            lambda: robot.status is not None and robot.status.awaiting_zero_request,
+            every=lambda: robot.send(0.5, 0.2),
+        )
+        end = time.monotonic() + 2.0  # longer than cmd_vel_timeout
+        while time.monotonic() < end:
+            robot.send(0.5, 0.2)
+            self.assertEqual(robot.state, SafetyStatus.INIT)
+            self.assertLess(abs(robot.speed), 0.01)
+            time.sleep(0.02)
+        wait_for("READY", lambda: robot.state == SafetyStatus.READY, every=lambda: robot.send(0, 0))
+        robot.drive_until("0.5 m/s", robot.driving)
 
     def test_plant(self) -> None:
         run = self.robot.status.run

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""send_cmd.py repeats its command and takes it back on Ctrl-C: proven at the receiver."""
+"""send_cmd.py repeats its command while it may, and takes it back on Ctrl-C: proven at the receiver."""
 
+import math
 import os
 import signal
 import time
@@ -10,16 +11,40 @@ import rosgraph
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from robot_control.msg import SafetyStatus
 from system_support import Program, init_test_node, wait_for
+
+STATES = {"INIT": SafetyStatus.INIT, "READY": SafetyStatus.READY, "STOPPED": SafetyStatus.STOPPED}
 
 
 class SendCmdTest(unittest.TestCase):
     def setUp(self) -> None:
         self.received: list[tuple[float, float, float]] = []
         self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.hear, tcp_nodelay=True)
+        self.monitor = self.monitor_that_says("READY")
 
     def tearDown(self) -> None:
         self.subscriber.unregister()
+        self.monitor.unregister()
+
+    def monitor_that_says(self, state: str) -> rospy.Publisher:
+        monitor = rospy.Publisher("safety_status", SafetyStatus, queue_size=10, latch=True)
+        self.say(monitor, state)
+        return monitor
+
+    @staticmethod
+    def say(monitor: rospy.Publisher, state: str) -> None:
+        status = SafetyStatus(state=STATES[state], state_name=state, speed_limit=math.inf)
+        status.awaiting_zero_request = state == "INIT"
+        if state == "STOPPED":
+            status.causes, status.first_cause = ["e_stop_service"], "e_stop_service"
+            status.sentences, status.details = ["e_stop_trigger was called"], [""]
+            status.remedies, status.actors = ["call e_stop_reset"], ["operator"]
+        monitor.publish(status)
+
+    def commands(self) -> list[tuple[float, float]]:
+        """Received, in their order, without the zeros."""
+        return [twist for _, *twist in self.received if twist != [0.0, 0.0]]
 
     def hear(self, message: Twist) -> None:
         self.received.append((time.monotonic(), message.linear.x, message.angular.z))
@@ -37,7 +62,7 @@ class SendCmdTest(unittest.TestCase):
     def test_sends_zero_last_when_interrupted(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM):
             sender = self.started()
-            wait_for("three commands", lambda: len(self.received) >= 3)
+            wait_for("three commands", lambda: len(self.commands()) >= 3)
             sender.send_signal(number)
             sender.wait()
             wait_for(f"the zero after {number}", self.zero_came)
@@ -78,7 +103,39 @@ class SendCmdTest(unittest.TestCase):
         self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.hear, tcp_nodelay=True)
         self.assertEqual(sender.wait(), 0, sender.output)
         wait_for("the zero", self.zero_came)
-        self.assertEqual(self.received[0][1:], (0.5, 0.2))
+        self.assertEqual(self.commands(), [[0.5, 0.2]])
+
+    def test_waits_with_zeros_until_the_robot_is_ready(self) -> None:
+        self.say(self.monitor, "INIT")
+        sender = self.started("--period=0.1", "--count=2")
+        wait_for("what it waits for", lambda: "waits for a zero request; stop the other sender" in sender.output)
+        self.assertGreater(len(self.received), 2)
+        self.assertEqual(self.commands(), [])
+        self.say(self.monitor, "READY")
+        self.assertEqual(sender.wait(), 0, sender.output)
+        wait_for("the command", lambda: bool(self.commands()))
+
+    def test_a_stop_ends_its_command_and_no_release_brings_it_back(self) -> None:
+        sender = self.started("--period=0.1")
+        wait_for("a command", lambda: bool(self.commands()))
+        self.say(self.monitor, "STOPPED")
+        stopped = time.monotonic()
+        wait_for("why it stopped", lambda: "STOPPED: e_stop_trigger was called. The command has no" in sender.output)
+        self.assertLess(time.monotonic() - stopped, 1.0 + 1.0, "the second is the machine's")
+        wait_for("a zero", self.zero_came)
+        self.received.clear()
+        wait_for("zeros, which let a reset be accepted", lambda: len(self.received) >= 2)
+        self.say(self.monitor, "READY")
+        self.assertEqual(sender.wait(), 1, sender.output)
+        self.assertEqual(self.commands(), [])
+        self.assertIn("start send_cmd.py again", sender.output)
+
+    def test_sends_all_the_same_where_no_monitor_runs(self) -> None:
+        self.monitor.unregister()
+        sender = self.started("--period=0.1", "--count=1")
+        self.assertEqual(sender.wait(), 0, sender.output)
+        wait_for("the command", lambda: bool(self.commands()))
+        self.assertEqual(sender.output.count("no safety_status within"), 1)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""set_parameters between the same two cycles: four nodes and the closed loop in one process give the same numbers."""
+"""set_parameter_map between the same two cycles: four nodes and the loop in one process give the same numbers."""
 
 import csv
 import math
@@ -58,10 +58,10 @@ class SetParametersLockstepTest(unittest.TestCase):
         self.call(f"{PLANT}/set_pause", SetBool, True)  # cycle 0 waits for the others
         self.robot.start(ESTIMATOR, CONTROLLER, MONITOR)
         rospy.wait_for_service("e_stop_reset", LIMIT)
-        rospy.wait_for_service(f"{CONTROLLER}/set_parameters", LIMIT)
+        rospy.wait_for_service(f"{CONTROLLER}/set_parameter_map", LIMIT)
         self.step()
         for request in REQUESTS:
-            self.call(f"{CONTROLLER}/set_parameters", SetParameters, request)
+            self.call(f"{CONTROLLER}/set_parameter_map", SetParameters, request)
             self.step()
         wait_for("every row", lambda: self.log.exists() and len(self.rows()) >= 3 * CYCLES)
         self.telemetry.end()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""diff_drive_controller/set_parameters, called as a user of ROS calls it, while the robot drives."""
+"""diff_drive_controller/set_parameter_map and set_parameters (dynamic_reconfigure), called while the robot drives."""
 
 import csv
 import random
@@ -10,11 +10,12 @@ from pathlib import Path
 
 import rospy
 import rostest
+from dynamic_reconfigure.client import Client
 from robot_control.msg import SafetyStatus
 from robot_control.srv import SetParameters
 from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
 
-SERVICE = f"/{CONTROLLER}/set_parameters"
+SERVICE = f"/{CONTROLLER}/set_parameter_map"
 START = "{max_linear_speed: 1.0, cmd_vel_timeout: 1.25}"
 """What the tests begin with, whatever one before left on the parameter server."""
 
@@ -106,6 +107,52 @@ class SetParametersTest(RobotTestCase):
         self.assertIn(f"/{CONTROLLER}/keep_curvature = false overrides", output)
         self.robot.drive_until("0.3 m/s", lambda: 0.2 < self.robot.speed < 0.32)
         self.assertEqual(self.accept("{keep_curvature: true}"), 1)
+
+    def dynparam(self, *arguments: str) -> str:
+        command = ["rosrun", "dynamic_reconfigure", "dynparam", *arguments]
+        answer = subprocess.run(command, capture_output=True, text=True, timeout=2 * LIMIT, check=False)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        return answer.stdout
+
+    def test_dynparam_lists_gets_and_sets(self) -> None:
+        self.assertIn(f"/{CONTROLLER}", self.dynparam("list").split())
+        self.assertIn("'max_linear_speed': 1.0", self.dynparam("get", CONTROLLER))
+        self.dynparam("set", CONTROLLER, "max_linear_speed", "0.3")
+        self.robot.drive_until("0.3 m/s", lambda: 0.2 < self.robot.speed < 0.32)
+        self.assertEqual(rospy.get_param(f"{CONTROLLER}/max_linear_speed"), 0.3)
+        self.dynparam("set", CONTROLLER, "{'max_linear_speed': 0.4, 'feed_forward_mass': 12.5}")
+        self.assertIn("'max_linear_speed': 0.4", self.dynparam("get", CONTROLLER))
+        self.assertEqual(rospy.get_param(f"{CONTROLLER}/feed_forward/mass"), 12.5)
+
+    def test_the_client_of_dynamic_reconfigure_sees_every_set(self) -> None:
+        seen: list[dict[str, object]] = []
+        client = Client(CONTROLLER, timeout=LIMIT, config_callback=seen.append)
+        self.addCleanup(client.close)
+        ranges = {entry["name"]: entry for entry in client.get_parameter_descriptions(timeout=LIMIT)}
+        self.assertEqual(ranges["max_linear_speed"]["max"], 50.0)
+        self.assertEqual(ranges["keep_curvature"]["type"], "bool")
+        answer = client.update_configuration({"max_linear_speed": 0.6, "keep_curvature": False})
+        self.assertEqual((answer["max_linear_speed"], answer["keep_curvature"]), (0.6, False))
+        self.accept("{max_linear_speed: 0.7, keep_curvature: true}")  # another client's
+        wait_for("an update", lambda: bool(seen) and seen[-1]["max_linear_speed"] == 0.7)
+
+    def test_a_refusal_answers_what_is_in_force_and_warns(self) -> None:
+        client = Client(CONTROLLER, timeout=LIMIT)
+        self.addCleanup(client.close)
+        before = client.get_configuration(timeout=LIMIT)
+        answer = client.update_configuration({"max_linear_speed": 0.2, "pid_kp": 900.0})
+        self.assertEqual(answer["max_linear_speed"], 1.0)
+        self.assertEqual(answer["pid_kp"], before["pid_kp"])
+        wait_for("a line of it", lambda: "unstable" in self.robot.nodes[CONTROLLER].output)
+
+    def test_derived_gains_are_shown_as_numbers_and_setting_one_fixes_it(self) -> None:
+        client = Client(CONTROLLER, timeout=LIMIT)
+        self.addCleanup(client.close)
+        shown = client.get_configuration(timeout=LIMIT)["tracking_bandwidth"]
+        self.assertEqual(shown, 20.0)
+        self.assertFalse(rospy.has_param(f"{CONTROLLER}/tracking_bandwidth"))
+        client.update_configuration({"tracking_bandwidth": shown})
+        self.assertEqual(rospy.get_param(f"{CONTROLLER}/tracking_bandwidth"), 20.0)
 
     def test_whatever_is_sent_the_node_lives(self) -> None:
         good = "{max_linear_speed: 0.5, keep_curvature: true, cmd_vel_timeout: 1.0}"

@@ -13,7 +13,7 @@ from pathlib import Path
 import rospy
 import rostest
 import yaml
-from geometry_msgs.msg import TwistStamped
+from geometry_msgs.msg import Twist, TwistStamped
 from robot_control.msg import SafetyStatus
 from std_msgs.msg import Float64MultiArray
 from system_support import (
@@ -73,7 +73,7 @@ class StartTest(unittest.TestCase):
         tree = yaml.safe_load((folder / "robot_params.yaml").read_text())
         tree["robot"]["urdf"] = str(folder / tree["robot"]["urdf"])
         tree["mujoco_plant"]["scene"] = str(folder / tree["mujoco_plant"]["scene"])
-        del tree["robot"]["rate"]
+        tree["robot"]["rate"] = 9
         tree["diff_drive_controller"]["pid_kp"] = float("nan")
         tree["diff_drive_controller"]["max_linear_sped"] = 1.0
         tree["safety_monitor"]["loss_cycles"] = -3
@@ -85,6 +85,16 @@ class StartTest(unittest.TestCase):
                 for path in ("robot.rate", "pid_kp", "max_linear_sped", "loss_cycles"):
                     self.assertIn(path, output, name)
         self.forget(*LOOP)
+
+    def test_refuses_paths_that_are_no_regular_files_and_too_few_descriptors(self) -> None:
+        for argument in ("_config:=/dev/zero", "_urdf:=/dev/zero", "_scene:=/dev/zero"):
+            self.assertIn("is a device; only a regular file is read", refusal(PLANT, argument))
+            self.forget(PLANT)
+        for name in LOOP:
+            for files in (8, 32):
+                said = refusal(name, prefix=["prlimit", f"--nofile={files}:{files}"])
+                self.assertIn(f"only {files} files may be open at a time", said)
+                self.assertIn("remedy: `ulimit -n 1024`", said)
 
     def test_refuses_an_unknown_key_on_the_parameter_server(self) -> None:
         output = refusal(CONTROLLER, "_pid_kq:=2.0")
@@ -168,6 +178,22 @@ class StartTest(unittest.TestCase):
         for path in objects:
             path.unlink(missing_ok=True)
 
+    def test_a_command_before_the_loop_runs_is_dropped_and_that_is_said_once(self) -> None:
+        program = Program(CONTROLLER)
+        try:
+            sender = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+            complaint = f"a command of {rospy.get_name()} arrived before the loop runs and is dropped"
+            wait_for("a line", lambda: complaint in program.output, every=lambda: sender.publish(Twist()))
+            for _ in range(20):
+                sender.publish(Twist())
+                rospy.sleep(0.01)
+            self.assertEqual(program.output.count(complaint), 1)
+        finally:
+            objects = program.shared_memory()
+            program.end()
+        for path in objects:
+            path.unlink(missing_ok=True)
+
     def test_waits_for_the_master_and_says_so_once(self) -> None:
         port = free_port()
         with tempfile.TemporaryDirectory() as logs:
@@ -227,9 +253,13 @@ class StartTest(unittest.TestCase):
             wait_for("the names of who is missing", lambda: told and set(told[-1].missing) == absent)
             robot.start(CONTROLLER)
             wait_for("the controller's wait", lambda: "waiting for mujoco_plant" in robot.nodes[CONTROLLER].output)
-            for status in told:
-                self.assertEqual((status.state, status.causes), (SafetyStatus.INIT, []), status)
+            for status in told:  # the latch outlives its processes
+                self.assertEqual((status.state, status.causes), (SafetyStatus.STOPPED, ["controller_lost"]), status)
+            self.assertIn("latched since before this start: controller_lost", robot.nodes[MONITOR].output)
             self.assertEqual((wheels, limited), ([], []), "nothing has been commanded")
+            answer = robot.call("e_stop_trigger")  # without a single sensor frame
+            self.assertTrue(answer.success, answer.message)
+            wait_for("the stop", lambda: "e_stop_service" in robot.causes)
 
             robot.start(PLANT, ESTIMATOR)
             robot.await_ready()

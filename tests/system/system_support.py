@@ -137,10 +137,11 @@ def refusal(
 
 
 class Robot:
-    """Four nodes in a namespace, and what they publish."""
+    """Four nodes in a namespace, and what they publish. `prefix`: a command that runs each of them."""
 
-    def __init__(self, namespace: str = "") -> None:
+    def __init__(self, namespace: str = "", prefix: Sequence[str] = ()) -> None:
         self.namespace = namespace
+        self.prefix = prefix
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
         self.joints: JointState | None = None
@@ -165,7 +166,7 @@ class Robot:
     def start(self, *names: str) -> None:
         """Starts these nodes, or all four."""
         for name in names or LOOP:
-            self.nodes[name] = Program(name, namespace=self.namespace)
+            self.nodes[name] = Program(name, namespace=self.namespace, prefix=self.prefix)
 
     def end(self) -> None:
         """Ends all nodes and removes their shared memory: a master's port is never seen again."""
@@ -174,6 +175,7 @@ class Robot:
             node.end()
         for path in objects:
             path.unlink(missing_ok=True)
+        self.status = self.odom = None
 
     def restart(self, name: str) -> None:
         """kill -9 and start again."""
@@ -212,18 +214,20 @@ class Robot:
     def await_ready(self) -> None:
         """All nodes there, permit to drive; what a stalling machine latched is released."""
         wait_for("safety_status", lambda: self.status is not None)
-        wait_for("the end of INIT", lambda: self.state != SafetyStatus.INIT)
+        wait_for("the end of INIT", lambda: self.state != SafetyStatus.INIT, every=lambda: self.send(0, 0))
         wait_for("odometry", lambda: self.odom is not None)
         if self.state == SafetyStatus.STOPPED:
             self.release()
 
     def drive_until(self, what: str, condition: Callable[[], bool], linear: float = 0.5, angular: float = 0.2) -> None:
-        """Sends until the condition holds. Stops that a stalling machine may latch are released on the way."""
+        """Sends until the condition holds, zeros while the robot waits for one. Stops that a stalling machine may latch
+        are released on the way."""
         end = time.monotonic() + LIMIT
         while not condition():
             if time.monotonic() > end:
                 raise AssertionError(f"not within {LIMIT:g} s of driving: {what}; causes: {self.causes}")
-            self.send(linear, angular)
+            waits = self.status is not None and self.status.awaiting_zero_request
+            self.send(*((0.0, 0.0) if waits else (linear, angular)))
             if self.state == SafetyStatus.STOPPED and self.causes and self.causes <= STALL_CAUSES:
                 self.release()
             time.sleep(0.02)
@@ -294,11 +298,12 @@ class RobotTestCase(unittest.TestCase):
     """Tests that share one robot in the root namespace."""
 
     robot: Robot
+    prefix: Sequence[str] = ()
 
     @classmethod
     def setUpClass(cls) -> None:
         init_test_node(cls.__name__)
-        cls.robot = Robot()
+        cls.robot = Robot(prefix=cls.prefix)
         cls.robot.start()
 
     @classmethod

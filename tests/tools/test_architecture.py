@@ -9,23 +9,24 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 
-CORE = {"signals", "rt", "description", "robot", "estimation", "control", "safety"}
+CORE = {"signals", "rt", "files", "description", "robot", "estimation", "control", "safety"}
 CORE |= {"hal", "drivers", "parameters", "runtime"}
 MAY_INCLUDE = {
     "signals": set(),
     "rt": {"signals"},
-    "description": set(),
-    "robot": {"signals", "description"},
+    "files": set(),
+    "description": {"files"},
+    "robot": {"signals", "description", "files"},
     "estimation": {"signals", "robot"},
     "control": {"signals", "robot"},
     "safety": {"signals", "robot"},
     "hal": {"signals", "rt", "robot"},
-    "drivers": {"signals", "hal", "description", "robot", "rt"},
+    "drivers": {"signals", "hal", "description", "robot", "rt", "files"},
     # The schema fills in the parameter structs that the laws define.
-    "parameters": {"signals", "rt", "robot", "estimation", "control", "safety", "hal", "drivers"},
+    "parameters": {"signals", "rt", "files", "robot", "estimation", "control", "safety", "hal", "drivers"},
     "telemetry": {"signals"},
     # What each node does in one cycle, and the process around it.
-    "runtime": {"signals", "rt", "robot", "parameters", "estimation", "control", "safety", "hal", "telemetry"},
+    "runtime": {"signals", "rt", "files", "robot", "parameters", "estimation", "control", "safety", "hal", "telemetry"},
     "simulation": CORE | {"telemetry"},
     "python": CORE | {"telemetry", "simulation"},
     "bridge": CORE | {"telemetry"},

@@ -70,8 +70,8 @@ def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])
     assert (
-        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving, limiter, drive, odometry"
-        in capsys.readouterr().err
+        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving, limiter, "
+        "release, drive, odometry, hostile, tuning" in capsys.readouterr().err
     )
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import os
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -272,7 +273,7 @@ def test_a_gap_is_told(run, columns):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["nowhere.csv", *ROBOT], "No such file or directory: 'nowhere.csv'"),
+        (["nowhere.csv", *ROBOT], "nowhere.csv (in "),
         (["empty.csv", *ROBOT], "empty; the first line must name the columns"),
         (["head.csv", *ROBOT], "no rows below the header"),
         (["in.csv", "--wheel-radius=0.1"], "wheel_radius without wheel_base"),
@@ -591,7 +592,7 @@ def test_what_is_no_bag_is_refused(rosbag, run, exact):
         _, message = run(name, *ROBOT)
         assert f"{name} is no ROS 1 bag that can be read" in message
     _, message = run("nowhere.bag", *ROBOT)
-    assert "No such file or directory: 'nowhere.bag'" in message
+    assert "nowhere.bag (in " in message
 
 
 def test_a_bag_whose_recorder_was_killed_is_refused_with_the_remedy(rosbag, run, exact):
@@ -599,3 +600,104 @@ def test_a_bag_whose_recorder_was_killed_is_refused_with_the_remedy(rosbag, run,
     Path("in.bag").write_bytes(Path("in.bag").read_bytes()[: 200 * 1024])
     _, message = run("in.bag", *ROBOT)
     assert "rosbag reindex" in message
+
+
+@pytest.mark.parametrize("name", ["in.csv", "in.bag"])
+def test_a_recording_that_is_no_regular_file_is_refused_at_once(run, name):
+    for target, said in (("/dev/zero", "is a device"), ("fifo", "is a FIFO"), (".", "is a folder")):
+        Path(name).unlink(missing_ok=True)
+        if not Path("fifo").exists():
+            os.mkfifo("fifo")
+        Path(name).symlink_to(target)
+        _, message = run(name, *ROBOT)
+        assert f"{name} {said}" in message
+        _, message = run("in2.csv", "--params", name)
+        assert said in message
+
+
+def test_what_is_no_csv_is_refused_in_a_short_message(run):
+    contents = [b"\0" * 10**6, b"x" * 10**6, b"time,left,right\n" + b"1" * 10**6, b'time,"left,' + b"y\n" * 10**5]
+    contents += [b",".join(b"c%d" % i for i in range(9000)), bytes(range(256)) * 20]
+    for content in contents:
+        Path("in.csv").write_bytes(content)
+        _, message = run("in.csv", *ROBOT)
+        assert message.startswith("estimate.py: in.csv")
+        assert len(message) < 800
+        assert "\0" not in message
+
+
+@pytest.mark.parametrize("option", ["--csv", "--bag", "--plot", "--calibration"])
+def test_outputs_keep_what_they_are_written_through(run, columns, tmp_path, option):
+    write_csv("in.csv", columns)
+    suffix = {"--csv": "csv", "--bag": "bag", "--plot": "png", "--calibration": "yaml"}[option]
+    Path(f"link.{suffix}").symlink_to(f"target.{suffix}")
+    _, message = run("in.csv", *ROBOT, option, f"link.{suffix}")
+    assert message == ""
+    assert Path(f"link.{suffix}").is_symlink()
+    assert Path(f"target.{suffix}").stat().st_size > 0
+    null = Path(f"null.{suffix}")
+    try:
+        os.mknod(null, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+        null.open("wb").close()
+    except PermissionError:
+        pytest.skip("devices are not granted")
+    _, message = run("in.csv", *ROBOT, option, null)
+    assert message == ""
+    assert null.is_char_device()
+
+
+def mutated(data, random):
+    """One of the ways in which a file is damaged."""
+    data = bytearray(data)
+    kind = random.choice(4, p=(0.5, 0.1, 0.1, 0.3))  # a wrong length leaves no index, and little to read
+    if kind == 0:
+        for at in random.integers(len(data), size=random.integers(1, 40)):
+            data[at] = random.integers(256)
+    elif kind == 1:
+        del data[random.integers(len(data)) :]
+    elif kind == 2:
+        first = random.integers(len(data))
+        del data[first : first + random.integers(1, 200)]
+    else:
+        first, second = random.integers(len(data), size=2)
+        data[first : first + 64] = data[second : second + 64]
+    return bytes(data)
+
+
+@pytest.mark.parametrize("compression", ["none", "bz2", "lz4"])
+def test_a_damaged_bag_is_estimated_or_refused_in_one_message(rosbag, run, exact, compression):
+    with rosbag.Bag("sound.bag", "w", compression=compression, chunk_threshold=20000) as bag:
+        for topic, message, stamp in messages_of(exact, rate=10):
+            if stamp.to_sec() < BASE + 3:
+                bag.write(topic, message, stamp)
+    sound = Path("sound.bag").read_bytes()
+    for seed in range(40):
+        Path("in.bag").write_bytes(mutated(sound, np.random.default_rng(seed)))
+        try:
+            _, message = run("in.bag", *ROBOT)  # exits with a message, or ends well
+        except Exception as error:
+            raise AssertionError(f"seed {seed}, {compression}: {error!r}") from error
+        assert message == "" or message.startswith("estimate.py: "), seed
+        assert len(message) < 1000, seed
+
+
+def test_a_small_bag_that_inflates_without_bounds_is_refused(rosbag, run):
+    from std_msgs.msg import String
+
+    with rosbag.Bag("in.bag", "w", compression="bz2", chunk_threshold=2**30) as bag:
+        bag.write("/zeros", String(data="0" * 150_000_000), stamp_of(0))
+    assert Path("in.bag").stat().st_size < 20_000
+    _, message = run("in.bag", *ROBOT)
+    assert "inflates to 150" in message
+    assert "rosbag decompress" in message
+
+
+def test_a_chunk_that_inflates_to_more_than_it_says_is_refused(rosbag, run, exact):
+    with rosbag.Bag("in.bag", "w", compression="bz2") as bag:
+        for topic, message, stamp in messages_of(exact, rate=10):
+            bag.write(topic, message, stamp)
+    data = Path("in.bag").read_bytes()
+    at = data.index(b"size=", data.index(b"compression=bz2")) + len(b"size=")
+    Path("in.bag").write_bytes(data[:at] + (1000).to_bytes(4, "little") + data[at + 4 :])
+    _, message = run("in.bag", *ROBOT)
+    assert "inflates to more than the 1000 bytes that it says" in message

@@ -6,12 +6,23 @@ import sys
 import pytest
 import yaml
 from robot_control import ClosedLoop
+from robot_control.identification import Estimate
+from robot_control.identification_report import _measured
 from robot_control.identify import Settings, parse_options, plan
 from robot_control.identify_node import main
 from robot_control.share import share_file
 
 PARAMS = share_file("config/robot_params.yaml")
 FRICTION = 0.1  # N·m
+
+
+def written(log, folder):
+    """As telemetry writes it."""
+    file = folder / "run.csv"
+    rows = zip(*log.values(), strict=True)
+    lines = [",".join(log), *(",".join("" if math.isnan(cell) else repr(float(cell)) for cell in row) for row in rows)]
+    file.write_text("\n".join(lines) + "\n")
+    return file
 
 
 @pytest.fixture(scope="module")
@@ -21,11 +32,7 @@ def run_csv(tmp_path_factory):
     excitation = plan(Settings(PARAMS, ()), options)
     loop = ClosedLoop({"mujoco_plant": {"motor_friction": FRICTION}})
     log = loop.run(excitation.seconds + 0.5, excitation.command)
-    file = tmp_path_factory.mktemp("log") / "run.csv"
-    rows = zip(*log.values(), strict=True)
-    lines = [",".join(log), *(",".join("" if math.isnan(cell) else repr(float(cell)) for cell in row) for row in rows)]
-    file.write_text("\n".join(lines) + "\n")
-    return file
+    return written(log, tmp_path_factory.mktemp("log"))
 
 
 def identify(monkeypatch, *arguments):
@@ -63,7 +70,36 @@ def test_refuses_the_log_of_another_robot(run_csv, tmp_path, monkeypatch):
 
 
 def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
-    assert "No such file" in refusal(monkeypatch, f"--log={tmp_path}/none.csv")
+    message = refusal(monkeypatch, f"--log={tmp_path}/none.csv")
+    assert message == f"identify.py: {tmp_path}/none.csv cannot be opened or written: No such file or directory"
+
+
+@pytest.mark.parametrize(
+    ("command", "missing"),
+    [((0.5, 0.0), "turning cannot be told from this log: it holds no turns"), ((0.0, 0.5), "straight cannot be told")],
+)
+@pytest.mark.filterwarnings("error")
+def test_a_log_without_turns_or_ramps_is_refused_in_words_without_nan(command, missing, tmp_path, monkeypatch):
+    log = ClosedLoop().run(6.0, command)
+    message = refusal(monkeypatch, f"--log={written(log, tmp_path)}", f"--output={tmp_path}/x.yaml")
+    assert missing in message
+    assert "nan" not in message
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_log_of_a_demo_is_refused_without_nan_or_a_warning(tmp_path, monkeypatch):
+    log = ClosedLoop().run(10.0, lambda t: (0.5, 0.2) if 1 < t < 9 else (0.0, 0.0))
+    message = refusal(monkeypatch, f"--log={written(log, tmp_path)}", f"--output={tmp_path}/x.yaml")
+    assert "the log holds too little of it; drive more" in message or "cannot be told" in message
+    assert "nan" not in message
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(1.5, 0.02, "1.5 ± 0.02"), (math.nan, math.nan, "not in the log"), (3.0, math.inf, "3, error unknown")],
+)
+def test_a_table_cell_holds_no_nan(value, error, text):
+    assert _measured(Estimate(value, error)) == text
 
 
 def test_refuses_parameters_that_are_wrong(run_csv, tmp_path, monkeypatch):

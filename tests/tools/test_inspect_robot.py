@@ -132,6 +132,14 @@ def test_the_report_lists_other_joints_casters_and_an_effective_wheel_base(robot
     assert "0.5 m × 1.5 = 0.75 m" in text
 
 
+def test_the_report_names_wheels_without_load(robot):
+    said = "left bears no load at rest, on the ground stand skid"
+    robot["standing"] = {"lean": 0.0, "carried": 0.5, "unloaded": said}
+    assert said in report(robot)
+    robot["standing"]["unloaded"] = ""
+    assert "load" not in report(robot)
+
+
 @pytest.mark.parametrize("kind", ["assumed", "repaired", "ignored", "overridden", "suspicious"])
 def test_notes_stand_under_their_heading(robot, kind):
     assert kind.capitalize() not in report(robot)
@@ -193,6 +201,21 @@ def test_a_robot_that_does_not_stand_is_reported_all_the_same(tmp_path):
     assert "does not stand" in done.stderr
     assert "wheels bear no load" in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_wheel_that_hangs_in_the_air_is_named_with_what_stands_instead(tmp_path):
+    # Two of four skids end 2 mm below the wheels, on a diagonal: on them and one wheel the robot stands.
+    text = DIFFBOT.read_text()
+    skids = ""
+    for number, (x, y) in enumerate(((0.2, 0.2), (-0.3, -0.2), (-0.3, 0.2), (0.2, -0.2))):
+        skids += f"""<link name="skid_{number}"><collision><geometry><sphere radius="0.02"/></geometry></collision>
+          </link><joint name="skid_{number}" type="fixed"><parent link="base_link"/><child link="skid_{number}"/>
+          <origin xyz="{x} {y} {-0.082 if number < 2 else -0.08}"/></joint>"""
+    (tmp_path / "rocks.urdf").write_text(text.replace("</robot>", skids + "</robot>"))
+    done = inspect(tmp_path / "rocks.urdf")
+    said = done.stdout + done.stderr
+    assert "no load" in said
+    assert "skid_0" in said
 
 
 def test_a_file_that_cannot_be_written_is_one_message(tmp_path):

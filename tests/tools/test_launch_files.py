@@ -1,4 +1,4 @@
-"""Where sim.launch and backend.launch let their nodes listen, by the environment of whoever starts them."""
+"""Where sim.launch and backend.launch let their nodes listen, and which files their arguments mean."""
 
 import re
 from pathlib import Path
@@ -40,3 +40,42 @@ def test_an_empty_environment_means_the_loopback(default):
 )
 def test_whoever_speaks_of_a_network_is_left_with_it(default, variables):
     assert default(**variables) == ""
+
+
+@pytest.mark.parametrize(("launch", "name"), [("backend", "params"), ("backend", "urdf"), ("sim", "out")])
+def test_relative_paths_count_from_the_callers_folder(launch, name, monkeypatch):
+    expression = re.search(rf'name="{name}_path" value="(.*?)"/>', (LAUNCH / f"{launch}.launch").read_text())[1]
+    monkeypatch.setenv("PWD", "/called/here")
+    monkeypatch.setenv("HOME", "/home/me")
+
+    def resolve(value):
+        return resolve_args(expression, context={"arg": {name: value}})
+
+    assert resolve("rel/file") == "/called/here/rel/file"
+    assert resolve("5") == "/called/here/5"
+    assert resolve("/abs") == "/abs"
+    assert resolve("~/x") == "/home/me/x"
+    assert resolve("") == ""
+
+
+def test_a_word_alone_is_a_shipped_scene(monkeypatch):
+    expression = re.search(r'name="scene_path" value="(.*?)"/>', (LAUNCH / "sim.launch").read_text())[1]
+    monkeypatch.setenv("PWD", "/called/here")
+
+    def resolve(value):
+        return resolve_args(expression, context={"arg": {"scene": value}})
+
+    assert resolve("slope_5deg").endswith("/urdf/scenes/slope_5deg.xml")
+    assert resolve("mine.xml") == "/called/here/mine.xml"
+    assert resolve("worlds/mine.xml") == "/called/here/worlds/mine.xml"
+    assert resolve("/abs/mine.xml") == "/abs/mine.xml"
+
+
+def test_every_argument_that_a_user_may_give_is_set_in_every_launch():
+    """What is set under a condition stays in the roscore when the condition is false the next time."""
+    for name in ("sim", "backend"):
+        text = (LAUNCH / f"{name}.launch").read_text()
+        outside = re.sub(r"<node .*?</node>", "", text, flags=re.DOTALL)
+        assert not re.search(r"<param (if|unless)=", outside), name
+        for node in re.findall(r"<node .*?</node>", text, flags=re.DOTALL):
+            assert "<param if=" not in node or 'clear_params="true"' in node, node

@@ -4,9 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robot_control import run_picture
+from robot_control.brakes import GATE_REASONS
 from robot_control.run_picture import draw_run
 from robot_control.run_summary import STOP_CAUSES, SUPERVISOR_STATES, summarize, to_json, to_table
-from synthetic_run import ANGULAR, LINEAR, SECONDS, healthy_run
+from synthetic_run import ANGULAR, BEGIN, END, LINEAR, SECONDS, brake_at, healthy_run
 
 ROOT = Path(__file__).parents[2]
 
@@ -54,10 +56,53 @@ def test_states_and_causes_of_a_stop_are_named(run):
     assert safety.causes == ("e_stop_topic", "controller_lost")
 
 
+EXPIRED, NO_COMMAND, PERMIT_BRAKE = 1 << 2, 1 << 5, 1 << 3
+
+
+def test_a_brake_in_mid_drive_is_in_the_table_with_its_time_and_reason(run):
+    assert "brakes of the gate while driving  none" in to_table(summary_of(run))
+    brake_at(run, 5000, EXPIRED)
+    for cycle in (6000, 6001):
+        brake_at(run, cycle, NO_COMMAND)
+    summary = summary_of(run)
+    assert [(brake.begin, brake.cycles, brake.reasons) for brake in summary.brakes] == [
+        (5.0, 1, ("permit_expired",)),
+        (6.0, 2, ("no_command",)),
+    ]
+    table = to_table(summary)
+    assert "brakes of the gate while driving  2, 3 cycles in all" in table
+    assert "at 5.000 s                      1 cycle, permit_expired" in table
+    assert json.loads(to_json(summary))["brakes"][1]["cycles"] == 2
+
+
+def test_a_brake_at_rest_is_none_in_mid_drive(run):
+    for cycle in (*range(BEGIN), *range(END + 600, len(run["cycle"]))):
+        brake_at(run, cycle, 1 << 12)
+    brake_at(run, BEGIN, 0)  # the request of this cycle acts in the next
+    assert summary_of(run).brakes == ()
+
+
+def test_a_stop_in_mid_drive_lasts_to_its_end_in_the_table(run):
+    run["gate_verdict"][6000:], run["gate_reasons"][6000:] = 0, PERMIT_BRAKE
+    run["requested_linear"][6100:] = run["requested_angular"][6100:] = 0
+    (brake,) = summary_of(run).brakes
+    assert (brake.begin, brake.end, brake.reasons) == (6.0, run["time"][-1], ("permit_brake",))
+
+
+def test_many_brakes_still_fit_a_terminal(run):
+    for cycle in range(3000, 7000, 100):
+        brake_at(run, cycle, (1 << 19) - 1)
+    table = to_table(summary_of(run)).splitlines()
+    assert max(map(len, table)) <= 80
+    assert "and 36 more" in table[-1]
+
+
 def test_the_vocabulary_is_that_of_the_frames():
     names = (ROOT / "src/signals/names.h").read_text()
     states = re.search(r"name_of\(SupervisorState.*?kNames\{(.*?)\}", names, re.DOTALL).group(1)
     assert tuple(re.findall(r'"(\w+)"', states)) == SUPERVISOR_STATES
+    reasons = re.search(r"kGateReasonNames = .*?\n\}\);", names, re.DOTALL).group(0)
+    assert tuple(re.findall(r'\{kGate\w+, "(\w+)"', reasons)) == GATE_REASONS
     names = (ROOT / "src/signals/cause_names.h").read_text()
     causes = re.search(r"kStopCauseNames = .*?\n\}\);", names, re.DOTALL).group(0)
     assert tuple(re.findall(r'\{kCause\w+, "(\w+)"', causes)) == STOP_CAUSES
@@ -81,6 +126,49 @@ def test_the_table_says_what_failed(run):
 
 def test_the_table_fits_a_terminal(run):
     assert max(len(line) for line in to_table(summary_of(run)).splitlines()) <= 80
+
+
+@pytest.fixture
+def panels(monkeypatch, tmp_path):
+    """Draws a log; its axes: path, speed, yaw rate, torque."""
+
+    def draw(log):
+        figures = []
+        monkeypatch.setattr(run_picture.plt, "close", figures.append)
+        draw_run(log, summary_of(log), "title", tmp_path / "run.png")
+        monkeypatch.undo()
+        run_picture.plt.close(figures[-1])
+        return figures[-1].axes
+
+    return draw
+
+
+def test_a_brake_is_named_in_the_picture_as_in_the_table(run, panels):
+    brake_at(run, 5000, EXPIRED)
+    run["limited_linear"][5000] = 0
+    _, *right = panels(run)
+    for axes in right:
+        assert "gate braked, 1 ×" in [text.get_text() for text in axes.get_legend().get_texts()]
+    (name,) = [text.get_text() for text in right[0].texts]
+    assert name == "5.00 s: 1 cycle, permit_expired"
+    (brake,) = summary_of(run).brakes
+    assert brake.describe() in name
+    (limited,) = [line for line in right[0].lines if line.get_label() == "within limits"]
+    assert np.isnan(limited.get_ydata()[5000]), "no grey bar in its place"
+
+
+def test_the_names_of_many_brakes_do_not_overlap(run, panels):
+    for cycle in range(3000, 7000, 100):
+        brake_at(run, cycle, EXPIRED)
+    speed = panels(run)[1]
+    assert 1 <= len(speed.texts) <= run_picture.BRAKES_NAMED
+    assert "gate braked, 40 ×" in [text.get_text() for text in speed.get_legend().get_texts()]
+
+
+def test_the_truth_is_drawn_over_the_noise_of_its_estimate(run, panels):
+    for axes in panels(run)[1:3]:
+        order = [line.get_label() for line in axes.lines]
+        assert order.index("true") > order.index("estimated")
 
 
 @pytest.mark.parametrize("moves", [True, False])

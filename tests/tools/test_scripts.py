@@ -1,6 +1,7 @@
 """The shell scripts, as far as they go without building."""
 
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -30,11 +31,108 @@ def test_help_says_how_to_call_it_and_does_nothing(script):
     assert "building" not in done.stdout
 
 
+@pytest.mark.parametrize("script", ["demo", "test", "lint", "bench"])
+def test_help_needs_nothing_that_is_not_installed_yet(script, tmp_path):
+    """From another folder, by a relative path, with other arguments before it: scripts/setup is not called."""
+    copied = tmp_path / "scripts"
+    shutil.copytree(SCRIPTS, copied, ignore=shutil.ignore_patterns("robot_control"))
+    (copied / "setup").write_text("#!/bin/bash\necho installing >&2\nexit 9\n")
+    (tmp_path / "elsewhere").mkdir()
+    done = subprocess.run(
+        [f"../scripts/{script}", "--seconds", "3", "-h"],
+        cwd=tmp_path / "elsewhere",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"scripts/{script} [" in done.stdout
+
+
+@pytest.mark.parametrize("name", ["a b", "a;b", "a$b", "(a)", "a\tb", "a'b", "[a]", "a:b", "a#b"])
+def test_a_checkout_whose_path_cannot_be_built_is_refused_at_once(name, tmp_path):
+    checkout = tmp_path / name / "robot_control"
+    for folder in ("scripts", "cmake"):
+        shutil.copytree(SCRIPTS.parent / folder, checkout / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(SCRIPTS.parent / "CMakeLists.txt", checkout)
+    for script in ("demo", "test", "setup"):
+        done = shell(str(checkout / "scripts" / script))
+        assert done.returncode == 1
+        assert "the path of the checkout" in done.stderr
+        assert "move it to a path without" in done.stderr
+    done = shell("cmake", "-S", str(checkout), "-B", str(tmp_path / "build"))
+    assert done.returncode == 1
+    assert "the path of the checkout" in " ".join(done.stderr.split())
+
+
+@pytest.mark.parametrize("own_build", ["install", "build"])
+def test_a_catkin_workspace_refuses_a_checkout_with_a_build_of_its_own(own_build, tmp_path):
+    """roslaunch searches the whole checkout and would find every launch file and node twice."""
+    checkout = tmp_path / "src" / "robot_control"
+    (checkout / own_build / "robot_control").mkdir(parents=True)
+    shutil.copytree(SCRIPTS.parent / "cmake", checkout / "cmake")
+    shutil.copy(SCRIPTS.parent / "CMakeLists.txt", checkout)
+    (tmp_path / "src" / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.18)\nproject(workspace NONE)\nadd_subdirectory(robot_control)\n"
+    )
+    done = shell("cmake", "-S", str(tmp_path / "src"), "-B", str(tmp_path / "build"))
+    assert done.returncode == 1
+    assert f"rm -r {checkout}/build" in " ".join(done.stderr.split())
+
+
 @pytest.mark.parametrize("script", ["test", "setup", "lint"])
 def test_an_unknown_argument_is_refused_with_the_usage(script):
     done = shell(str(SCRIPTS / script), "--warp")
     assert done.returncode == 1
     assert "unknown argument '--warp'; usage:" in done.stderr
+
+
+MAKEFILE = """
+all: src/all
+all: CMakeFiles/messages.dir/all
+src/all: src/CMakeFiles/library.dir/all
+src/CMakeFiles/library.dir/all: CMakeFiles/messages.dir/all
+src/CMakeFiles/program.dir/all: src/CMakeFiles/library.dir/all
+src/CMakeFiles/library.dir/all:
+\t$(MAKE) -f src/CMakeFiles/library.dir/build.make
+tests/all: tests/CMakeFiles/docs.dir/all
+src/all: src/CMakeFiles/program.dir/all
+"""  # docs belongs to a folder that `all` does not build
+
+
+def progress(tmp_path, *lines):
+    """What a build with such a log has done; None: it has no Makefiles yet."""
+    (tmp_path / "log").write_text("".join(f"{line}\n" for line in lines))
+    script = 'source "$0"; build_progress "$@"'
+    return shell(
+        "bash", "-euc", script, str(SCRIPTS / "build_progress.sh"), str(tmp_path / "log"), str(tmp_path)
+    ).stdout
+
+
+def test_a_build_says_how_many_of_its_targets_are_done(tmp_path):
+    assert progress(tmp_path, "-- The CXX compiler identification is GNU") == "configuring\n"
+    (tmp_path / "CMakeFiles").mkdir()
+    (tmp_path / "CMakeFiles" / "Makefile2").write_text(MAKEFILE)
+    log = ["[  5%] Building CXX object a.o", "[ 33%] Built target messages", "[ 40%] Building CXX object b.o"]
+    assert progress(tmp_path, *log) == "40 % of the steps, 1 of 3 targets\n"
+    log += ["[ 66%] Built target library", "[100%] Built target program"]
+    assert progress(tmp_path, *log) == "100 % of the steps, 3 of 3 targets\n"
+
+
+def test_a_long_build_is_not_silent_and_its_exit_code_is_that_of_the_command(tmp_path):
+    command = (
+        f'source "$0"; with_progress {tmp_path}/log {tmp_path} bash -c "echo \'[ 12%] Building\'; sleep 4; exit 7"'
+    )
+    done = shell("env", "BUILD_PROGRESS_PAUSE=1", "bash", "-euc", command, str(SCRIPTS / "build_progress.sh"))
+    assert done.returncode == 7
+    assert "12 % of the steps" in done.stdout
+
+
+def test_every_build_shows_its_progress():
+    for name in ("environment.sh", "test"):
+        builds = re.findall(r"^.*(?:colcon build|cmake --build).*$", (SCRIPTS / name).read_text(), re.MULTILINE)
+        assert builds
+        assert all("with_progress" in line for line in builds)
 
 
 def test_a_part_of_the_projects_name_selects_no_rostest_by_it():

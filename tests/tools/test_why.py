@@ -67,11 +67,36 @@ def text(facts: Facts, **look) -> str:
     return "\n".join(render(facts, Look(**look)))
 
 
+def test_a_robot_that_waits_for_a_zero_request_says_so_and_names_the_sender(driving):
+    waiting = replace(driving, safety=Safety("INIT", "brake", awaiting_zero=True), measured=(0.0, 0.0))
+    answer = judge(waiting)
+    assert answer.verdict is Verdict.STOPPED
+    assert answer.headline.endswith("waits for a zero request; stop the sender for 1.25 s or send zero.")
+    assert "/send_cmd" in answer.actions[0][1]
+    assert judge(replace(waiting, senders=())).actions == ()
+
+
+def test_a_latched_stop_or_a_missing_node_goes_before_the_wait_for_a_zero(driving):
+    waiting = Safety("INIT", "brake", awaiting_zero=True)
+    assert "zero" not in judge(stopped(driving, E_STOP)).headline
+    assert ESTIMATOR in judge(replace(driving, safety=replace(waiting, missing=(ESTIMATOR,)))).headline
+
+
 def test_a_moving_robot_moves(driving):
     answer = judge(driving)
     assert answer.verdict is Verdict.MOVING
     assert answer.headline == "It moves: 0.50 m/s, 0.20 rad/s."
     assert not answer.actions
+
+
+def test_wheels_without_load_are_named_while_they_turn(driving):
+    said = "left bears no load at rest, on the ground stand skid"
+    for measured in ((0.5, 0.2), (0.0, 0.0)):
+        answer = judge(replace(saying(driving, PLANT, unloaded_wheels=said), measured=measured))
+        assert said in answer.headline
+        assert answer.actions
+    standing = replace(saying(driving, PLANT, unloaded_wheels=said), limited=(0.0, 0.0), measured=(0.0, 0.0))
+    assert said in text(standing)
 
 
 def test_without_a_master_it_says_what_to_start():

@@ -1,4 +1,4 @@
-#include "drivers/ground_points.h"
+#include "robot/ground_points.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,159 @@
+"""Files that a user names, and text from them in a message: the same rules as src/files/."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+LARGEST_TABLE = 16 << 30
+"""bytes of a log, a CSV or a bag; a run.csv grows by 6 GB in an hour"""
+LARGEST_ECHO = 200
+"""characters of any one input in a message"""
+LARGEST_MESSAGE = 1500
+"""characters of a sentence with several inputs in it"""
+
+_KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a FIFO"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
+
+
+class InputFileError(ValueError):
+    """A path that is no file to read; the message names it."""
+
+
+def check_input(path: Path, most: int) -> None:
+    """Regular files of at most `most` bytes are read, nothing else: a device has no end, a FIFO none to wait for.
+
+    Raises:
+        InputFileError: it is none.
+        OSError: it is not there, or may not be looked at.
+    """
+    status = path.stat()
+    for is_kind, kind in _KINDS:
+        if is_kind(status.st_mode):
+            raise InputFileError(f"{path} is {kind}; only a regular file is read")
+    if status.st_size > most:
+        raise InputFileError(f"{path} has {status.st_size} bytes; at most {most} are read")
+
+
+def printable(text: str, most: int = LARGEST_ECHO) -> str:
+    """Text from outside for a message: at most `most` characters of it, those that do not print as escapes."""
+    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text[:most])
+    return shown + ("…" if len(text) > most else "")
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names from outside, with commas, as `printable`."""
+    return printable(", ".join(names))
+
+
+def fit_for_message(sentence: str) -> str:
+    """Sentences in which inputs stand already, a line each: words and quoted parts as by `printable`."""
+    return "\n".join(_fit_line(line) for line in sentence.split("\n"))
+
+
+def _fit_line(line: str) -> str:
+    result, at = "", 0
+    while at < len(line):
+        if len(result) > LARGEST_MESSAGE:
+            return result + " …"
+        if line[at] == " ":
+            result += " "
+            at += 1
+            continue
+        end = _end_of_part(line, at)
+        result += printable(line[at:end])
+        at = end
+    return result
+
+
+def _end_of_part(line: str, at: int) -> int:
+    close = line.find(line[at], at + 1) if line[at] in "\"'" else -1
+    blank = line.find(" ", at)
+    return close + 1 if close >= 0 else blank if blank >= 0 else len(line)
+
+
+class NewFiles:
+    """Files that get their content when the block ends well, all of them; otherwise they stay as they were.
+
+    Nothing and regular files are replaced by a temporary file beside them, which has the old one's mode and owner. A
+    symbolic link holds for the file that it leads to. A device, a FIFO or a socket is written to, never replaced; so is
+    a file whose owner cannot be kept.
+    """
+
+    def __init__(self) -> None:
+        self._names: list[tuple[Path, Path]] = []
+
+    def name(self, final: Path) -> Path:
+        """Where to write what will be `final`.
+
+        Raises:
+            OSError: nothing can be written there.
+        """
+        target = Path(os.path.realpath(final))
+        if target.exists() and not target.is_file():
+            descriptor, name = tempfile.mkstemp(prefix=f".{final.stem}.", suffix=final.suffix)
+            os.close(descriptor)
+            partial = Path(name)
+        else:
+            partial = target.with_name(f".{target.stem}.{os.getpid()}.partial{target.suffix}")
+        self._names.append((partial, target))
+        return partial
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            if kind is None:
+                for partial, target in self._names:
+                    _put(partial, target)
+        finally:
+            for partial, _ in self._names:
+                with contextlib.suppress(OSError):
+                    partial.unlink()
+
+
+def write_text(path: Path, text: str) -> None:
+    """`NewFiles` for one text.
+
+    Raises:
+        OSError: it cannot be written; what was there before stays.
+    """
+    with NewFiles() as files:
+        partial = files.name(path)
+        with partial.open("w", encoding="utf-8") as file:
+            file.write(text)
+
+
+def _put(partial: Path, target: Path) -> None:
+    if target.exists() and not (target.is_file() and _takes_after(partial, target)):
+        with partial.open("rb") as source, target.open("wb") as sink:
+            shutil.copyfileobj(source, sink)
+    else:
+        partial.replace(target)
+
+
+def _takes_after(partial: Path, old: Path) -> bool:
+    """Gives the new file mode and owner of the old one; False: this user may not give it away."""
+    was, now = old.stat(), partial.stat()
+    if (was.st_uid, was.st_gid) != (now.st_uid, now.st_gid):
+        try:
+            os.chown(partial, was.st_uid, was.st_gid)
+        except PermissionError:
+            return False
+    partial.chmod(stat.S_IMODE(was.st_mode))
+    return True

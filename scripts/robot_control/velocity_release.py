@@ -1,0 +1,178 @@
+"""When send_cmd.py may send its command, by what safety_status says; no ROS in here.
+
+    WAITING   zeros, until the state is READY or DRIVE for the first time since this program started
+    SENDING   the command, while it stays so
+    STOPPED   zeros for good, which let a reset be accepted; over when the robot is released: motion needs a new start
+
+Without any safety_status there is nothing to wait for: after NO_MONITOR the command is sent, provisionally: the first
+status decides as if it had come at the start.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum, auto
+
+NO_MONITOR = 3.0
+"""s without any safety_status, which comes once per second at least"""
+GONE = 0.5
+"""s without a publisher of safety_status after there was one"""
+PATIENCE = 2.0
+"""s in which a start needs no explanation; a silent cmd_vel ends the wait for a zero sooner"""
+STANDING = 0.01
+"""m/s; a speed limit below it is none to drive with"""
+
+AWAITS_ZERO = "waits for a zero request; stop the other sender for 1.25 s or let it send zero"
+
+
+@dataclass(frozen=True)
+class Status:
+    """What safety_status said last."""
+
+    state: str  # INIT, READY, DRIVE, STOPPING, STOPPED, FAULT
+    sentence: str = ""  # of the first cause
+    detail: str = ""  # its value and limit
+    remedy: str = ""
+    causes: int = 0
+    missing: tuple[str, ...] = ()
+    awaiting_zero: bool = False
+    speed_limit: float = math.inf  # m/s
+
+    @property
+    def drivable(self) -> bool:
+        """A permit to drive."""
+        return self.state in {"READY", "DRIVE"}
+
+    def why(self) -> str:
+        """State and cause: STOPPED: the robot hit something (51 m/s^2, limit 30 m/s^2)."""
+        if not self.sentence:
+            return self.state
+        measured = f" ({self.detail})" if self.detail else ""
+        others = f", and {self.causes - 1} more: see why.py" if self.causes > 1 else ""
+        return f"{self.state}: {self.sentence}{measured}{others}"
+
+
+@dataclass(frozen=True)
+class Line:
+    """For the log."""
+
+    text: str
+    warning: bool = True
+
+
+class Phase(Enum):
+    """What is sent."""
+
+    WAITING = auto()
+    SENDING = auto()
+    STOPPED = auto()
+    RELEASED = auto()  # after STOPPED; nothing more
+
+
+class Release:
+    """Follows safety_status; times in s of any one clock."""
+
+    def __init__(self, now: float) -> None:
+        self._start = now
+        self._heard_at = now
+        self._phase = Phase.WAITING
+        self._provisional = False
+        self._unheard_told = False
+        self._gone_since = math.inf
+        self._waiting_for = ""
+        self._say_at = math.inf
+        self._no_speed = False
+
+    @property
+    def phase(self) -> Phase:
+        """What is sent now."""
+        return self._phase
+
+    def look(self, now: float, status: Status | None, age: float = 0.0, *, connected: bool = True) -> list[Line]:
+        """Takes in what is known `now`.
+
+        Args:
+            now: s.
+            status: the last one; None: none came yet.
+            age: s since it came.
+            connected: a publisher of safety_status is there.
+        """
+        return list(self._look(now, status, age, connected))
+
+    def _look(self, now: float, status: Status | None, age: float, connected: bool) -> Iterator[Line]:  # noqa: FBT001
+        if status is None:
+            yield from self._without_monitor(now)
+            return
+        if self._provisional:
+            self._provisional = False
+            self._phase = Phase.WAITING
+        self._gone_since = math.inf if connected else min(self._gone_since, now)
+        if self._phase is Phase.WAITING:
+            yield from self._wait(now, status, age)
+        elif self._phase is Phase.SENDING:
+            yield from self._drive(now, status, age)
+        elif self._phase is Phase.STOPPED and status.drivable and connected:
+            self._phase = Phase.RELEASED
+            yield Line("the robot is released; this command does not begin again by itself: start send_cmd.py again")
+
+    def _without_monitor(self, now: float) -> Iterator[Line]:
+        if self._provisional or now - self._start < NO_MONITOR:
+            return
+        self._provisional = True
+        self._phase = Phase.SENDING
+        yield Line(
+            f"no safety_status within {NO_MONITOR:g} s: safety_monitor does not run, and without it the robot brakes; "
+            "sending the command all the same"
+        )
+
+    def _wait(self, now: float, status: Status, age: float) -> Iterator[Line]:
+        gone = now - self._gone_since > GONE or age > NO_MONITOR
+        if status.drivable and not gone:
+            self._phase = Phase.SENDING
+            return
+        text = self._obstacle(status, gone=gone)
+        if text != self._waiting_for:
+            patience = PATIENCE if status.state == "INIT" or gone else 0.0
+            self._waiting_for, self._say_at = text, now + patience
+        if now >= self._say_at:
+            self._say_at = math.inf
+            yield Line(text)
+
+    @staticmethod
+    def _obstacle(status: Status, *, gone: bool) -> str:
+        if gone:
+            return "safety_status is silent: waits with zeros for safety_monitor"
+        if status.awaiting_zero:
+            return AWAITS_ZERO
+        if status.state == "INIT":
+            return f"waits with zeros: safety_monitor waits for {', '.join(status.missing) or 'the first cycles'}"
+        remedy = f": {status.remedy}" if status.remedy else ""
+        return f"waits with zeros: {status.why()}{remedy}. The command is sent as soon as the robot is READY"
+
+    def _drive(self, now: float, status: Status, age: float) -> Iterator[Line]:
+        if now - self._gone_since > GONE:
+            self._phase = Phase.STOPPED
+            yield Line(
+                "safety_monitor is gone, and without it the robot brakes: the command has no effect, zeros are sent "
+                "from now on. To drive again: start safety_monitor, call e_stop_reset, start send_cmd.py again"
+            )
+            return
+        if not status.drivable:
+            self._phase = Phase.STOPPED
+            if status.state == "INIT":
+                why = "INIT: a node or the simulation was started again, and releases no command from before"
+            else:
+                why = status.why()
+            remedy = f"{status.remedy}, then " if status.remedy else ""
+            yield Line(
+                f"{why}. The command has no effect, zeros are sent from now on. To drive again: {remedy}"
+                "start send_cmd.py again"
+            )
+            return
+        if age > NO_MONITOR and not self._unheard_told:
+            self._unheard_told = True
+            yield Line(f"no safety_status for {NO_MONITOR:g} s: safety_monitor may hang; then the robot brakes")
+        no_speed = status.speed_limit < STANDING
+        if no_speed and not self._no_speed:
+            yield Line("the command has no effect now: clearance leaves the robot no speed")
+        self._no_speed = no_speed

@@ -1,0 +1,17 @@
+#pragma once
+/// One line of a node's log.
+
+#include <string>
+#include <vector>
+
+namespace robot_control {
+
+struct ReportLine {
+  bool warning = false;
+  std::string text;
+};
+
+/// Writes them to the log of ROS, at WARN or INFO.
+void tell(const std::vector<ReportLine>& lines);
+
+}  // namespace robot_control

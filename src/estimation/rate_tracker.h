@@ -1,0 +1,70 @@
+#pragma once
+/// The angular velocity that is published: of the gyro's samples, with less of their noise.
+///
+/// A second-order tracking loop (fading-memory α-β filter; E. Brookner, Tracking and Kalman Filtering Made Easy, 1998,
+/// section 1.2), each axis by itself:
+///
+///   predict  ω ← ω + a·dt,  e = measured − ω          β = exp(−2π · bandwidth · dt)
+///   correct  ω ← ω + (1 − β²)·e,  a ← a + (1 − β)²·e/dt
+///
+/// Two equal poles; no steady error at constant angular acceleration, at constant jerk j the lag is j/(2π·bandwidth)²:
+/// at 20 Hz and 40 rad/s³ 2.5 mrad/s. Beyond the rate of the samples it passes on what it gets.
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+
+namespace robot_control {
+
+class RateTracker {
+ public:
+  /// Hz, s; both > 0.
+  RateTracker(double bandwidth, double period) noexcept
+      : bandwidth_(bandwidth), period_(period), period_beta_(beta(period)) {}
+
+  /// rad/s
+  void reset(const Eigen::Vector3d& rate) noexcept {
+    rate_ = rate;
+    acceleration_.setZero();
+  }
+
+  /// `measured` rad/s, `dt` > 0 s after the last one.
+  void step(const Eigen::Vector3d& measured, double dt) noexcept {
+    const double b = dt == period_ ? period_beta_ : beta(dt);
+    rate_ += dt * acceleration_;
+    const Eigen::Vector3d error = measured - rate_;
+    rate_ += (1 - b * b) * error;
+    acceleration_ += (1 - b) * (1 - b) / dt * error;
+  }
+
+  const Eigen::Vector3d& rate() const noexcept { return rate_; }  ///< rad/s
+
+  /// Variance of `rate` over that of the samples of a white gyro, of which each `measured` is the mean of two
+  /// neighbours: Σ(cᵢ + cᵢ₋₁)²/4 over the loop's impulse response c. Between 0 and 1/2. Allocates nothing; some 10³
+  /// steps.
+  double noise_gain() const noexcept;
+
+ private:
+  double beta(double dt) const noexcept { return std::exp(-2 * std::numbers::pi * bandwidth_ * dt); }
+
+  double bandwidth_;
+  double period_;
+  double period_beta_;
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d acceleration_ = Eigen::Vector3d::Zero();  ///< rad/s²
+};
+
+inline double RateTracker::noise_gain() const noexcept {
+  constexpr double kFaded = 1e-9;
+  RateTracker loop(bandwidth_, period_);
+  double sum = 0;
+  double last = 0;
+  for (double left = 1; left > kFaded; left *= period_beta_) {
+    loop.step(left == 1 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::Zero().eval(), period_);
+    sum += (loop.rate_.x() + last) * (loop.rate_.x() + last) / 4;
+    last = loop.rate_.x();
+  }
+  return sum + last * last / 4;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,79 @@
+#include "files/input_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace robot_control {
+namespace {
+
+std::string problem_of(const struct stat& status, std::size_t most) {
+  const std::string only = "; only a regular file is read";
+  switch (status.st_mode & S_IFMT) {
+    case S_IFREG:
+      break;
+    case S_IFDIR:
+      return "is a folder" + only;
+    case S_IFIFO:
+      return "is a FIFO" + only;
+    case S_IFSOCK:
+      return "is a socket" + only;
+    default:
+      return "is a device" + only;
+  }
+  if (static_cast<std::size_t>(status.st_size) <= most) return "";
+  return "has " + std::to_string(status.st_size) + " bytes, at most " + std::to_string(most) + " are read";
+}
+
+class InputDescriptor {
+ public:
+  explicit InputDescriptor(const std::string& path)
+      : number_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {}
+  ~InputDescriptor() {
+    if (number_ >= 0) close(number_);
+  }
+  InputDescriptor(const InputDescriptor&) = delete;
+  InputDescriptor& operator=(const InputDescriptor&) = delete;
+
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+}  // namespace
+
+std::string input_file_problem(const std::string& path, std::size_t most) {
+  struct stat status {};
+  if (path.find('\0') != std::string::npos) return "has a NUL character in its name";
+  return stat(path.c_str(), &status) == 0 ? problem_of(status, most) : std::strerror(errno);
+}
+
+InputFile read_input_file(const std::string& path, std::size_t most) {
+  InputFile result;
+  const auto refused = [&](const std::string& problem) { return InputFile{.text = "", .problem = problem}; };
+  if (const std::string problem = input_file_problem(path, most); !problem.empty()) return refused(problem);
+  const InputDescriptor file(path);
+  struct stat status {};
+  if (file.number() < 0 || fstat(file.number(), &status) != 0) return refused(std::strerror(errno));
+  if (const std::string problem = problem_of(status, most); !problem.empty()) return refused(problem);
+  constexpr std::size_t kPiece = std::size_t{1} << 16U;
+  result.text.reserve(static_cast<std::size_t>(status.st_size));
+  for (;;) {  // files of /proc have no size, others may grow
+    const std::size_t before = result.text.size();
+    result.text.resize(before + std::min(kPiece, most + 1 - before));
+    const ssize_t count = read(file.number(), result.text.data() + before, result.text.size() - before);
+    const int error = errno;
+    result.text.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (count < 0 && error == EINTR) continue;
+    if (count < 0) return refused(std::strerror(error));
+    if (count == 0) return result;
+    if (result.text.size() > most) return refused("has more than " + std::to_string(most) + " bytes");
+  }
+}
+
+}  // namespace robot_control

@@ -1,0 +1,120 @@
+#include "files/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace robot_control {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t kNewFile = 0644;  // less what the umask takes away
+
+class OutputDescriptor {
+ public:
+  OutputDescriptor(std::string path, int flags)
+      : path_(std::move(path)), number_(open(path_.c_str(), flags | O_CLOEXEC | O_NOCTTY, kNewFile)) {
+    if (number_ < 0) fail();
+  }
+  ~OutputDescriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  OutputDescriptor(const OutputDescriptor&) = delete;
+  OutputDescriptor& operator=(const OutputDescriptor&) = delete;
+
+  void write_all(const std::string& text) const {
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t count = ::write(number_, text.data() + done, text.size() - done);
+      if (count < 0 && errno != EINTR) fail();
+      if (count > 0) done += static_cast<std::size_t>(count);
+    }
+  }
+
+  void sync() const {
+    // Pipes and devices have nothing to synchronise.
+    if (fsync(number_) != 0 && errno != EINVAL && errno != EROFS) fail();
+  }
+
+  void close() {
+    if (::close(std::exchange(number_, -1)) != 0) fail();
+  }
+
+  /// False: this user may not give the file away.
+  bool take_after(const struct stat& old) const {
+    struct stat own {};
+    if (fstat(number_, &own) != 0) fail();
+    const bool other = own.st_uid != old.st_uid || own.st_gid != old.st_gid;
+    if (other && fchown(number_, old.st_uid, old.st_gid) != 0) return false;
+    if (fchmod(number_, old.st_mode & 07777U) != 0) fail();
+    return true;
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw std::system_error(errno, std::generic_category(), path_); }
+
+  std::string path_;
+  int number_;
+};
+
+/// Where symbolic links lead to, be it there or not.
+fs::path behind_links(fs::path path) {
+  constexpr int kLongestChain = 40;  // of the kernel's
+  for (int links = 0; links < kLongestChain; ++links) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+    const fs::path target = fs::read_symlink(path);
+    path = target.is_absolute() ? target : path.parent_path() / target;
+  }
+  throw std::system_error(ELOOP, std::generic_category(), path.string());
+}
+
+void write_in_place(const std::string& path, const std::string& text, int flags) {
+  OutputDescriptor file(path, O_WRONLY | flags);
+  file.write_all(text);
+  file.sync();
+  file.close();
+}
+
+/// False: the old one's owner cannot be kept; nothing was changed.
+bool replace(const fs::path& path, const struct stat* old, const std::string& text) {
+  const std::string fresh = path.string() + ".new";
+  unlink(fresh.c_str());  // of a process that was killed
+  try {
+    OutputDescriptor file(fresh, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
+    if (old != nullptr && !file.take_after(*old)) {
+      unlink(fresh.c_str());
+      return false;
+    }
+    file.write_all(text);
+    file.sync();
+    file.close();
+    fs::rename(fresh, path);
+  } catch (...) {
+    unlink(fresh.c_str());
+    throw;
+  }
+  const fs::path folder = path.parent_path();
+  OutputDescriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY).sync();
+  return true;
+}
+
+}  // namespace
+
+void write_output_file(const std::string& path, const std::string& text) {
+  const fs::path target = behind_links(path);
+  struct stat old {};
+  const bool there = stat(target.c_str(), &old) == 0;
+  if (there && !S_ISREG(old.st_mode)) {
+    write_in_place(target, text, 0);
+  } else if (!replace(target, there ? &old : nullptr, text)) {
+    write_in_place(target, text, O_TRUNC);
+  }
+}
+
+}  // namespace robot_control

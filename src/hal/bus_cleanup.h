@@ -1,0 +1,20 @@
+#pragma once
+/// The shared memory of buses whose processes have all ended: some 14 MB each, which nothing else would remove.
+///
+/// The objects of a bus are removed when
+///   · they are this user's, plain and private,
+///   · this process holds the writer's lock of every one of them, so that no writer lives, and
+///   · the last permit has no latched cause. A permit that cannot be read counts as latched: its bus stays until
+///     its own next start.
+/// A node that starts on that bus at the same moment waits for those locks (bus_object.cpp) and finds the names gone,
+/// or holds one already, and the bus stays. Names of a bus that appear meanwhile are not touched.
+
+#include <string>
+#include <vector>
+
+namespace robot_control {
+
+/// Of every bus but `own`. Returns the names of the buses that were removed; fails in silence, for it is a favour.
+std::vector<std::string> remove_ended_buses(const std::string& own);
+
+}  // namespace robot_control

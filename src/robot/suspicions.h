@@ -1,0 +1,24 @@
+#pragma once
+/// What a robot hardly is, noted as suspicious:
+///
+///   lengths   wheels of kLargestWheel or more, or a shape larger than kLargestPart: millimetres
+///   masses    more than a block of steel as large as the robot, the box about all its shapes: grams
+///   base      less than kLightBase of the whole mass is in the root and what is fixed to it: an <inertial> is missing
+///   tipping   the first wheel lifts (tipping.h) at less than the robot's own limit: what the wheels' given torque
+///             limits brake it by, at most g; where none is given, kRamp
+///   mecanum   the file speaks of such wheels, and more than two drive
+
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+inline constexpr double kLargestWheel = 0.6;  ///< m, radius
+inline constexpr double kLargestPart = 20;    ///< m
+inline constexpr double kSteel = 7850;        ///< kg/m³
+inline constexpr double kLightBase = 0.15;
+inline constexpr double kRamp = 2;  ///< m/s², default of max_linear_emergency_deceleration
+
+/// Of a robot that is complete.
+void note_suspicions(RobotModel& robot);
+
+}  // namespace robot_control

@@ -1,0 +1,26 @@
+#include "rt/process_limits.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+
+namespace robot_control {
+
+void ignore_file_size_signal() noexcept {
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+std::string descriptor_problem() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kFewestDescriptors) return "";
+  const rlim_t most = limit.rlim_max;
+  if (most >= kFewestDescriptors) {
+    limit.rlim_cur = kFewestDescriptors;
+    if (setrlimit(RLIMIT_NOFILE, &limit) == 0) return "";
+  }
+  return "only " + std::to_string(most) + " files may be open at a time (RLIMIT_NOFILE), a node needs at least " +
+         std::to_string(kFewestDescriptors) +
+         "; remedy: `ulimit -n 1024` before the start, or LimitNOFILE= of its service";
+}
+
+}  // namespace robot_control

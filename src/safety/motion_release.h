@@ -1,0 +1,71 @@
+#pragma once
+/// May motion begin? Two rules that do not depend on each other; absence of evidence releases nothing.
+///
+/// A *current command frame* in cycle k is the command of cycle k−1, computed from the state of cycle k−1. Its counters
+/// of requests (control/command_watch.h) began in its first_cycle.
+///
+/// **Zero first.** A start is the first cycle of a run (the driver was started or reset), the first_cycle of an
+/// estimator or of a controller, and the first cycle of this monitor. After the latest start nothing is released until
+/// a current command frame reports
+///   zero     a zero request received after that start, or
+///   silence  no message of any sender, accepted or refused, for silence_needed cycles after that start, and no command
+///            in force that requests motion.
+/// Once released, motion stays released until the next start.
+///
+/// **Evidence for a reset.** No motion is requested in cycle k if its current command frame reports a command in force
+/// of zero velocity, and
+///   zero     nothing but zero requests since the last of them, which was received after the last gap, or
+///   silence  as above, after the last gap.
+/// A *gap* is a start, or a cycle without a current command frame, or one that the monitor did not look at: what was
+/// received and silent before it counts for nothing.
+///
+/// A zero request counts as received after cycle c if the frame's counter began at c or later, or has grown since the
+/// first current frame after c.
+
+#include <cstdint>
+#include <optional>
+
+#include "safety/monitor_input.h"
+
+namespace robot_control {
+
+class MotionRelease {
+ public:
+  /// A new run.
+  void enter_run() noexcept { *this = MotionRelease(); }
+
+  /// This monitor was started in this cycle of a run that was already going on.
+  void begin(std::uint64_t cycle) noexcept { start(cycle); }
+
+  /// `elapsed`: cycles since the last step, ≥ 1.
+  void step(const MonitorInput& input, std::uint64_t elapsed) noexcept;
+
+  /// Zero first is satisfied.
+  bool released() const noexcept { return released_; }
+
+  /// In the last step there was evidence that no motion is requested.
+  bool no_motion_requested() const noexcept { return no_motion_requested_; }
+
+ private:
+  /// Zero requests after a cycle.
+  struct Count {
+    std::uint64_t after = 0;
+    std::optional<std::uint64_t> before;  ///< of the counter; none before the first current frame
+
+    void restart(std::uint64_t cycle) noexcept { *this = {.after = cycle, .before = std::nullopt}; }
+    bool grown(const CommandFrame& command) noexcept;
+  };
+
+  void start(std::uint64_t cycle) noexcept;
+  void note_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept;
+  void judge(const CommandFrame& command) noexcept;
+
+  std::optional<std::uint64_t> state_first_;
+  std::optional<std::uint64_t> command_first_;
+  Count since_start_;
+  Count since_gap_;
+  bool released_ = false;
+  bool no_motion_requested_ = false;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,70 @@
+"""Sets of limits and gains that are taken do no harm: none makes a robot exceed its speed or shake without a cause."""
+
+import numpy as np
+import pytest
+from robot_control import ClosedLoop, ParameterError
+from robot_control.cause_bits import causes_in
+from robot_control.tuning import bench, longest_excess, shaking
+
+RUNS = 50  # of the 10⁵ of scripts/bench tuning
+COUNTS = (64, 200, 512, 1000, 4096)  # of an encoder's turn
+
+
+def test_no_set_that_is_taken_exceeds_the_speed_or_shakes_without_a_cause():
+    lines = []
+    result, fine = bench(0, RUNS, lines.append)
+    figures = {row["name"]: row["value"] for row in result["rows"]}
+    assert fine, "\n".join(lines)
+    assert figures["sets driven"] == RUNS
+    assert figures["sets refused"] > RUNS / 4, "else they are drawn too tamely to say anything"
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"feed_forward": {"wheel_damping": 2.0}},
+        {"feed_forward": {"wheel_damping": 1000.0}},
+        {"feed_forward": {"wheel_friction": 9.0}, "pid_kp": 0.05},
+        {"feed_forward": {"wheel_inertia": 0.03}, "pid_kp": 20.0},
+        {"feed_forward": {"mass": 59.0, "wheel_inertia": 0.149, "yaw_inertia": 3.5}},
+        {"pid_kp": 0.05},
+    ],
+)
+def test_a_set_that_would_break_a_limit_is_refused(values):
+    with pytest.raises(ParameterError, match="nothing is changed"):
+        ClosedLoop().set_parameters(values)
+
+
+# 4096 counts behind a loop of 300 Hz: 1.8 N m RMS of the 3.5 that the motor has.
+def test_a_set_that_makes_the_wheels_shake_is_warned_of_and_stopped():
+    loop = ClosedLoop()
+    loop.set_parameters({"tracking_bandwidth": 300})
+    log = loop.run(3.0, (1.0, 0.0))
+    assert causes_in(log["permit_causes"]) == ["torque_oscillation"]
+    warned, stopped = (int(np.argmax(log[name] > 0)) for name in ("permit_warnings", "permit_causes"))
+    assert 0 < warned < stopped < 2.5 / loop.period
+    assert np.abs(log["truth_linear"]).max() < 1.05
+
+
+@pytest.mark.parametrize("counts", COUNTS)
+def test_derived_gains_shake_nothing_behind_any_encoder(counts):
+    loop = ClosedLoop(params={"mujoco_plant": {"encoder_resolution": counts}})
+    for command in ((0.5, 0.2), (0.05, 0.0), (1.0, 0.0), (0.0, 2.0), (0.0, 0.0)):
+        log = loop.run(2.0, command)
+        assert causes_in(log["permit_causes"]) == []
+        assert causes_in(log["permit_warnings"]) == []
+
+
+def test_an_excess_is_one_that_lasts():
+    speed = np.ones(1000)
+    speed[100:149] = 1.2
+    assert longest_excess(speed, 1.05, 0.05, 50) < 0
+    speed[149] = 1.2
+    assert longest_excess(speed, 1.05, 0.05, 50) == pytest.approx(0.15)
+    assert longest_excess(-speed, 1.05, 0.05, 50) > 0, "and one that goes back"
+
+
+def test_a_torque_that_alternates_shakes_and_a_ramp_does_not():
+    time = np.arange(500) / 1000
+    assert shaking(np.sign(np.sin(2 * np.pi * 62 * time)), 200) == pytest.approx(1, abs=0.1)
+    assert shaking(3 * time, 200) < 0.01

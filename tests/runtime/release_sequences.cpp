@@ -1,0 +1,259 @@
+#include "runtime/release_sequences.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <random>
+#include <utility>
+
+#include "bridge/command_input.h"
+#include "cycle_fixture.h"
+
+namespace robot_control {
+namespace {
+
+enum Node : std::size_t { kDriverNode, kEstimatorNode, kControllerNode, kMonitorNode, kNodes };
+enum class Message { kNone, kZero, kMotion, kNotFinite, kStale };
+
+constexpr double kTimeout = 0.05;  // s
+constexpr std::int64_t kTimeoutTicks = 50;
+constexpr std::int64_t kJudgesMargin = 6;  // ticks, of the judge's T
+constexpr std::int64_t kInTransit = 3;     // driver cycles from a message to the command frame that the monitor reads
+constexpr std::int64_t kBrakesWithin = kPermitLife + 2;  // driver cycles for which the last permit lives at the gate
+constexpr std::int64_t kNever = -1'000'000;
+
+struct Sender {
+  std::string name;
+  Message message = Message::kNone;
+  std::int64_t period = 10;           // ticks
+  std::int64_t sent = kNever;         // tick of the last message
+  Message received = Message::kNone;  // the last one that this controller's inbox took
+  std::int64_t received_at = kNever;
+  std::int64_t received_cycle = kNever;  // of all driver cycles
+
+  bool requests_motion(std::int64_t now) const {
+    return received != Message::kNone && received != Message::kZero &&
+           now - received_at < kTimeoutTicks - kJudgesMargin;
+  }
+};
+
+class Sequence {
+ public:
+  Sequence(std::uint64_t seed, ReleaseFigures& figures) : random_(seed), figures_(figures) {
+    parameters_.cmd_vel_timeout = kTimeout;
+    parameters_.one_sender = chance(3);
+    for (std::size_t node = 0; node < kNodes; ++node) start(static_cast<Node>(node));
+  }
+
+  std::optional<std::string> run() {
+    for (now_ = 0; now_ < kReleaseCycles; ++now_) {
+      disturb();
+      send();
+      step();
+      if (const char* violated = judge()) return "tick " + std::to_string(now_) + ": " + violated;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  bool chance(unsigned one_in) { return random_() % one_in == 0; }
+  std::int64_t below(std::int64_t end) {
+    return static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(end));
+  }
+
+  void start(Node node) {
+    ++figures_.starts;
+    take_release_back();
+    switch (node) {
+      case kDriverNode:
+        driver_ = std::make_unique<DriverCycle>(
+            machine_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
+            kPeriodNs, nullptr);
+        driver_->set_boot(random_());
+        driver_->begin_run(random_() | 1);
+        break;
+      case kEstimatorNode:
+        estimator_ = std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot_, kPeriod, sensors_.reader,
+                                                      state_.writer, nullptr);
+        break;
+      case kControllerNode:
+        controller_ = std::make_unique<ControllerCycle>(
+            parameters_, robot_, kPeriod,
+            ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
+            CommandScript(), nullptr);
+        inbox_.emplace(kTimeout, parameters_.one_sender);
+        for (Sender& sender : senders_) sender.received = Message::kNone;
+        break;
+      case kMonitorNode:
+        monitor_ = std::make_unique<MonitorCycle>(
+            SafetyParameters{}, robot_, kPeriod,
+            MonitorCycle::Channels{&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}, CommandScript(),
+            nullptr);
+        operator_input_ = {};
+        last_permit_ = {};
+        break;
+      case kNodes:
+        break;
+    }
+  }
+
+  void take_release_back() {
+    started_at_ = now_;
+    start_cycle_ = cycles_;
+    released_ = false;
+  }
+
+  void end(Node node) {
+    if (node == kDriverNode) driver_.reset();
+    if (node == kEstimatorNode) estimator_.reset();
+    if (node == kControllerNode) controller_.reset();
+    if (node == kMonitorNode) monitor_.reset();
+  }
+
+  void disturb() {
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      const Node node = static_cast<Node>(i);
+      if (dead_[i] && now_ >= away_until_[i]) {
+        dead_[i] = false;
+        start(node);
+      }
+      if (now_ < away_until_[i]) continue;
+      if (chance(700)) {
+        end(node);
+        dead_[i] = true;
+        away_until_[i] = now_ + 1 + below(chance(2) ? 4 : 80);
+      } else if (chance(700)) {
+        away_until_[i] = now_ + 1 + below(chance(2) ? 4 : 80);  // stopped, and goes on
+      }
+    }
+    if (driver_ && chance(900)) {
+      driver_->begin_run(random_() | 1);
+      take_release_back();
+    }
+    if (chance(500) && monitor_ && !away(kMonitorNode)) {
+      ++operator_input_.e_stop_services;
+      if (!stopped_) stop_cycle_ = cycles_;
+      stopped_ = true;
+    }
+    if (chance(20)) ++operator_input_.resets;
+  }
+
+  bool away(Node node) const { return dead_[node] || now_ < away_until_[node]; }
+
+  void send() {
+    for (Sender& sender : senders_) {
+      if (chance(150)) {
+        constexpr std::array kChoices{Message::kNone,   Message::kNone,      Message::kZero, Message::kZero,
+                                      Message::kMotion, Message::kNotFinite, Message::kStale};
+        sender.message = kChoices[random_() % kChoices.size()];
+        if (chance(3)) sender.message = Message::kMotion;
+        sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
+      }
+      if (sender.message == Message::kNone || now_ - sender.sent < sender.period) continue;
+      sender.sent = now_;
+      last_sent_ = now_;
+      if (!controller_) continue;  // lost
+      // A process that is stopped receives the newest message of each sender when it goes on.
+      waiting_[static_cast<std::size_t>(&sender - senders_.data())] = true;
+    }
+    if (!controller_) waiting_ = {};
+    if (away(kControllerNode)) return;
+    for (std::size_t i = 0; i < senders_.size(); ++i) {
+      if (std::exchange(waiting_[i], false)) receive(senders_[i]);
+    }
+    inbox_->look(loop_ns());
+    controller_->inbox().store(inbox_->value());
+  }
+
+  void receive(Sender& sender) {
+    ArrivedCommand arrived{.sender = sender.name, .twist = {}, .stamp_ns = 0};
+    if (sender.message == Message::kMotion) arrived.twist.linear[0] = 0.5;
+    if (sender.message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
+    if (sender.message == Message::kStale) arrived.stamp_ns = 1;
+    inbox_->hear(arrived, {.ros_ns = 1'000'000'000'000, .loop_ns = loop_ns()});
+    sender.received = sender.message;
+    sender.received_at = now_;
+    sender.received_cycle = cycles_;
+    const bool alone = std::ranges::none_of(
+        senders_, [&](const Sender& other) { return &other != &sender && other.requests_motion(now_); });
+    if (sender.message == Message::kZero && alone) released_ = true;
+  }
+
+  std::int64_t loop_ns() const { return now_ * kPeriodNs; }
+
+  void step() {
+    ticked_ = driver_ && !away(kDriverNode);
+    if (ticked_) {
+      driver_->step();
+      ++cycles_;
+    }
+    if (estimator_ && !away(kEstimatorNode)) estimator_->step();
+    if (controller_ && !away(kControllerNode)) controller_->step();
+    if (!monitor_ || away(kMonitorNode)) return;
+    monitor_->inbox().store(operator_input_);
+    if (!monitor_->step() && !ticked_) monitor_->idle();  // as its waits end, or its ordinary thread polls
+    Permit permit;
+    if (permit_.reader.newest(permit) != Lookup::kFrame || permit.head.run != monitor_->published_run()) return;
+    accepted_ = permit.resets_handled != last_permit_.resets_handled && permit.reset_refusal == 0 &&
+                last_permit_.causes != 0 && permit.causes == 0;
+    last_permit_ = permit;
+  }
+
+  const char* judge() {
+    if (now_ - std::max(started_at_, last_sent_) >= kTimeoutTicks - kJudgesMargin) released_ = true;
+    if (std::exchange(accepted_, false)) {
+      ++figures_.accepted_resets;
+      stopped_ = false;
+      for (const Sender& sender : senders_) {
+        if (sender.requests_motion(now_) && cycles_ - sender.received_cycle >= kInTransit)
+          return "a reset was accepted while a motion was requested";
+      }
+    }
+    if (!ticked_ || machine_.mode == JointMode::kBrake) return nullptr;
+    ++figures_.moving_cycles;
+    if (!released_ && cycles_ - start_cycle_ > kBrakesWithin) return "motion before a zero request";
+    if (stopped_ && cycles_ - stop_cycle_ > kBrakesWithin) return "motion after an emergency stop";
+    return nullptr;
+  }
+
+  std::mt19937_64 random_;
+  ReleaseFigures& figures_;
+  RobotModel robot_ = two_wheels();
+  DriveControllerParameters parameters_;
+  StandingMachine machine_;
+  TestChannel<SensorFrame> sensors_;
+  TestChannel<TruthFrame> truth_;
+  TestChannel<StateFrame> state_;
+  TestChannel<CommandFrame> command_;
+  TestChannel<Permit> permit_;
+  std::unique_ptr<DriverCycle> driver_;
+  std::unique_ptr<EstimatorCycle> estimator_;
+  std::unique_ptr<ControllerCycle> controller_;
+  std::unique_ptr<MonitorCycle> monitor_;
+  std::optional<CommandInput> inbox_;
+  OperatorInput operator_input_;
+  std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
+  std::array<bool, 2> waiting_{};
+  std::array<bool, kNodes> dead_{};
+  std::array<std::int64_t, kNodes> away_until_{};
+  std::int64_t now_ = 0;
+  std::int64_t started_at_ = 0;
+  std::int64_t last_sent_ = kNever;
+  bool ticked_ = false;
+  bool released_ = false;    ///< something released motion since the last start
+  bool stopped_ = false;     ///< an emergency stop was requested since the last accepted reset
+  bool accepted_ = false;    ///< a reset, in this tick
+  Permit last_permit_;       ///< of this monitor
+  std::int64_t cycles_ = 0;  ///< that the driver has ticked, in all runs
+  std::int64_t start_cycle_ = 0;
+  std::int64_t stop_cycle_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures) {
+  return Sequence(seed, figures).run();
+}
+
+}  // namespace robot_control

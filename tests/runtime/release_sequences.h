@@ -1,0 +1,31 @@
+#pragma once
+/// Does anything move that nothing released? One random sequence per seed of deaths, restarts, stalls and resets of the
+/// four nodes, of two senders of commands, emergency stops and resets, in virtual time: a restart builds the node's
+/// classes again on the channels that the last ones left, with an empty inbox.
+///
+/// The judge knows only what was sent and what was started. With T = cmd_vel_timeout in cycles:
+///   motion      the machine is commanded anything but the brake only if, since the last start of a node (or reset of
+///               the run), a zero velocity was sent while no other sender requested motion, or nothing was sent for T
+///   stop        … and only if no emergency stop was requested since the last accepted reset
+///   reset       is accepted only if no sender's newest message of the last T, to this controller, requested motion
+///               or was refused
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace robot_control {
+
+inline constexpr int kReleaseCycles = 2000;
+
+/// What a sequence was about; a judge that never saw motion proves nothing.
+struct ReleaseFigures {
+  std::uint64_t moving_cycles = 0;
+  std::uint64_t accepted_resets = 0;
+  std::uint64_t starts = 0;
+};
+
+/// Which rule `seed` violates, and in which cycle; none: nothing. Adds to `figures`.
+std::optional<std::string> release_violation(std::uint64_t seed, ReleaseFigures& figures);
+
+}  // namespace robot_control

@@ -1,0 +1,42 @@
+"""What crosses a ROS interface is ASCII: rosservice and rostopic print anything else as escapes."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+BRIDGE = sorted((ROOT / "src/bridge").glob("*.cpp"))
+KNOWN = set(re.findall(r'\{"([^"\x00-\x7f]+)",', (ROOT / "src/bridge/ascii.cpp").read_text()))
+
+
+@pytest.mark.parametrize("path", [*(ROOT / "msg").iterdir(), *(ROOT / "srv").iterdir()], ids=lambda path: path.name)
+def test_definitions_of_messages_and_services_are_ascii(path):
+    assert path.read_text().isascii()
+
+
+def literals(path):
+    """The string literals of a source, without what stands in comments."""
+    code = re.sub(r"//[^\n]*", lambda match: "" if match[0].count('"') % 2 == 0 else match[0], path.read_text())
+    return re.findall(r'"(?:[^"\\\n]|\\.)*"', code)
+
+
+def test_every_sign_in_a_message_of_any_layer_has_a_spelling_in_ascii():
+    unknown = {}
+    for path in sorted((ROOT / "src").rglob("*.[hc]*")):
+        for sign in {sign for text in literals(path) for sign in text if not sign.isascii()} - KNOWN:
+            unknown[f"{path.relative_to(ROOT)}: {sign}"] = f"add it to src/bridge/ascii.cpp: U+{ord(sign):04X}"
+    assert not unknown
+
+
+@pytest.mark.parametrize("path", BRIDGE, ids=lambda path: path.name)
+def test_every_answer_of_a_service_goes_through_ascii_or_is_a_literal(path):
+    code = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', path.read_text())
+    for built in re.findall(r"\bresponse\.message \+?=\s*([^;]+);", code):
+        assert "ascii(" in built or not re.search(r"\w", built), built
+
+
+def test_literals_are_found_where_they_are(tmp_path):
+    source = tmp_path / "a.cpp"
+    source.write_text('f("N·m");  // "°"\n/// …\ng("http://x", "\\"²\\"");\n')
+    assert literals(source) == ['"N·m"', '"http://x"', '"\\"²\\""']

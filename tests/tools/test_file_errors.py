@@ -1,0 +1,58 @@
+"""A file that is not there, and a package that is not built, in words."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from robot_control.file_errors import in_words
+
+SCRIPTS = Path(__file__).parents[2] / "scripts"
+
+
+def error_of(path):
+    with pytest.raises(OSError) as raised:
+        Path(path).read_text()
+    return raised.value
+
+
+def test_a_missing_file_is_named_without_an_error_number(tmp_path, monkeypatch):
+    path = tmp_path / "none.csv"
+    assert in_words(error_of(path)) == f"{path} cannot be opened or written: No such file or directory"
+    monkeypatch.chdir(tmp_path)
+    assert in_words(error_of("none.csv")).startswith(f"none.csv (in {tmp_path}) cannot be opened")
+    assert "Errno" not in in_words(error_of(tmp_path))
+
+
+def test_any_other_error_keeps_its_words():
+    assert in_words(ValueError("no columns")) == "no columns"
+    assert in_words(OSError("the disk is gone")) == "the disk is gone"
+    assert in_words(OSError(28, "No space left on device")) == "No space left on device"
+
+
+def imported(folder):
+    """What `from robot_control import ClosedLoop` says with `folder` alone on the path."""
+    environment = {**os.environ, "PYTHONPATH": str(folder)}
+    code = "from robot_control import ClosedLoop"
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, cwd="/", capture_output=True, text=True, check=False, timeout=60
+    )
+    assert done.returncode == 1
+    return done.stderr.splitlines()[-1]
+
+
+def test_sources_that_are_not_built_say_what_to_do():
+    message = imported(SCRIPTS)
+    assert "the compiled part of robot_control is not in" in message
+    assert "source install/setup.bash" in message
+
+
+def test_another_python_is_told_which_one_to_call(tmp_path):
+    for source in (SCRIPTS / "robot_control").glob("*.py"):
+        (tmp_path / "robot_control").mkdir(exist_ok=True)
+        (tmp_path / "robot_control" / source.name).write_text(source.read_text())
+    (tmp_path / "robot_control" / "_robot_control.cpython-300-x86_64-linux-gnu.so").touch()
+    message = imported(tmp_path)
+    assert "is not for this Python" in message
+    assert "/usr/bin/python3" in message

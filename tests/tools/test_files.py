@@ -1,0 +1,108 @@
+"""Files that a user names: what is read, what is replaced, and what of them stands in a message."""
+
+import os
+import resource
+import stat
+import subprocess
+import sys
+
+import pytest
+from robot_control.files import InputFileError, NewFiles, check_input, fit_for_message, printable, write_text
+
+
+def test_only_regular_files_up_to_a_size_are_read(tmp_path):
+    (tmp_path / "file").write_bytes(b"12345")
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "link").symlink_to("/dev/zero")
+    check_input(tmp_path / "file", 5)
+    for path, said in (
+        ("/dev/zero", "is a device"),
+        (tmp_path / "fifo", "is a FIFO"),
+        (tmp_path, "is a folder"),
+        (tmp_path / "link", "is a device"),
+    ):
+        with pytest.raises(InputFileError, match=said):
+            check_input(type(tmp_path)(path), 10**9)
+    with pytest.raises(InputFileError, match="has 5 bytes; at most 4 are read"):
+        check_input(tmp_path / "file", 4)
+
+
+def test_a_message_repeats_no_control_character_and_no_long_input():
+    assert printable("a\0b\x1b[2J·") == r"a\x00b\x1b[2J·"
+    assert printable("x" * 201) == "x" * 200 + "…"
+    assert fit_for_message(f"no {'n' * 10**6} here") == f"no {'n' * 200}… here"
+    assert len(fit_for_message('joint "' + "word " * 10**5 + '" is absent')) < 230
+    assert len(fit_for_message("word " * 10**5)) < 1800
+    assert fit_for_message("one\ntwo\0") == "one\ntwo\\x00"
+
+
+def test_a_file_is_replaced_with_its_mode_and_owner(tmp_path):
+    path = tmp_path / "file"
+    path.write_text("old")
+    path.chmod(0o640)
+    if os.geteuid() == 0:
+        os.chown(path, 12345, 23456)
+    before = path.stat()
+    write_text(path, "new")
+    after = path.stat()
+    assert path.read_text() == "new"
+    assert (after.st_mode, after.st_uid, after.st_gid) == (before.st_mode, before.st_uid, before.st_gid)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_link_stays_and_what_it_leads_to_is_written(tmp_path):
+    (tmp_path / "target").write_text("old")
+    (tmp_path / "link").symlink_to("target")
+    (tmp_path / "dangling").symlink_to("fresh")
+    write_text(tmp_path / "link", "new")
+    write_text(tmp_path / "dangling", "made")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "dangling").is_symlink()
+    assert (tmp_path / "target").read_text() == "new"
+    assert (tmp_path / "fresh").read_text() == "made"
+
+
+def test_a_fifo_is_written_to_and_stays(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    reader = os.open(tmp_path / "fifo", os.O_RDONLY | os.O_NONBLOCK)
+    write_text(tmp_path / "fifo", "text")
+    assert os.read(reader, 10) == b"text"
+    os.close(reader)
+    assert stat.S_ISFIFO((tmp_path / "fifo").stat().st_mode)
+
+
+def test_a_device_is_written_to_and_stays(tmp_path):
+    node = tmp_path / "null"
+    try:
+        os.mknod(node, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
+        node.open("wb").close()
+    except PermissionError:
+        pytest.skip("devices are not granted")
+    write_text(node, "text")
+    assert stat.S_ISCHR(node.stat().st_mode)
+
+
+def test_nothing_is_replaced_when_the_block_fails(tmp_path):
+    (tmp_path / "file").write_text("old")
+    with pytest.raises(ZeroDivisionError), NewFiles() as files:
+        files.name(tmp_path / "file").write_text("new")
+        raise ZeroDivisionError
+    assert (tmp_path / "file").read_text() == "old"
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_the_limit_on_file_sizes_is_a_full_disk(tmp_path):
+    (tmp_path / "file").write_text("old")
+    program = "import pathlib, robot_control.files as files; files.write_text(pathlib.Path('file'), 'x' * 9999)"
+    ended = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)),
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+        check=False,
+    )
+    assert "OSError: [Errno 27] File too large" in ended.stderr
+    assert (tmp_path / "file").read_text() == "old"
+    assert len(list(tmp_path.iterdir())) == 1
