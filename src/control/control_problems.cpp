@@ -21,6 +21,7 @@ namespace {
 
 struct Load {
   const char* name;
+  bool driven;  ///< the robot's own, on its wheels
   WheelLoad load;
 
   bool operator==(const Load& other) const noexcept { return load == other.load; }
@@ -36,16 +37,22 @@ Loads loads(const RobotModel& set, const RobotModel& described, std::size_t whee
     const WheelModel& of = robot->wheels[wheel];
     const double damping = robot->joints[of.joint].damping;
     const double straight = straight_inertia(*robot, of);
-    *next++ = {"lifted", {of.inertia, damping}};
-    *next++ = {"turning", {turning_inertia(*robot, of), damping}};
-    *next++ = {"driving straight", {straight, damping}};
-    *next++ = {"driving straight with its mass doubled", {2 * straight - of.inertia, damping}};
+    *next++ = {"lifted", false, {of.inertia, damping}};
+    *next++ = {"turning", true, {turning_inertia(*robot, of), damping}};
+    *next++ = {"driving straight", true, {straight, damping}};
+    *next++ = {"driving straight with its mass doubled", false, {2 * straight - of.inertia, damping}};
   }
   return loads;
 }
 
-/// Of the wheel loop: a half swing is e^(−πζ) = 0.85 of the one before. Derived gains have 0.9.
-constexpr double kLeastDamping = 0.05;
+/// Damping ratio that every mode of the wheel loop needs with a load that the robot drives; kLeastDampingOff with the
+/// wheel lifted or the mass doubled. Derived gains have 0.5 … 0.6 and 0.28 … 0.4 at 1 kHz.
+constexpr double kLeastDamping = 0.3;
+constexpr double kLeastDampingOff = 0.2;
+
+/// `tracking_bandwidth`, times the period: 2π·0.1 of the way to each new count within a cycle. Above, wheel speeds are
+/// the encoder's counts, and the loop makes torque of them.
+constexpr double kMostTracking = 0.1;
 
 /// What decides about stability.
 struct Loop {
@@ -60,16 +67,18 @@ struct Loop {
 
   double radius(const Load& of) const { return wheel_loop_spectral_radius(gains, of.load, period, bandwidth); }
 
-  /// ζ of the wheel's loop of second order, J·q̈ + (d + kp)·q̇ + ki·q = 0 about the target; infinite without ki.
-  double damping(const Load& of) const {
-    if (!(gains.ki > 0)) return std::numeric_limits<double>::infinity();
-    return (of.load.damping + gains.kp) / (2 * std::sqrt(gains.ki * of.load.inertia));
+  double damping(const Load& of) const { return wheel_loop_damping_ratio(gains, of.load, period, bandwidth); }
+
+  /// The damping ratio that `of` needs: no more than nine tenths of what `derived`, the loop of derived gains, has.
+  static double least_damping(const Loop& derived, const Load& of) {
+    return std::min(of.driven ? kLeastDamping : kLeastDampingOff, 0.9 * derived.damping(of));
   }
 
-  /// The load with the least damping; null: it is enough.
-  const Load* underdamped_load() const {
-    const auto least = std::ranges::min_element(loads, {}, [&](const Load& load) { return damping(load); });
-    return damping(*least) < kLeastDamping ? &*least : nullptr;
+  /// The first load with too little damping; null: it is enough.
+  const Load* underdamped_load(const Loop& derived) const {
+    const auto found =
+        std::ranges::find_if(loads, [&](const Load& load) { return damping(load) < least_damping(derived, load); });
+    return found == loads.end() ? nullptr : &*found;
   }
 
   /// Null: stable with every load.
@@ -79,18 +88,30 @@ struct Loop {
   }
 };
 
-/// The largest common factor < 1 on all three gains, in steps of 2^(1/4), that is stable for every load; 0: none.
-double stable_part(const Loop& loop) {
-  constexpr double kStep = 0.8408964152537145;  // 2^(−1/4)
-  constexpr int kSteps = 80;                    // down to a millionth
+constexpr double kStep = 0.8408964152537145;  // 2^(−1/4)
+constexpr int kSteps = 80;                    // down to a millionth
+
+/// The largest factor f < 1, in steps of 2^(1/4), with which f·kp, f²·ki, f·kd are stable and damped for every load;
+/// 0: none.
+double stable_part(const Loop& loop, const Loop& derived) {
   Loop scaled = loop;
   double part = 1;
   for (int i = 0; i < kSteps; ++i) {
     part *= kStep;
     scaled.gains.kp = part * loop.gains.kp;
-    scaled.gains.ki = part * loop.gains.ki;
+    scaled.gains.ki = part * part * loop.gains.ki;
     scaled.gains.kd = part * loop.gains.kd;
-    if (scaled.unstable_load() == nullptr) return part;
+    if (scaled.unstable_load() == nullptr && scaled.underdamped_load(derived) == nullptr) return part;
+  }
+  return 0;
+}
+
+/// The largest pid_ki below the loop's, in the same steps, that damps every load enough; 0: none.
+double damped_ki(const Loop& loop, const Loop& derived) {
+  Loop scaled = loop;
+  for (int i = 0; i < kSteps; ++i) {
+    scaled.gains.ki *= kStep;
+    if (scaled.underdamped_load(derived) == nullptr) return scaled.gains.ki;
   }
   return 0;
 }
@@ -102,7 +123,7 @@ bool described(const Loop& loop, const Load& load) {
   return place >= half && !(loop.loads[place] == loop.loads[place - half]);
 }
 
-std::string unstable_message(const Loop& loop, const std::string& joint, const Load& load) {
+std::string unstable_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
   const WheelLoopGains& gains = loop.gains;
   std::ostringstream text;
   text.precision(3);
@@ -111,10 +132,9 @@ std::string unstable_message(const Loop& loop, const std::string& joint, const L
        << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " ("
        << load.load.inertia << " kg·m²" << (described(loop, load) ? " by the description" : "") << "): spectral radius "
        << loop.radius(load) << ", must be < 1. ";
-  // Half of what is just stable: a gain margin of two.
-  const double part = 0.5 * stable_part(loop);
+  const double part = stable_part(loop, derived);
   if (part > 0) {
-    text << "Use at most pid_kp " << part * gains.kp << ", pid_ki " << part * gains.ki << ", pid_kd " << part * gains.kd
+    text << "Use at most pid_kp " << part * gains.kp << ", pid_ki " << part * part * gains.ki << ", pid_kd " << part * gains.kd
          << ", or leave pid_kp and pid_ki out: then they are derived from the robot.";
   } else {
     text
@@ -124,15 +144,30 @@ std::string unstable_message(const Loop& loop, const std::string& joint, const L
   return text.str();
 }
 
-std::string underdamped_message(const Loop& loop, const std::string& joint, const Load& load) {
-  const double most = std::pow((load.load.damping + loop.gains.kp) / (2 * kLeastDamping), 2) / load.load.inertia;
+std::string underdamped_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller: pid_kp " << loop.gains.kp << ", pid_ki " << loop.gains.ki << ": the loop of joint '"
-       << joint << "' swings with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
+  text << "diff_drive_controller: pid_kp " << loop.gains.kp << ", pid_ki " << loop.gains.ki << ", pid_kd "
+       << loop.gains.kd << ", tracking_bandwidth " << loop.bandwidth << " Hz: the loop of joint '" << joint
+       << "' oscillates with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
        << (described(loop, load) ? " by the description" : "") << "): damping ratio " << loop.damping(load)
-       << ", must be at least " << kLeastDamping << ". Use at most pid_ki " << most
-       << ", or leave pid_kp and pid_ki out: then they are derived from the robot.";
+       << ", must be at least " << Loop::least_damping(derived, load)
+       << ". ";
+  if (const double most = damped_ki(loop, derived); most > 0) {
+    text << "Use at most pid_ki " << most;
+  } else {
+    text << "Lower pid_kp and pid_kd, or bring tracking_bandwidth nearer to " << derived.bandwidth << " Hz";
+  }
+  text << "; or leave them out: then they are derived from the robot.";
+  return text.str();
+}
+
+std::string tracking_message(double bandwidth, double most, double period) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "diff_drive_controller.tracking_bandwidth = " << bandwidth << " Hz: must be at most " << most << " Hz, "
+       << kMostTracking << " of the rate of " << std::lround(1 / period)
+       << " Hz: above, wheel speeds follow the encoder's counts. Leave it out: then it is derived from the rate.";
   return text.str();
 }
 
@@ -271,17 +306,21 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
   check_believable(parameters, believed, problems);
   std::vector<Loop> judged;
   const double bandwidth = tracking_bandwidth(parameters, period);
+  const double most = std::max(kMostTracking / period, tracking_bandwidth({}, period));
+  if (bandwidth > most) problems.push_back(tracking_message(bandwidth, most, period));
   for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
     const WheelModel& wheel = robot.wheels[i];
     const JointModel& joint = robot.joints[wheel.joint];
     if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, robot));
     const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, believed, i)};
+    const Loop derived{wheel_loop_gains({}, believed, believed.wheels[i], period), tracking_bandwidth({}, period), period,
+                       loop.loads};
     if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
     judged.push_back(loop);
     if (const Load* load = loop.unstable_load()) {
-      problems.push_back(unstable_message(loop, joint.name, *load));
-    } else if (const Load* swinging = loop.underdamped_load()) {
-      problems.push_back(underdamped_message(loop, joint.name, *swinging));
+      problems.push_back(unstable_message(loop, derived, joint.name, *load));
+    } else if (const Load* swinging = loop.underdamped_load(derived)) {
+      problems.push_back(underdamped_message(loop, derived, joint.name, *swinging));
     }
   }
   if (problems.empty() && !robot.wheels.empty() && !only_limits(parameters)) {

@@ -8,6 +8,7 @@
 #include "control/drive_controller.h"
 #include "control/drive_limits.h"
 #include "control/kinematics.h"
+#include "robot/gravity.h"
 
 namespace robot_control {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr double kRehearsedFriction = 0.1;  // rad/s, ε of feed_forward.h
 constexpr double kSteady = 0.5;             // s after a ramp
 constexpr double kLongestRamp = 10.0;       // s
-constexpr double kPush = 0.02;              // of the torque limit: what gears and tyres make of it
+constexpr double kPush = 0.01;              // of the weight: rolling resistance of a hard wheel, a caster that swivels
 constexpr double kStretch = 5;              // the longest that a ramp is stretched where torque is short
 
 /// The robot of the header.
@@ -38,23 +39,22 @@ class RigidRobot {
 
   const PlanarTwist& twist() const noexcept { return twist_; }
 
-  /// Over one period with the torques of `command`, and `push` of each wheel's torque limit beside it, forwards.
-  void step(const CommandFrame& command, const SidePair& push, double dt) noexcept {
+  /// Over one period with the torques of `command`, and the force `push`, N, forwards at the right wheels.
+  void step(const CommandFrame& command, double push, double dt) noexcept {
     if (command.joints[0].mode == JointMode::kBrake) {
       twist_ = {};
       effort_ = {};
       return;
     }
     const WheelValues speed = kinematics_.joint_speeds(twist_);
-    SidePair torque;
+    SidePair torque{0, push * radius_ / beside_};
     double damping = 0;  // N·m·s/rad, of all joints alike
     for (std::size_t i = 0; i < robot_.wheels.size(); ++i) {
       const WheelModel& wheel = robot_.wheels[i];
       const JointModel& joint = robot_.joints[wheel.joint];
       effort_[i] = std::clamp(command.joints[i].effort, -joint.effort_limit, joint.effort_limit);
       const bool left = wheel.side == Side::kLeft;
-      const double pushed = (left ? push.left : push.right) * joint.effort_limit;
-      (left ? torque.left : torque.right) += (wheel.sign * effort_[i] + pushed) / beside_;
+      (left ? torque.left : torque.right) += wheel.sign * effort_[i] / beside_;
       const double turning = std::max(std::abs(speed[i]), 1e-9);
       damping += joint.damping + joint.friction * std::tanh(turning / kRehearsedFriction) / turning;
     }
@@ -167,8 +167,7 @@ class Rehearsal {
     ExcessWatch linear = watch(asked.linear, 1);
     ExcessWatch angular = watch(asked.angular, rim);
     const auto push_cycles = static_cast<std::uint64_t>(kSteady / period_);
-    const double along = pushed ? kPush : 0;
-    const SidePair push = asked.linear != 0 ? SidePair{along, along} : SidePair{-along, along};
+    const double push = pushed ? kPush * kGravity * plant_.mass : 0;
     for (std::uint64_t cycle = 0; cycle < 2 * half; ++cycle) {
       const bool stopping = cycle >= half;
       sensors.head.cycle = permit.head.cycle = cycle;
@@ -179,7 +178,7 @@ class Rehearsal {
       ++request.count;  // in every cycle, so that none times out
       controller_.step({.sensors = &sensors, .permit = &permit, .request = request}, command);
       const bool steady = cycle + push_cycles >= half && !stopping;
-      robot.step(last, steady ? push : SidePair{}, period_);
+      robot.step(last, steady ? push : 0, period_);
       sensors.gate.verdict = last.joints[0].mode == JointMode::kBrake ? GateVerdict::kBrake : GateVerdict::kPassed;
       last = command;
       const double too_fast = linear.step(robot.twist().linear);

@@ -10,9 +10,9 @@
 ///   (τ'_right − τ'_left)/2 = (r·I/(h·b) + J·b_eff/2r)·ω̇ + r·m·x_c·v·ω/(h·b)
 ///
 /// Motions: straight at full speed and at kSlowPart of it, turning on the spot likewise, and both axes at half speed;
-/// each from rest until it is steady, then back to rest. Steady at full speed, 2 % of their torque limit push the
-/// wheels on for half a second: what gears, tyres and a change of gains leave to the loops, which must be strong enough
-/// for it. What is looked for is by how much a speed lies beyond both ends of its ramp for kExcessTime without a break,
+/// each from rest until it is steady, then back to rest. Steady at full speed, 1 % of the weight pushes the right side's
+/// wheels on for half a second: rolling resistance or a caster that swivels, which the loops must be strong
+/// enough for. What is looked for is by how much a speed lies beyond both ends of its ramp for kExcessTime without a break,
 /// in tolerances of
 ///
 ///   max(kExcessPart·|speed|, kLeastExcess)      speed: of the motion along that axis; where it is 0,
@@ -26,7 +26,7 @@
 
 namespace robot_control {
 
-inline constexpr double kExcessPart = 0.04;
+inline constexpr double kExcessPart = 0.03;
 inline constexpr double kExcessTime = 0.03;  ///< s
 
 /// m/s of a rim. Friction that the description does not know, fed forward, is too much on the described robot: 2 % of a

@@ -1,7 +1,9 @@
 #include "control/wheel_loop_stability.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace robot_control {
@@ -57,15 +59,31 @@ Eigen::MatrixXd transition(const WheelLoopGains& gains, const WheelLoad& load, d
   return a;
 }
 
-}  // namespace
-
-double wheel_loop_spectral_radius(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth,
-                                  unsigned delay) {
+/// λ of all modes.
+Eigen::VectorXcd eigenvalues(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth,
+                             unsigned delay) {
   const Eigen::MatrixXd a = transition(gains, load, period, bandwidth, delay);
   // Without ki the integral is a constant beside the loop, not a mode of it.
   const Eigen::Index states = gains.ki > 0 ? a.rows() : a.rows() - 1;
   const Eigen::MatrixXd loop = a.topLeftCorner(states, states);
-  return Eigen::EigenSolver<Eigen::MatrixXd>(loop, false).eigenvalues().cwiseAbs().maxCoeff();
+  return Eigen::EigenSolver<Eigen::MatrixXd>(loop, false).eigenvalues();
+}
+
+}  // namespace
+
+double wheel_loop_spectral_radius(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth,
+                                  unsigned delay) {
+  return eigenvalues(gains, load, period, bandwidth, delay).cwiseAbs().maxCoeff();
+}
+
+double wheel_loop_damping_ratio(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth) {
+  double least = 1;
+  for (const std::complex<double>& mode : eigenvalues(gains, load, period, bandwidth, 0)) {
+    if (mode == 0.0) continue;  // ends within one cycle
+    const std::complex<double> exponent = std::log(mode);
+    if (exponent != 0.0) least = std::min(least, -exponent.real() / std::abs(exponent));
+  }
+  return least;
 }
 
 double stability_number(const WheelLoopGains& gains, double period) noexcept {
