@@ -22,11 +22,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
 from robot_control._robot_control import ParameterError
 from robot_control.cause_bits import causes_in
 from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.robots import DIFFBOT, robot_names, urdf_of
+
+from lab.robot_corpus import DIFFBOT, robot_names, urdf_of
 
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
 ALL_RUNS = 100_000

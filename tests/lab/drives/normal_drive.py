@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-
 from robot_control.closed_loop import ClosedLoop, Log
 
 STEP = 0.1  # s, between two commands

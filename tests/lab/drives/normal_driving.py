@@ -1,7 +1,7 @@
 """Hours of normal driving, over all scenes, robots and rates: the safety monitor has nothing to say, but that wheels
 slip where they do: on ice, and of robots that turn astride a bump; and that who got stuck there is stalled.
 
-python3 -m robot_control.driving --share 0.1     # a tenth of the two hours
+python3 -m lab.drives.normal_driving --share 0.1     # a tenth of the two hours
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-
 from robot_control.cause_bits import causes_in
 from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
-from robot_control.robots import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
+
+from lab.drives.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
+from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
 
 RATES = {1000: 960.0, 100: 240.0, 2000: 120.0}  # Hz → s in each scene, of the project's own robot
 SLOW = 500  # Hz; below, the loops are too weak for bumps: wheels stand before them for a second, stalled indeed

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from robot_control import drive_figures as measured
-from robot_control.drive_figures import Figure
-from robot_control.robots import DIFFBOT, robot_names
+from lab.drives import drive_figures as measured
+from lab.drives.drive_figures import Figure
+from lab.robot_corpus import DIFFBOT, robot_names
 
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal")  # 12 kg; 2 kg; 450 kg; a skid steer of 18 kg
 FULL = 1.0  # m/s, the default limit

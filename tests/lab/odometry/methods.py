@@ -22,9 +22,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_control.odometry_errors import GYRO_BIAS
-from robot_control.odometry_recording import Recording
-from robot_control.odometry_truth import Array, Track
+from lab.odometry.errors import GYRO_BIAS
+from lab.odometry.recording import Recording
+from lab.odometry.truth import Array, Track
 
 STILL = 0.1  # s
 COUNT = 2 * np.pi / 4096 * 1.01  # rad, of the plant's encoders

@@ -1,7 +1,7 @@
 """What the odometry promises, each with its measured figure: `scripts/bench odometry`.
 
-The bounds are those of the project's requirements. They hold for robots and sensors as odometry_errors.py draws them,
-in the drives of odometry_scenarios.py, judged as odometry_judge.py says; "with n seeds" where fewer can tell less.
+The bounds are those of the project's requirements. They hold for robots and sensors as errors.py draws them,
+in the drives of scenarios.py, judged as judge.py says; "with n seeds" where fewer can tell less.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_control.odometry_consistency import nees_band
-from robot_control.odometry_judge import Run
-from robot_control.odometry_ours import OURS
-from robot_control.odometry_scenarios import SCENARIOS
-from robot_control.odometry_truth import Array
+from lab.odometry.consistency import nees_band
+from lab.odometry.judge import Run
+from lab.odometry.scenarios import SCENARIOS
+from lab.odometry.tested_estimator import OURS
+from lab.odometry.truth import Array
 
 SIMPLE, RAW, CALIBRATED = "simple part", "raw wheels", "calibrated wheels"
 WITHOUT_SLIP = "random"  # the scenario whose NEES is judged; within default limits on dry ground nothing slips

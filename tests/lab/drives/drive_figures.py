@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
 from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.robots import urdf_of
+
+from lab.robot_corpus import urdf_of
 
 Array = NDArray[np.float64]
 

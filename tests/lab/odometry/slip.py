@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from robot_control.odometry_program import Program
+from lab.odometry.program import Program
 
 KINDS = ("straight", "turns", "patches", "one side", "kerbs", "wall")
 SECONDS = 60.0

@@ -1,6 +1,6 @@
 """Thousands of random fault sequences over random drives and robots, each judged by what really happened.
 
-    python3 -m robot_control.campaign --first 17 --runs 1     # repeats one and says what happened
+    python3 -m lab.faults.campaign --first 17 --runs 1     # repeats one and says what happened
 
 A seed gives the same bits on the same build and robots, alone or among others, on however many processors.
 """
@@ -19,10 +19,11 @@ from typing import Any
 
 from robot_control.cause_bits import causes_in
 from robot_control.closed_loop import ClosedLoop
-from robot_control.fault_sequence import ALL_RUNS, ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
-from robot_control.robots import robot_names
-from robot_control.sequence_judge import RULES, judge
-from robot_control.sequence_run import make_loop, run_sequence
+
+from lab.faults.fault_sequence import ALL_RUNS, ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
+from lab.faults.sequence_judge import RULES, judge
+from lab.faults.sequence_run import make_loop, run_sequence
+from lab.robot_corpus import robot_names
 
 REPORT_EVERY = 20.0  # s
 

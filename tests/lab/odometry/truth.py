@@ -28,7 +28,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_control.odometry_recording import Recording
+from lab.odometry.recording import Recording
 
 Array = NDArray[np.float64]
 SLOWEST = 0.1  # m/s, in the slip's denominator

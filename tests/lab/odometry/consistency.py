@@ -2,7 +2,7 @@
 
 NEES    eᵀ P⁻¹ e of e = (x, y, yaw) and of e = (forward speed, yaw rate); ideal 3 and 2 (Bar-Shalom, Li &
         Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 5.4)
-slip    of odometry_truth.py: SLIPPING, a wheel above 20 %, is to be flagged; ROLLING, all of them below 5 %, is
+slip    of truth.py: SLIPPING, a wheel above 20 %, is to be flagged; ROLLING, all of them below 5 %, is
         not; what lies between is no one's
 """
 
@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_control.odometry_ours import Ours
-from robot_control.odometry_truth import Array, Truth, wrapped
+from lab.odometry.tested_estimator import Ours
+from lab.odometry.truth import Array, Truth, wrapped
 
 SLIPPING, ROLLING = 0.2, 0.05
 

@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from robot_control.odometry_judge import Run
-from robot_control.odometry_methods import METHODS
-from robot_control.odometry_ours import OURS
-from robot_control.odometry_promises import CALIBRATED, of, positions, yaws
-from robot_control.odometry_scenarios import SCENARIOS
-from robot_control.odometry_slip import KINDS
-from robot_control.odometry_truth import Array
+from lab.odometry.judge import Run
+from lab.odometry.methods import METHODS
+from lab.odometry.promises import CALIBRATED, of, positions, yaws
+from lab.odometry.scenarios import SCENARIOS
+from lab.odometry.slip import KINDS
+from lab.odometry.tested_estimator import OURS
+from lab.odometry.truth import Array
 
 NAMES = (*METHODS, OURS)
 

@@ -1,6 +1,6 @@
 """`scripts/bench odometry`: every scenario with every seed, over all processors; table, promises, plots.
 
-python3 -P -m robot_control.odometry_bench --runs 3 --only slip,waves --plots FOLDER
+python3 -P -m lab.odometry.bench --runs 3 --only slip,waves --plots FOLDER
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from robot_control.odometry_judge import Run, run
-from robot_control.odometry_promises import all_promises, of
-from robot_control.odometry_scenarios import SCENARIOS
-from robot_control.odometry_table import table
+from lab.odometry.judge import Run, run
+from lab.odometry.promises import all_promises, of
+from lab.odometry.scenarios import SCENARIOS
+from lab.odometry.table import table
 
 SEEDS = 50
 LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors have something to do to the end
@@ -123,7 +123,7 @@ def bench(
     pictured = None if plots is None else first
     runs = all_runs(range(first, first + count), scenarios, tell, pictured=pictured, cache=cache)
     if plots is not None:
-        from robot_control.odometry_plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
+        from lab.odometry.plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
 
         draw_all(runs, plots)
     broken = [promise for promise in all_promises(runs) if not promise.kept]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-
 from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.fault_sequence import BATTERY_VOLTAGE, Event, FaultSequence
-from robot_control.random_drive import leg_at
-from robot_control.robots import scene_of, stop_deceleration_of, urdf_of
+
+from lab.faults.fault_sequence import BATTERY_VOLTAGE, Event, FaultSequence
+from lab.faults.random_drive import leg_at
+from lab.robot_corpus import scene_of, stop_deceleration_of, urdf_of
 
 COLUMNS = (
     "run",

@@ -3,9 +3,9 @@
 Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
-Of the same form is what the trials give that judge, too: campaign.py, driving.py, drive_promises.py, odometry_bench.py,
-hostile.py, tuning.py, bench_limiter, bench_release; "not_judged" beside the rows names the robots left out, "table"
-are lines to be shown above them.
+The trials that judge give results of the same form: faults/campaign.py, drives/normal_driving.py,
+drives/drive_promises.py, odometry/bench.py, hostile.py, tuning.py, bench_limiter, bench_release. There, "not_judged"
+beside the rows names the robots left out, and "table" holds lines to be shown above the rows.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from robot_control.fault_sequence import ALL_RUNS
 from robot_control.files import write_text
+
+from lab.faults.fault_sequence import ALL_RUNS
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
 # Only when they are named.
@@ -45,10 +46,10 @@ def tell(text: str) -> None:
 def run_seeds(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     """Those that need nothing but their seeds."""
     if name == "campaign":
-        from robot_control import campaign
+        from lab.faults import campaign
 
         return campaign.bench(given.first, given.runs or ALL_RUNS, tell)
-    from robot_control import hostile
+    from lab import hostile
 
     return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, tell)
 
@@ -58,14 +59,14 @@ def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     if name in {"campaign", "hostile"}:
         return run_seeds(name, given)
     if name == "driving":
-        from robot_control import driving
+        from lab.drives import normal_driving as driving
 
         return driving.bench(given.share, tell)
     if name in SEED_PROGRAMS:
         result = run_program(given.programs / f"bench_{name}", str(given.first), str(given.runs or SEED_PROGRAMS[name]))
         return result, all(row["value"] == 0 for row in result["rows"] if row["name"] == "sequences failed")
     if name == "drive":
-        from robot_control import drive_promises
+        from lab.drives import drive_promises
 
         return drive_promises.bench(tell)
     if name in {"odometry", "tuning"}:
@@ -75,10 +76,10 @@ def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 
 def _run_over_robots(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     if name == "odometry":
-        from robot_control import odometry_bench
+        from lab.odometry import bench as odometry_bench
 
         return odometry_bench.bench(given.first, given.runs or odometry_bench.SEEDS, tell, plots=given.plots)
-    from robot_control import tuning
+    from lab import tuning
 
     return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, tell)
 

@@ -1,6 +1,6 @@
 """What a trial's sensors measured, beside the truth, kept in memory or as .npz: estimators are tried on it, offline.
 
-python3 -P -m robot_control.odometry_recording FOLDER slip 0 30     # seeds 0 … 29 → FOLDER/slip_0.npz …
+python3 -P -m lab.odometry.recording FOLDER slip 0 30     # seeds 0 … 29 → FOLDER/slip_0.npz …
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
 from robot_control.closed_loop import ClosedLoop
-from robot_control.odometry_errors import Errors
-from robot_control.odometry_scenarios import SCENARIOS, Trial, draw_trial
+
+from lab.odometry.errors import Errors
+from lab.odometry.scenarios import SCENARIOS, Trial, draw_trial
 
 Array = NDArray[np.float64]
 TRUTH_EVERY = 10  # cycles: 10 ms, ten times as fast as odometry is published and faster than any slip

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-
-from robot_control.odometry_recording import TRUTH_EVERY, Recording
-from robot_control.odometry_truth import Array, Track, Truth
 from robot_control.offline_estimator import FLAGS, Estimate, Estimator
+
+from lab.odometry.recording import TRUTH_EVERY, Recording
+from lab.odometry.truth import Array, Track, Truth
 
 OURS = "ours"  # its name among the methods
 PLANAR = [0, 1, 5]  # x, y, yaw of a pose; of a twist 0 and 5 are forward speed and yaw rate

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot_control.odometry_ours import Ours, true_track
-from robot_control.odometry_recording import Recording
-from robot_control.odometry_truth import Array, Track, Truth
+from lab.odometry.recording import Recording
+from lab.odometry.tested_estimator import Ours, true_track
+from lab.odometry.truth import Array, Track, Truth
 
 EVERY = 5  # truth rows
 

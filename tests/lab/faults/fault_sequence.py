@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from robot_control.random_drive import Leg, draw_drive
-from robot_control.robots import DIFFBOT, SCENES
+from lab.faults.random_drive import Leg, draw_drive
+from lab.robot_corpus import DIFFBOT, SCENES
 
 COMPONENTS = (
     "left_encoder",

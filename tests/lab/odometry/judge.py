@@ -5,7 +5,7 @@ position error   |estimated − true position| at the end of the run. UMBmark: o
                  five clockwise runs and one of the five counter-clockwise, from zero (Borenstein & Feng 1996,
                  section III: E_max,syst). The odometry is reset before each
 yaw error        |estimated − true| at the end, within half a turn. UMBmark: the largest of the ten
-NEES             of odometry_consistency.py, every SAMPLE s, where the robot moves: one at rest errs by micrometres and
+NEES             of consistency.py, every SAMPLE s, where the robot moves: one at rest errs by micrometres and
                  has no dynamics that a covariance could describe
 standstill       from SETTLED s after the robot came to rest: in the first two s of rest the yaw still learns from the
                  gyro's bias (estimator.h, kSettling), which corrects what was driven
@@ -21,14 +21,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_control.odometry_consistency import Notice, nees, notice, pose_error, twist_error
-from robot_control.odometry_drives import FIRST_STAND
-from robot_control.odometry_methods import METHODS, raw_wheels
-from robot_control.odometry_ours import OURS, estimate, resets_of, true_track
-from robot_control.odometry_picture import Picture, picture_of
-from robot_control.odometry_recording import Recording, load_recording, record
-from robot_control.odometry_scenarios import draw_trial
-from robot_control.odometry_truth import Array, Track, Truth, after_resets, moving, truth_of, wrapped
+from lab.odometry.consistency import Notice, nees, notice, pose_error, twist_error
+from lab.odometry.drives import FIRST_STAND
+from lab.odometry.methods import METHODS, raw_wheels
+from lab.odometry.picture import Picture, picture_of
+from lab.odometry.recording import Recording, load_recording, record
+from lab.odometry.scenarios import draw_trial
+from lab.odometry.tested_estimator import OURS, estimate, resets_of, true_track
+from lab.odometry.truth import Array, Track, Truth, after_resets, moving, truth_of, wrapped
 
 SAMPLE = 10.0  # s, between two looks at the NEES: errors of pose change over many seconds
 SETTLED = 3.0  # s

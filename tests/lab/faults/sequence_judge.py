@@ -27,10 +27,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from robot_control.closed_loop import Log
-from robot_control.fault_sequence import COMPONENTS, FaultSequence
-from robot_control.robots import stop_deceleration_of
+
+from lab.faults.fault_sequence import COMPONENTS, FaultSequence
+from lab.robot_corpus import stop_deceleration_of
 
 BRAKE, DRIVE, RAMP = 0, 2, 1  # GateVerdict, PermitAction
 PERMIT_LIFE = 4  # cycles

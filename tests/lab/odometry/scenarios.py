@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from robot_control import odometry_drives as drives
-from robot_control.odometry_drives import FIRST_STAND, Draft
-from robot_control.odometry_errors import Errors, draw_errors
-from robot_control.odometry_program import Array
+from lab.odometry import drives
+from lab.odometry.drives import FIRST_STAND, Draft
+from lab.odometry.errors import Errors, draw_errors
+from lab.odometry.program import Array
 
-SCENARIO_STREAM = 2  # of the random numbers: those of odometry_errors.py are others
+SCENARIO_STREAM = 2  # of the random numbers: those of errors.py are others
 
 
 @dataclass(frozen=True)

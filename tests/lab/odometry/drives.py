@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from robot_control import odometry_slip
-from robot_control.odometry_program import RAMP, Program
 from robot_control.share import share_file
+
+from lab.odometry import slip as slip_trial
+from lab.odometry.program import RAMP, Program
 
 FIRST_STAND = 3.0  # s, of every run
 SET_DOWN = 10.0  # s, before each square
@@ -153,9 +153,9 @@ def _moves(draft: Draft, seconds: float, top: float) -> None:
 
 
 def slip(draft: Draft) -> None:
-    """A minute of spinning, locked and sliding wheels between stretches of normal grip (odometry_slip.py)."""
-    kind = odometry_slip.KINDS[draft.kind % len(odometry_slip.KINDS)]
-    draft.scene = odometry_slip.slip_world(kind, draft.random)
-    draft.controller = odometry_slip.HARD_LIMITS
-    draft.safety = odometry_slip.SAFETY
-    odometry_slip.slip_drive(kind, draft.random, draft.program)
+    """A minute of spinning, locked and sliding wheels between stretches of normal grip (slip.py)."""
+    kind = slip_trial.KINDS[draft.kind % len(slip_trial.KINDS)]
+    draft.scene = slip_trial.slip_world(kind, draft.random)
+    draft.controller = slip_trial.HARD_LIMITS
+    draft.safety = slip_trial.SAFETY
+    slip_trial.slip_drive(kind, draft.random, draft.program)

@@ -11,13 +11,13 @@ import matplotlib as mpl
 mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-
-from robot_control.odometry_consistency import ROLLING, SLIPPING
-from robot_control.odometry_judge import SAMPLE, Run
-from robot_control.odometry_ours import OURS
-from robot_control.odometry_picture import Picture
-from robot_control.odometry_promises import CALIBRATED, RAW, SIMPLE, mean_nees, of
 from robot_control.picture_style import STYLE
+
+from lab.odometry.consistency import ROLLING, SLIPPING
+from lab.odometry.judge import SAMPLE, Run
+from lab.odometry.picture import Picture
+from lab.odometry.promises import CALIBRATED, RAW, SIMPLE, mean_nees, of
+from lab.odometry.tested_estimator import OURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
