@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Sourced by scripts/test: which tests a NAME means.
 
-PYTEST_FOLDERS=(tests/tools tests/loop)
+PYTEST_FOLDERS=(tests/tools tests/loop tests/behaviour tests/docs)
 
 # CTest entries that contain one of the names: test programs by their own name, rostests by that below tests/, for
 # their full name, _ctest_robot_control_rostest_tests_system_drives.test, contains the project's.

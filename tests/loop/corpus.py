@@ -1,6 +1,6 @@
 """Real robots to try: where their descriptions lie, and what is true of them.
 
-Where the folder is looked for: robot_control/robots.py. Tests that need it skip where it is absent.
+Where the folder is looked for: lab/robot_corpus.py. Tests that need it skip where it is absent.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robot_control.robots import corpus_folder, robot_names
+from lab.robot_corpus import corpus_folder, robot_names
 
 FOLDER = corpus_folder()
 ABSENT = "no folder of real robots: set ROBOT_CORPUS"

@@ -4,12 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from robot_control.campaign import campaign, run_seed
-from robot_control.fault_sequence import ALL_RUNS, COMPONENTS, FaultSequence, draw_sequence
-from robot_control.random_drive import Leg
-from robot_control.robots import robot_names
-from robot_control.sequence_judge import RULES, judge
-from robot_control.sequence_run import COLUMNS
+from lab.faults.campaign import campaign, run_seed
+from lab.faults.fault_sequence import ALL_RUNS, COMPONENTS, FaultSequence, draw_sequence
+from lab.faults.random_drive import Leg
+from lab.faults.sequence_judge import RULES, judge
+from lab.faults.sequence_run import COLUMNS
+from lab.robot_corpus import robot_names
 
 SAMPLE = range(0, ALL_RUNS, 100)  # one seed in a hundred
 

@@ -1,9 +1,10 @@
 """The drive does what its limits promise, on the simulated machine; `scripts/bench drive` shows the same figures."""
 
 import pytest
-from robot_control import ClosedLoop, drive_figures, drive_promises
-from robot_control.drive_promises import ROBOTS, curves, rest, stops, straight
-from robot_control.robots import DIFFBOT, robot_names
+from lab.drives import drive_figures, drive_promises
+from lab.drives.drive_promises import ROBOTS, curves, rest, stops, straight
+from lab.robot_corpus import DIFFBOT, robot_names
+from robot_control import ClosedLoop
 
 STOPPED = 4  # SupervisorState
 

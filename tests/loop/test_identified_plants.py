@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import yaml
 from corpus import ABSENT, FOLDER
+from lab.robot_corpus import DIFFBOT, urdf_of
 from robot_control import ClosedLoop
 from robot_control._robot_control import wheel_loops
 from robot_control.identification import identify
 from robot_control.identify import Options, Settings, evaluate, plan
-from robot_control.robots import DIFFBOT, urdf_of
 from robot_control.share import share_file
 from robot_control.tuning_proposal import base_of
 

@@ -1,8 +1,8 @@
 """Who drives normally is not stopped, and not warned."""
 
 import pytest
-from robot_control.driving import Drive, all_drives, bench, carry_out
-from robot_control.robots import DIFFBOT, SCENES
+from lab.drives.normal_driving import Drive, all_drives, bench, carry_out
+from lab.robot_corpus import DIFFBOT, SCENES
 
 SHARE = 1 / 12  # ten minutes of the two hours
 

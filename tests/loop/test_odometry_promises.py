@@ -8,12 +8,12 @@ its exit code go on saying what is missed.
 
 import numpy as np
 import pytest
-from robot_control.odometry_bench import all_runs
-from robot_control.odometry_judge import run
-from robot_control.odometry_ours import OURS
-from robot_control.odometry_promises import CALIBRATED, all_promises
-from robot_control.odometry_scenarios import SCENARIOS
-from robot_control.odometry_table import table
+from lab.odometry.bench import all_runs
+from lab.odometry.judge import run
+from lab.odometry.promises import CALIBRATED, all_promises
+from lab.odometry.scenarios import SCENARIOS
+from lab.odometry.table import table
+from lab.odometry.tested_estimator import OURS
 
 SEEDS = range(3)
 LONG = ("umbmark", "eight", "standstill", "waves")  # one robot: minutes of the same, or ground that is slow to compute

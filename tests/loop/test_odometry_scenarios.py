@@ -4,15 +4,15 @@ import dataclasses
 
 import numpy as np
 import pytest
+from lab.odometry.consistency import ROLLING, SLIPPING
+from lab.odometry.drives import FIRST_STAND, SIDE
+from lab.odometry.errors import draw_errors
+from lab.odometry.methods import calibrated_wheels, raw_wheels, standing
+from lab.odometry.recording import TRUTH_EVERY, load_recording, record
+from lab.odometry.scenarios import SCENARIOS, draw_trial
+from lab.odometry.slip import KINDS
+from lab.odometry.truth import truth_of
 from robot_control import ClosedLoop
-from robot_control.odometry_consistency import ROLLING, SLIPPING
-from robot_control.odometry_drives import FIRST_STAND, SIDE
-from robot_control.odometry_errors import draw_errors
-from robot_control.odometry_methods import calibrated_wheels, raw_wheels, standing
-from robot_control.odometry_recording import TRUTH_EVERY, load_recording, record
-from robot_control.odometry_scenarios import SCENARIOS, draw_trial
-from robot_control.odometry_slip import KINDS
-from robot_control.odometry_truth import truth_of
 
 
 def shortened(scenario, seed, cycles):

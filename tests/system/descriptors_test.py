@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import rospy
 import rostest
-from robot_control import hostile
+from lab import hostile
 from robot_control.msg import SafetyStatus
 from system_support import MONITOR, PLANT, RobotTestCase, wait_for
 

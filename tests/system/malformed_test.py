@@ -15,7 +15,7 @@ from pathlib import Path
 import rospy
 import rostest
 from geometry_msgs.msg import Twist, TwistStamped
-from robot_control import hostile
+from lab import hostile
 from robot_control.srv import SetParameters
 from roscpp.srv import GetLoggers, SetLoggerLevel
 from std_msgs.msg import Bool

@@ -1,8 +1,8 @@
 """A recording made of formulas: a robot on level ground that does exactly what it is told, without any noise."""
 
 import numpy as np
-from robot_control.odometry_errors import Errors
-from robot_control.odometry_recording import TRUTH_EVERY, Recording
+from lab.odometry.errors import Errors
+from lab.odometry.recording import TRUTH_EVERY, Recording
 
 PERIOD = 0.001  # s
 RADIUS, BASE = 0.1, 0.5  # m

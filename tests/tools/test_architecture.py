@@ -1,5 +1,6 @@
 """Which folder may know which. What this test refuses is a change of architecture, not of style."""
 
+import ast
 import re
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -147,6 +148,36 @@ def test_linked_libraries_are_included_libraries():
 def test_source_files_stay_small():
     """One concept per file; 400 lines hold one, with the header that tells its law."""
     assert [str(path.relative_to(ROOT)) for path in FILES if len(path.read_text().splitlines()) > 400] == []
+
+
+def imported_modules(path):
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+
+
+def test_nothing_that_is_installed_imports_the_laboratory():
+    """Installed are scripts/*.py and the packages below scripts/; tests/lab is for tests and scripts/bench."""
+    installed = sorted((ROOT / "scripts").rglob("*.py"))
+    assert len(installed) > 40
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in installed
+        for name in imported_modules(path)
+        if name.split(".")[0] in {"lab", "tests"}
+    ]
+    bindings = sorted((SRC / "python").rglob("*.cpp")) + sorted((SRC / "python").rglob("*.h"))
+    wrong += [f"{path.relative_to(ROOT)} names lab" for path in bindings if '"lab.' in path.read_text()]
+    assert wrong == []
+
+
+def test_the_laboratory_is_not_installed():
+    for name in ("setup.py", "cmake/ros.cmake"):
+        installs = re.findall(r"(?:package_dir|packages|install)\b[^\n]*", (ROOT / name).read_text())
+        assert installs
+        assert [line for line in installs if "tests" in line or "lab" in line] == []
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 import sys
 
 import pytest
-from robot_control import bench
+from lab import bench
 
 ROW = '{"name": "gate step", "value": 88.5, "unit": "ns", "reference": 59, "reference_name": "kernel", "ratio": 1.5}'
 

@@ -5,12 +5,11 @@ import math
 
 import numpy as np
 import pytest
-from robot_control.odometry_consistency import Notice, nees, nees_band, notice
-from robot_control.odometry_errors import Errors
-from robot_control.odometry_judge import Run, largest_mean, relative, return_errors
-from robot_control.odometry_methods import raw_wheels
-from robot_control.odometry_ours import OURS, Ours
-from robot_control.odometry_promises import (
+from lab.odometry.consistency import Notice, nees, nees_band, notice
+from lab.odometry.errors import Errors
+from lab.odometry.judge import Run, largest_mean, relative, return_errors
+from lab.odometry.methods import raw_wheels
+from lab.odometry.promises import (
     CALIBRATED,
     RAW,
     SIMPLE,
@@ -23,7 +22,8 @@ from robot_control.odometry_promises import (
     slip,
     umbmark,
 )
-from robot_control.odometry_truth import Track, after_resets, levelling, rotation, slip_ratio, truth_of
+from lab.odometry.tested_estimator import OURS, Ours
+from lab.odometry.truth import Track, after_resets, levelling, rotation, slip_ratio, truth_of
 from synthetic_odometry import RADIUS, drive
 
 STAND, LINE = (0.0, 0.0, 1.0), (0.5, 0.0, 4.0)

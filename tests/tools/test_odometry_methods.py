@@ -4,8 +4,8 @@ import dataclasses
 
 import numpy as np
 import pytest
-from robot_control.odometry_errors import GYRO_BIAS, Errors, draw_errors
-from robot_control.odometry_methods import (
+from lab.odometry.errors import GYRO_BIAS, Errors, draw_errors
+from lab.odometry.methods import (
     GYRO_NOISE,
     GYRO_WALK,
     METHODS,
@@ -17,7 +17,7 @@ from robot_control.odometry_methods import (
     simple_part,
     standing,
 )
-from robot_control.odometry_truth import truth_of
+from lab.odometry.truth import truth_of
 from synthetic_odometry import PERIOD, drive
 
 STAND, ARC, LINE = (0.0, 0.0, 3.0), (0.5, 0.4, 10.0), (0.4, 0.0, 10.0)

@@ -23,7 +23,7 @@ def selected(*names):
     return [entry for entry in ENTRIES if re.search(done.stdout.strip(), entry)]
 
 
-@pytest.mark.parametrize("script", ["demo", "test", "setup", "lint", "bench"])
+@pytest.mark.parametrize("script", ["demo", "test", "setup", "lint", "bench", "behaviour"])
 def test_help_says_how_to_call_it_and_does_nothing(script):
     done = shell(str(SCRIPTS / script), "--help")
     assert done.returncode == 0
@@ -31,7 +31,7 @@ def test_help_says_how_to_call_it_and_does_nothing(script):
     assert "building" not in done.stdout
 
 
-@pytest.mark.parametrize("script", ["demo", "test", "lint", "bench"])
+@pytest.mark.parametrize("script", ["demo", "test", "lint", "bench", "behaviour"])
 def test_help_needs_nothing_that_is_not_installed_yet(script, tmp_path):
     """From another folder, by a relative path, with other arguments before it: scripts/setup is not called."""
     copied = tmp_path / "scripts"
@@ -80,7 +80,7 @@ def test_a_catkin_workspace_refuses_a_checkout_with_a_build_of_its_own(own_build
     assert f"rm -r {checkout}/build" in " ".join(done.stderr.split())
 
 
-@pytest.mark.parametrize("script", ["test", "setup", "lint"])
+@pytest.mark.parametrize("script", ["test", "setup", "lint", "behaviour"])
 def test_an_unknown_argument_is_refused_with_the_usage(script):
     done = shell(str(SCRIPTS / script), "--warp")
     assert done.returncode == 1

@@ -1,0 +1,151 @@
+"""Every name that a user of robot_control may have written into a program, a file or a command line of theirs.
+
+    /usr/bin/python3 tests/behaviour/public_names.py > tests/behaviour/public_names.json
+
+renews the list after `source install/setup.bash`. A name of the list stays. Where one is wrong, a better one is added
+and the old one goes on working with a warning.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import robot_control
+import yaml  # type: ignore[import-untyped]
+from robot_control import ClosedLoop
+
+ROOT = Path(__file__).parents[2]
+ALIASES = (
+    "robot.left_wheel_joint",
+    "robot.right_wheel_joint",
+    "robot.wheel_separation",
+    "robot.wheel_separation_multiplier",
+)
+"""Keys that the parameter file mentions in its comments alone."""
+
+Names = dict[str, list[str]]
+
+
+def _sources(folder: str) -> str:
+    return "\n".join(path.read_text() for path in sorted((ROOT / folder).rglob("*")) if path.suffix in (".h", ".cpp"))
+
+
+def topics() -> Iterator[str]:
+    """Name and type; `~`: below the node's name."""
+    bridge = _sources("src/bridge")
+    for owner, message, name in re.findall(r'(\w+)\.advertise<msg::(\w+)>\("([^"]+)"', bridge):
+        yield f"{'~' if owner == 'own' else ''}{name} {message}"
+    for message, name in re.findall(r'InputTopic<Bounded(\w+)> \w+\{"([^"]+)"', bridge):
+        yield f"{name} {message}"
+
+
+def services() -> Iterator[str]:
+    """`~`: below the node's name."""
+    for owner, name in re.findall(r'(\w+)\.advertiseService\("([^"]+)"', _sources("src/bridge")):
+        yield f"{'~' if owner == 'own' else ''}{name}"
+
+
+def message_fields() -> Iterator[str]:
+    """Fields and constants of the messages and services, in the order of the wire."""
+    for path in sorted([*ROOT.glob("msg/*.msg"), *ROOT.glob("srv/*.srv")]):
+        for line in path.read_text().splitlines():
+            text = " ".join(line.split("#")[0].split())
+            if text:
+                yield f"{path.stem}: {text}"
+
+
+def parameters() -> Iterator[str]:
+    """Keys of the parameter file, those in its comments included."""
+    text = (ROOT / "config/robot_params.yaml").read_text()
+    yield from sorted({*_keys(yaml.safe_load(text)), *_keys(yaml.safe_load(_offered(text))), *ALIASES})
+
+
+def _offered(text: str) -> str:
+    """The file with its commented-out keys in force: `  # key: value`, or `  # key:` with `  #   key: value` below."""
+    lines, inside = [], False
+    for line in text.splitlines():
+        key = re.match(r"  # ([a-z_]+:)(?:\s*#|( \S))", line)
+        inside = bool(key and not key[2]) or (inside and re.match(r"  #   [a-z_]+: ", line) is not None)
+        lines.append("  " + line[4:] if key or inside else line)
+    return "\n".join(lines)
+
+
+def _keys(tree: dict[str, Any], prefix: str = "") -> Iterator[str]:
+    for name, value in tree.items():
+        if isinstance(value, dict):
+            yield from _keys(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}"
+
+
+def columns() -> list[str]:
+    """Of run.csv: those of every log, then those of a log in real time."""
+    timing = re.findall(r'"(\w+_(?:ns|us))"', _sources("src/telemetry"))
+    return [*ClosedLoop().units, *sorted(set(timing))]
+
+
+def words() -> Iterator[str]:
+    """Names of causes, reasons, states, verdicts, components and faults, by the table or the enum of which they are."""
+    signals = _sources("src/signals")
+    for table, body in re.findall(r"k(\w+Names) = std::to_array<BitName>\(\{(.*?)\n\}\);", signals, re.DOTALL):
+        yield from (f"{table}: {name}" for name in re.findall(r'\{k\w+, "(\w+)"', body))
+    arrays = re.findall(r"std::string_view, \w+> k(\w+Names)\{(.*?)\}", signals, re.DOTALL)
+    arrays += re.findall(r"name_of\((\w+) \w+\) noexcept \{\s*constexpr [^{]*kNames\{(.*?)\}", signals, re.DOTALL)
+    for table, body in arrays:
+        yield from (f"{table}: {name}" for name in re.findall(r'"(\w+)"', body))
+
+
+def launch_arguments() -> Iterator[str]:
+    """Those that a user may give, with their defaults where these are plain."""
+    for path in sorted(ROOT.glob("launch/*.launch")):
+        for argument in ET.parse(path).getroot().findall("arg"):
+            if "value" not in argument.attrib:
+                default = argument.get("default", "")
+                yield f"{path.stem}: {argument.get('name')}:={'…' if '$(' in default else default}"
+
+
+def programs() -> Iterator[str]:
+    """What stands in scripts/, and the nodes."""
+    for path in ROOT.glob("scripts/*"):
+        if path.is_file() and path.stat().st_mode & 0o111:
+            yield f"scripts/{path.name}"
+    for path in ROOT.glob("src/nodes/*.cpp"):
+        yield f"node {path.stem}"
+
+
+def python() -> Iterator[str]:
+    """The importable names, with signatures."""
+    for name in sorted(robot_control.__all__):
+        thing = getattr(robot_control, name)
+        yield name if issubclass(thing, Exception) else f"{name}{inspect.signature(thing)}"
+        for member, value in sorted(vars(thing).items()):
+            if member.startswith("_") or issubclass(thing, Exception):
+                continue
+            yield f"{name}.{member}{inspect.signature(value) if inspect.isfunction(value) else ''}"
+
+
+def public_names() -> Names:
+    """All of them, by kind."""
+    return {
+        "topics": sorted(set(topics())),
+        "services": sorted(set(services())),
+        "messages": list(message_fields()),
+        "parameters": list(parameters()),
+        "columns of run.csv": columns(),
+        "words": list(words()),
+        "launch arguments": list(launch_arguments()),
+        "programs": sorted(programs()),
+        "python": list(python()),
+    }
+
+
+if __name__ == "__main__":
+    json.dump(public_names(), sys.stdout, indent=1, ensure_ascii=False)
+    print()

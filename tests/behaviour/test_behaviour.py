@@ -1,0 +1,40 @@
+"""The default robot behaves as recorded, and the sums would show it if it did not."""
+
+import behaviour
+import pytest
+from robot_control.robots import DIFFBOT
+
+INTEL = "vendor_id\t: GenuineIntel\ncpu family\t: 6\nflags\t\t: fpu avx2 sse fma\n"
+
+
+@pytest.fixture
+def sums():
+    """The recorded ones; skips where they cannot be compared."""
+    family, sums = behaviour.recorded()
+    if family != behaviour.processor_family():
+        pytest.skip(f"sums were recorded on {family}, this is {behaviour.processor_family()}")
+    return sums
+
+
+def test_a_drive_gives_its_recorded_sum(sums):
+    assert behaviour.drive_healthy(DIFFBOT, behaviour.HEALTHY_SEED) == sums[behaviour.healthy_name(DIFFBOT)]
+
+
+def test_a_drive_with_faults_gives_its_recorded_sum(sums):
+    assert behaviour.drive_with_faults(DIFFBOT, behaviour.FAULTY_SEED) == sums[behaviour.faulty_name(DIFFBOT)]
+
+
+def test_two_runs_give_one_sum_and_another_seed_another():
+    """On every processor."""
+    first = behaviour.drive_healthy(DIFFBOT, 1)
+    assert first == behaviour.drive_healthy(DIFFBOT, 1)
+    assert first != behaviour.drive_healthy(DIFFBOT, 2)
+
+
+def test_every_run_has_a_recorded_sum():
+    assert set(behaviour.recorded()[1]) == set(behaviour.runs())
+
+
+def test_the_processor_family_names_the_instructions_that_decide_about_the_last_bit():
+    assert behaviour.processor_family(INTEL).endswith("GenuineIntel family 6 avx2 fma")
+    assert behaviour.processor_family("").endswith("unknown family unknown")

@@ -1,0 +1,123 @@
+"""README and docs: what they link to and name exists."""
+
+import re
+import subprocess
+
+import pytest
+from pages import PAGES, README, ROOT, anchors, inline_code, links, prose
+
+by_name = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+
+
+@pytest.fixture(scope="module")
+def tree():
+    """Paths of all files of the project."""
+    listed = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return [path for path in listed.stdout.splitlines() if (ROOT / path).exists()]
+
+
+@pytest.fixture(scope="module")
+def words(tree):
+    """Every identifier of the program: sources, scripts, configuration, messages."""
+    folders = ("src/", "scripts/", "config/", "msg/", "srv/", "launch/")
+    texts = ((ROOT / path).read_text(errors="replace") for path in tree if path.startswith(folders))
+    return set().union(*(re.findall(r"\w+", text) for text in texts))
+
+
+@by_name
+def test_every_link_leads_to_a_file_and_a_heading(page):
+    for target in links(page):
+        path, _, anchor = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        assert file.exists(), target
+        assert not anchor or anchor in anchors(file), target
+
+
+@by_name
+def test_every_source_file_that_is_named_exists(page, tree):
+    for code in inline_code(page):
+        for name in re.findall(r"[\w/.]*\w\.(?:h|cpp|(?<!\.launch\.)py)\b", code):
+            assert any(f"/{path}".endswith(f"/{name}") for path in tree), name
+
+
+@by_name
+def test_every_path_that_is_named_exists(page):
+    for code in inline_code(page):
+        if re.fullmatch(r"(src|scripts|tests|config|launch|msg|srv|urdf|docs)(/[\w.]+)*/?", code):
+            assert (ROOT / code).exists(), code
+
+
+@by_name
+def test_every_key_of_a_block_exists(page, words):
+    """`robot.wheel_base`, `state_estimator.odom_rate`, `max_linear_speed`."""
+    for code in inline_code(page):
+        key = re.fullmatch(
+            r"(?:robot|mujoco_plant|state_estimator|diff_drive_controller|safety_monitor|telemetry)[./](\w+)", code
+        )
+        if key:
+            assert key[1] in words, code
+
+
+@by_name
+def test_every_entry_script_of_a_table_exists_with_its_selection(page, tree):
+    """`scripts/bench stops` names a bench, `scripts/test lockstep` a part of a test's name."""
+    benches = (ROOT / "scripts" / "bench").read_text()
+    cmake = [
+        (ROOT / path).read_text() for path in tree if path.startswith("tests/") and path.endswith("CMakeLists.txt")
+    ]
+    tests = "\n".join([*(path for path in tree if path.startswith("tests/")), *cmake])
+    for code in inline_code(page):
+        call = re.fullmatch(r"(?:scripts|\.ci)/(\w+)((?: [\w-]+)*)(?: [A-Z].*)?", code)
+        if not call or "/" + call[1] + "/" in code:
+            continue
+        path = code.split()[0]
+        assert (ROOT / path).exists(), code
+        for name in re.findall(r"--[\w-]+|\b[a-z_]+", call[2]):
+            if name.startswith("--"):
+                assert name in (ROOT / path).read_text(), code
+            elif call[1] == "bench":
+                assert re.search(rf"\b{name}\b", benches), code
+            elif call[1] == "test":
+                assert name in tests or name.removeprefix("test_") in tests, code
+
+
+def test_the_readme_is_an_entrance():
+    assert len(README.read_text().splitlines()) <= 250
+
+
+def test_every_folder_of_the_source_is_on_the_map():
+    on_the_map = set(re.findall(r"`src/(\w+)`", prose(README)))
+    assert on_the_map == {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
+
+
+def test_every_page_is_reached_from_the_readme():
+    reached, ahead = set(), [README]
+    while ahead:
+        page = ahead.pop()
+        if page not in reached:
+            reached.add(page)
+            targets = (link.partition("#")[0] for link in links(page))
+            ahead += [(page.parent / path).resolve() for path in targets if path.endswith(".md")]
+    assert set(PAGES) <= reached
+
+
+def glossary():
+    rows = (ROOT / "docs" / "glossary.md").read_text().splitlines()
+    return [row for row in rows if row.startswith("| ") and not row.startswith("| term ")]
+
+
+def test_the_glossary_is_short_and_says_each_term_once():
+    terms = [row.split("|")[1].strip() for row in glossary()]
+    assert len(terms) <= 60
+    assert len(set(terms)) == len(terms)
+
+
+def test_every_name_in_the_glossary_is_one_of_the_program(words):
+    named = (word for row in glossary() for code in re.findall(r"`([^`]+)`", row) for word in re.findall(r"\w+", code))
+    assert [word for word in named if word not in words and word not in ("csv", "odom")] == []

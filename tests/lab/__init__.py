@@ -1,0 +1,1 @@
+"""What measures, campaigns and judges: run by scripts/bench and by the tests, installed nowhere."""

@@ -1,0 +1,1 @@
+"""Drives without faults: what they reach, and that no safety condition reports one."""

@@ -1,0 +1,222 @@
+"""How well a robot does what its limits promise, measured on the simulated machine.
+
+Each function drives robots of robots.py and gives `Figure`s: a value and the bound it must not exceed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import radians
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from robot_control.closed_loop import ClosedLoop, Log
+
+from lab.robot_corpus import urdf_of
+
+Array = NDArray[np.float64]
+
+REST = 1.0  # s at rest before a drive
+BAND = 0.01  # of the speed: who stays within has settled
+SLOPES = (0.0, radians(5), -radians(5))  # uphill positive
+GRAVITY = 9.81  # m/s²
+CASTER = -0.25  # m, of diffbot's caster ahead of its axle
+WEAK_SPEED, WEAK_TORQUE = 0.8, 0.6  # of what a drive would take of its wheels: what saturated ones have
+
+
+@dataclass(frozen=True)
+class Figure:
+    """`value` and `bound` in `unit`."""
+
+    name: str
+    value: float
+    bound: float
+    unit: str
+
+    @property
+    def good(self) -> bool:
+        """Within its bound; NaN is not."""
+        return abs(self.value) <= self.bound
+
+
+def make(robot: str, params: Mapping[str, Any] | None = None) -> ClosedLoop:
+    """At rest for `REST` seconds, `params` laid over the defaults."""
+    loop = ClosedLoop(params or {}, urdf=urdf_of(robot))
+    loop.run(REST, (0.0, 0.0))
+    return loop
+
+
+def mass_of(robot: str) -> float:
+    """kg"""
+    return float(ClosedLoop(urdf=urdf_of(robot)).robot["mass"])
+
+
+def profile(log: Log) -> Array:
+    """m/s, what an ideal robot does at each sample: the torque of cycle k acts over [t_k+1, t_k+2)."""
+    return np.concatenate([[0.0, 0.0], log["limited_linear"][:-2]])
+
+
+def settled(speed: Array, target: float, band: float) -> int:
+    """Cycle from which on `speed` stays within `band` of `target`."""
+    outside = np.flatnonzero(np.abs(speed - target) > band)
+    return int(outside[-1]) + 1 if outside.size else 0
+
+
+@dataclass(frozen=True)
+class Straight:
+    """Of one drive 0 → v → 0; parts of |v|, at either end."""
+
+    rms: float
+    overshoot: float
+    swing: float  # back to the other side, after it
+    late: float  # s until it has settled after its profile has
+
+
+def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str, Any] | None = None) -> Straight:
+    """0 → `speed` [m/s] → 0 with `payload` [kg] unknown to the controller; `params` over the defaults."""
+    loop = make(
+        robot, {**(params or {}), "mujoco_plant": {"payload": payload, **(params or {}).get("mujoco_plant", {})}}
+    )
+    phases = (loop.run(3.0, (speed, 0.0)), loop.run(3.0, (0.0, 0.0)))
+    log = {name: np.concatenate([phase[name] for phase in phases]) for name in phases[0]}
+    true, wanted = np.sign(speed) * log["truth_linear"], np.sign(speed) * profile(log)
+    size = abs(speed)
+    half = len(true) // 2
+    over, back, late = [], [], []
+    for part, target, way in ((slice(0, half), size, 1), (slice(half, None), 0.0, -1)):
+        beyond = way * (true[part] - target) / size
+        over.append(float(beyond.max()))
+        back.append(-float(beyond[int(beyond.argmax()) :].min()))
+        late.append(settled(true[part], target, BAND * size) - settled(wanted[part], target, BAND * size))
+    rms = float(np.sqrt(np.mean((true - wanted) ** 2))) / size
+    return Straight(rms, max(over), max(back), max(late) * loop.period)
+
+
+def stop_error(robot: str, speed: float, slope: float, *, silence: bool) -> tuple[float, float]:
+    """Stops from `speed` [m/s] on `slope` [rad], commanded or by `silence`.
+
+    Returns:
+        True way less the predicted one, and what that may be, 3 % or 5 mm [m].
+    """
+    loop = make(robot, {"mujoco_plant": {"slope": slope}})
+    loop.run(2.0, (speed, 0.0))
+    log = loop.run(3.0, None if silence else (0.0, 0.0))
+    start = int(np.flatnonzero(log["limited_linear"] != speed)[0])
+    way = float(np.hypot(log["truth_x"][-1] - log["truth_x"][start], log["truth_y"][-1] - log["truth_y"][start]))
+    predicted = loop.stop_distance(speed, emergency=silence)
+    return way - predicted, max(0.03 * predicted, 0.005)
+
+
+def rims(loop: ClosedLoop, linear: float, angular: float) -> float:
+    """rad/s of the fastest wheel at this twist [m/s, rad/s]."""
+    robot = loop.robot
+    half = 0.5 * robot["wheel_base"] * robot["wheel_base_multiplier"]
+    return float((abs(linear) + half * abs(angular)) / robot["wheels"][0]["radius"])
+
+
+def off_the_curve(log: Log, linear: float, angular: float) -> float:
+    """The driven radius, from turn and way over all of the log, against the commanded: part of it."""
+    way, turn = np.sum(log["truth_linear"]), np.sum(log["truth_angular"])
+    return float(way / turn) / (linear / angular) - 1
+
+
+def scrubs(loop: ClosedLoop) -> bool:
+    """It has wheels behind each other: how it turns is the ground's doing as much as theirs."""
+    return len(loop.robot["wheels"]) > 2
+
+
+def fast_curve(robot: str, linear: float, angular: float) -> float:
+    """Part of the commanded radius by which a curve that is too fast for the wheels differs; of skid steers, part of
+    the radius of the fastest curve that is not.
+
+    Raises:
+        RuntimeError: it was not too fast.
+    """
+    free = make(robot)
+    weak = make(robot, {"robot": {"wheel_velocity_limit": WEAK_SPEED * rims(free, linear, angular)}})
+    saturated = weak.run(6.0, (linear, angular))
+    done = float(saturated["limited_linear"][-1]), float(saturated["limited_angular"][-1])
+    if not abs(done[0]) <= WEAK_SPEED * abs(linear):
+        raise RuntimeError(f"{robot}: no wheel was at its speed limit")
+    off = off_the_curve(saturated, linear, angular)
+    return (1 + off) / (1 + off_the_curve(free.run(6.0, done), *done)) - 1 if scrubs(free) else off
+
+
+def weak_curve(robot: str, linear: float, angular: float) -> float:
+    """The same of one whose ramp asks for more torque than its wheels have, against one that they can do. Not for skid
+    steers: what turning takes of them is no matter of the ramp.
+    """
+    full = make(robot)
+    log = full.run(3.0, (linear, angular))
+    names = [f"{wheel['joint']}_effort_command" for wheel in full.robot["wheels"]]
+    ramp = log["time"] < log["time"][0] + 0.5
+    needed = max(float(np.quantile(np.abs(log[name][ramp]), 0.9)) for name in names)
+    weak = make(robot, {"robot": {"wheel_effort_limit": WEAK_TORQUE * needed}})
+    saturated = weak.run(3.0, (linear, angular))
+    return (1 + off_the_curve(saturated, linear, angular)) / (1 + off_the_curve(log, linear, angular)) - 1
+
+
+def wheel_column(loop: ClosedLoop, log: Log, name: str) -> Array:
+    """Of every wheel, shape (wheels, cycles)."""
+    return np.array([log[f"{wheel['joint']}_{name}"] for wheel in loop.robot["wheels"]])
+
+
+def standstill(robot: str) -> tuple[float, float]:
+    """Torque's RMS [N·m] about its mean on the level, and the way [m] in 20 s on a slope, hand-over to the brake
+    included.
+    """
+    level = make(robot)
+    level.run(1.5, (0.3, 0.0))
+    level.run(1.5, (0.0, 0.0))
+    torque = wheel_column(level, level.run(10.0, (0.0, 0.0)), "effort")
+    slope = make(robot, {"mujoco_plant": {"slope": SLOPES[1]}})
+    slope.run(1.5, (0.3, 0.0))
+    slope.run(1.0, (0.0, 0.0))
+    log = slope.run(20.0, (0.0, 0.0))
+    way = np.hypot(log["truth_x"] - log["truth_x"][0], log["truth_y"] - log["truth_y"][0])
+    return float(torque.std(axis=1).max()), float(way.max())
+
+
+def released(robot: str, speed: float) -> tuple[float, float]:
+    """Braked for some cycles at `speed` [m/s], for want of commands, and released.
+
+    Returns:
+        By how much it still slows down after the release, part of the speed; the largest torque then, part of the
+        brake's before it.
+
+    Raises:
+        RuntimeError: the brake did not act.
+    """
+    loop = make(robot)
+    loop.run(2.0, (speed, 0.0))
+    loop.inject_fault("controller", "off")
+    braked = loop.run(0.012, (speed, 0.0))
+    loop.inject_fault("controller", "ok")
+    log = loop.run(2.0, (speed, 0.0))
+    passes = int(np.flatnonzero(log["gate_verdict"] == 1)[0]) + 1
+    brake = float(np.max(np.abs(wheel_column(loop, braked, "effort"))))
+    if not log["truth_linear"][passes] < 0.99 * speed:
+        raise RuntimeError(f"{robot}: the brake did not act")
+    after = wheel_column(loop, log, "effort")[:, passes + 1 : passes + 200]
+    dip = float(log["truth_linear"][passes] - log["truth_linear"][passes:].min()) / speed
+    return dip, float(np.max(np.abs(after))) / brake
+
+
+def lifted(robot: str) -> float:
+    """rad/s by which a wheel is off its target while a push lifts the robot onto its caster.
+
+    It carries just more than what the wheels do: the robot stands up slowly, its wheels 10 mm above the ground.
+    """
+    description = ClosedLoop(urdf=urdf_of(robot)).robot
+    centre, caster = float(description["centre_of_gravity"][0]), CASTER
+    carried = float(description["mass"]) * GRAVITY * (centre - caster) / -caster
+    start = REST + 1.5
+    loop = make(robot, {"mujoco_plant": {"push_z": 1.01 * carried, "push_start": start, "push_duration": 1.0}})
+    loop.run(start - REST, (0.5, 0.0))
+    log = loop.run(0.8, (0.5, 0.0))
+    if not np.max(log["truth_tilt"]) > 0.02:
+        raise RuntimeError(f"{robot}: it was not lifted")
+    error = wheel_column(loop, log, "velocity_measured") - wheel_column(loop, log, "velocity_command")
+    return float(np.max(np.abs(error)))

@@ -1,0 +1,146 @@
+"""Hours of normal driving, over all scenes, robots and rates: the safety monitor has nothing to say, but that wheels
+slip where they do: on ice, and of robots that turn astride a bump; and that who got stuck there is stalled.
+
+python3 -m lab.drives.normal_driving --share 0.1     # a tenth of the two hours
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from robot_control.cause_bits import causes_in
+from robot_control.closed_loop import ClosedLoop, Log
+
+from lab.drives.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
+from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
+
+RATES = {1000: 960.0, 100: 240.0, 2000: 120.0}  # Hz → s in each scene, of the project's own robot
+SLOW = 500  # Hz; below, the loops are too weak for bumps: wheels stand before them for a second, stalled indeed
+SKID_ICE_SPEED = 0.4  # m/s
+OTHERS_SECONDS = 15.0  # in each scene, of each real robot
+TRUE_WARNINGS = {"low_friction_patch": {"yaw_rate"}, "bumps": {"yaw_rate"}}
+LONGEST = 300.0  # s, of one drive: so that all processors have something to do to the end
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One drive of `seconds` of simulated time."""
+
+    robot: str
+    scene: str
+    rate: int  # Hz
+    seconds: float
+    seed: int
+
+
+@dataclass(frozen=True)
+class Driven:
+    """What came of it. `causes`, `warnings`: names; empty where nothing was amiss."""
+
+    drive: Drive
+    causes: list[str]
+    warnings: list[str]  # but for the true ones
+    distance: float  # m
+
+    def __str__(self) -> str:
+        drive = self.drive
+        what = f"{drive.robot} in {drive.scene} at {drive.rate} Hz, seed {drive.seed}, {drive.seconds:.0f} s"
+        said = [f"stopped: {', '.join(self.causes)}"] if self.causes else []
+        said += [f"warned: {', '.join(self.warnings)}"] if self.warnings else []
+        return f"{what}: {'; '.join(said) or 'nothing amiss'}"
+
+
+def all_drives(share: float) -> list[Drive]:
+    """Two hours, where the real robots are there, times `share`."""
+    drives: list[Drive] = []
+    for scene in SCENES:
+        for rate, seconds in RATES.items():
+            if rate < SLOW and scene == "bumps":
+                continue
+            drives += _split(DIFFBOT, scene, rate, share * seconds)
+    for robot in robot_names()[1:]:
+        for scene in SCENES:
+            drives += _split(robot, scene, 1000, share * OTHERS_SECONDS)
+    return drives
+
+
+def _split(robot: str, scene: str, rate: int, seconds: float) -> list[Drive]:
+    count = max(1, round(seconds / LONGEST))
+    return [Drive(robot, scene, rate, seconds / count, seed) for seed in range(count)]
+
+
+def stuck(log: Log, rate: int) -> bool:
+    """By truth: in the quarter second before its first stop it moved by less than 1 cm, and 0.05 rad."""
+    stop = int(np.argmax(log["permit_causes"] > 0))
+    before = max(0, stop - rate // 4)
+    moved = np.hypot(log["truth_x"][stop] - log["truth_x"][before], log["truth_y"][stop] - log["truth_y"][before])
+    return bool(moved < 0.01 and abs(log["truth_yaw"][stop] - log["truth_yaw"][before]) < 0.05)
+
+
+def top_speed(loop: ClosedLoop, scene: str) -> float:
+    """m/s. Skid steers that slide sideways off the ice stand on blocked wheels: a person slows down there."""
+    return SKID_ICE_SPEED if scene == "low_friction_patch" and len(loop.robot["wheels"]) > 2 else LINEAR_LIMIT
+
+
+def carry_out(drive: Drive) -> Driven:
+    """Drives it."""
+    loop = ClosedLoop(
+        params={"robot": {"rate": drive.rate}},
+        seed=drive.seed,
+        urdf=urdf_of(drive.robot),
+        scene=scene_of(drive.scene),
+    )
+    log = NormalDrive(loop, area_of(drive.scene), drive.seed, top_speed(loop, drive.scene)).run(drive.seconds)
+    warnings = set(causes_in(log["permit_warnings"])) - TRUE_WARNINGS.get(drive.scene, set())
+    causes = causes_in(log["permit_causes"])
+    if causes == ["stall"] and stuck(log, drive.rate):
+        causes = []
+    return Driven(drive, causes, sorted(warnings), float(log["distance"][0]))
+
+
+def bench(share: float, tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+    """The result, and whether nothing was amiss; `tell` gets what was."""
+    began = time.monotonic()
+    drives = all_drives(share)
+    driven = []
+    with multiprocessing.Pool() as pool:
+        for outcome in pool.imap_unordered(carry_out, drives):
+            driven.append(outcome)
+            if outcome.causes or outcome.warnings:
+                tell(str(outcome))
+    simulated = sum(drive.seconds for drive in drives)
+    figures = [
+        ("simulated", simulated / 3600, "h"),
+        ("distance", sum(outcome.distance for outcome in driven) / 1000, "km"),
+        ("drives with a stop", sum(bool(outcome.causes) for outcome in driven), ""),
+        ("drives with a warning", sum(bool(outcome.warnings) for outcome in driven), ""),
+        ("speed", simulated / (time.monotonic() - began), "simulated s per s"),
+    ]
+    rows = [
+        {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
+        for name, value, unit in figures
+    ]
+    amiss = [str(outcome) for outcome in driven if outcome.causes or outcome.warnings]
+    return {"bench": "driving", "rows": rows, "amiss": amiss}, not amiss
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Exit code 0: nothing was amiss."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--share", type=float, default=1.0, help="of the two hours")
+    given = parser.parse_args(arguments)
+    result, fine = bench(given.share, print)
+    for row in result["rows"]:
+        print(f"{row['name']:<24}{row['value']:12.5g} {row['unit']}")
+    return 0 if fine else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

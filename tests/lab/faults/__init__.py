@@ -1,0 +1,1 @@
+"""Random sequences of faults, carried out and judged."""

@@ -1,0 +1,151 @@
+"""Thousands of random fault sequences over random drives and robots, each judged by what really happened.
+
+    python3 -m lab.faults.campaign --first 17 --runs 1     # repeats one and says what happened
+
+A seed gives the same bits on the same build and robots, alone or among others, on however many processors.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from robot_control.cause_bits import causes_in
+from robot_control.closed_loop import ClosedLoop
+
+from lab.faults.fault_sequence import ALL_RUNS, ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
+from lab.faults.sequence_judge import RULES, judge
+from lab.faults.sequence_run import make_loop, run_sequence
+from lab.robot_corpus import robot_names
+
+REPORT_EVERY = 20.0  # s
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Of one seed. `violations`: (rule, what happened)."""
+
+    seed: int
+    story: str
+    violations: list[tuple[str, str]]
+    stops: list[str]  # causes that ever latched
+    seconds: float  # of simulated time
+
+    @property
+    def text(self) -> str:
+        """What was tried, which rules did not hold, and how to see it again."""
+        lines = [f"seed {self.seed}: {self.story}"]
+        lines += [f"    {what}" for _, what in self.violations]
+        if self.violations:
+            lines.append(f"    again: scripts/bench campaign --first {self.seed} --runs 1")
+        return "\n".join(lines)
+
+
+@dataclass
+class Tally:
+    """Of a campaign."""
+
+    runs: int = 0
+    simulated: float = 0.0  # s
+    violations: Counter[str] = field(default_factory=Counter)
+    stops: Counter[str] = field(default_factory=Counter)
+    failed: list[Outcome] = field(default_factory=list)
+
+    def add(self, outcome: Outcome) -> None:
+        """One more."""
+        self.runs += 1
+        self.simulated += outcome.seconds
+        self.violations.update(rule for rule, _ in outcome.violations)
+        self.stops.update(outcome.stops)
+        if outcome.violations:
+            self.failed.append(outcome)
+
+
+def fastest_rim(loop: ClosedLoop) -> float:
+    """m/s, of the speed over the ground that the controller may ask of a side of the robot."""
+    return LINEAR_LIMIT + ANGULAR_LIMIT * float(loop.robot["wheel_base"]) / 2
+
+
+def run_seed(seed: int, robots: Sequence[str]) -> Outcome:
+    """Draws, runs and judges one sequence."""
+    sequence = draw_sequence(seed, robots)
+    loop = make_loop(sequence)
+    log = run_sequence(sequence, loop)
+    found = judge(sequence, log, loop.robot["wheel_base"], loop.period, fastest_rim(loop))
+    violations = [(violation.rule, str(violation)) for violation in found]
+    return Outcome(
+        seed, sequence.describe(), violations, causes_in(log["permit_causes"]), len(log["cycle"]) * loop.period
+    )
+
+
+def outcomes(seeds: Sequence[int], robots: Sequence[str], processes: int | None = None) -> Iterator[Outcome]:
+    """In the order of the seeds; one process per processor where `processes` is None."""
+    run = partial(run_seed, robots=robots)
+    with multiprocessing.Pool(processes) as pool:
+        yield from pool.imap(run, seeds, chunksize=4)
+
+
+def campaign(seeds: Sequence[int], tell: Callable[[str], None], processes: int | None = None) -> Tally:
+    """Runs all seeds; `tell` gets every failure, and the progress every `REPORT_EVERY` seconds."""
+    tally = Tally()
+    began = last = time.monotonic()
+    for outcome in outcomes(seeds, robot_names(), processes):
+        tally.add(outcome)
+        if outcome.violations:
+            tell(outcome.text)
+        now = time.monotonic()
+        if now - last > REPORT_EVERY:
+            last = now
+            left = (now - began) / tally.runs * (len(seeds) - tally.runs)
+            tell(f"{tally.runs} of {len(seeds)}, {len(tally.failed)} failed, {left / 60:.0f} min left")
+    return tally
+
+
+def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
+    """As the benchmark programs print it; `seconds` of wall-clock time."""
+
+    def row(name: str, value: float, unit: str) -> dict[str, Any]:
+        return {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
+
+    rows = [row("sequences", tally.runs, ""), row("sequences failed", len(tally.failed), "")]
+    rows += [row(f"{rule} violated", tally.violations[rule], "") for rule in RULES]
+    rows.append(row("simulated", tally.simulated / 3600, "h"))
+    rows.append(row("speed", tally.simulated / seconds, "simulated s per s"))
+    return {
+        "bench": "campaign",
+        "rows": rows,
+        "stops": dict(tally.stops.most_common()),
+        "failed": [outcome.text for outcome in tally.failed],
+    }
+
+
+def bench(first: int, runs: int, tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+    """The result, and whether every sequence was survived."""
+    began = time.monotonic()
+    if runs == 1:
+        tell(draw_sequence(first, robot_names()).describe())
+    tally = campaign(range(first, first + runs), tell)
+    return result_of(tally, time.monotonic() - began), not tally.failed
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Exit code 0: every sequence was survived."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--runs", type=int, default=ALL_RUNS, help="number of seeds")
+    given = parser.parse_args(arguments)
+    result, survived = bench(given.first, given.runs, print)
+    for row in result["rows"]:
+        print(f"{row['name']:<24}{row['value']:12.5g} {row['unit']}")
+    return 0 if survived else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,154 @@
+"""`scripts/bench odometry`: every scenario with every seed, over all processors; table, promises, plots.
+
+python3 -P -m lab.odometry.bench --runs 3 --only slip,waves --plots FOLDER
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lab.odometry.judge import Run, run
+from lab.odometry.promises import all_promises, of
+from lab.odometry.scenarios import SCENARIOS
+from lab.odometry.table import table
+
+SEEDS = 50
+LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors have something to do to the end
+REPORT_EVERY = 20.0  # s
+
+
+def all_runs(
+    seeds: Sequence[int],
+    scenarios: Sequence[str],
+    tell: Callable[[str], None],
+    *,
+    pictured: int | None = None,
+    cache: Path | None = None,
+    processes: int | None = None,
+) -> list[Run]:
+    """In the order of scenarios and seeds; `pictured`: the seed whose runs keep what a plot needs; `cache`: folder of
+    recordings, taken where they are there.
+    """
+    order = sorted(scenarios, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else 9)
+    work = [(scenario, seed) for scenario in order for seed in seeds]
+    began = last = time.monotonic()
+    runs: list[Run] = []
+    for done in _outcomes(work, partial(_one, pictured=pictured, cache=cache), processes):
+        runs.append(done)
+        now = time.monotonic()
+        if now - last > REPORT_EVERY:
+            last = now
+            tell(f"{len(runs)} of {len(work)} runs, {now - began:.0f} s")
+    numbers = {name: number for number, name in enumerate(SCENARIOS)}
+    return sorted(runs, key=lambda each: (numbers[each.scenario], each.seed))
+
+
+def _outcomes(
+    work: Sequence[tuple[str, int]], one: Callable[[tuple[str, int]], Run], processes: int | None
+) -> Iterator[Run]:
+    if processes == 1:
+        yield from map(one, work)
+        return
+    with multiprocessing.Pool(processes) as pool:
+        yield from pool.imap_unordered(one, work)
+
+
+def _one(work: tuple[str, int], pictured: int | None, cache: Path | None) -> Run:
+    scenario, seed = work
+    return run(scenario, seed, picture=seed == pictured, cache=cache)
+
+
+def result_of(runs: Sequence[Run], seconds: float) -> dict[str, Any]:
+    """As the benchmark programs print it; `seconds` of wall-clock time."""
+    rows = [
+        {
+            "name": promise.name,
+            "value": float(promise.value),
+            "unit": promise.unit,
+            "reference": promise.bound,
+            "reference_name": ("the least" if promise.least else "the most") + " promised",
+            "ratio": float(promise.value / promise.bound),
+            "kept": bool(promise.kept),
+        }
+        for promise in all_promises(runs)
+    ]
+    for scenario in SCENARIOS:
+        pitch = [each.pitch for each in of(runs, scenario)]
+        if scenario == "waves" and pitch:
+            rows.append(_plain("waves, pitch RMS", float(np.rad2deg(np.median(pitch))), "°"))
+    rows.append(_plain("seeds", len({each.seed for each in runs}), ""))
+    rows.append(_plain("wall-clock time", seconds, "s"))
+    errors = [
+        {
+            "scenario": each.scenario,
+            "seed": each.seed,
+            "distance": each.distance,
+            "position": each.position,
+            "yaw": each.yaw,
+            "stopped": each.stopped,
+            "invalid": each.invalid,
+        }
+        for each in runs
+    ]
+    return {"bench": "odometry", "rows": rows, "table": table(runs), "runs": errors}
+
+
+def _plain(name: str, value: float, unit: str) -> dict[str, Any]:
+    return {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
+
+
+def bench(
+    first: int,
+    count: int,
+    tell: Callable[[str], None],
+    *,
+    plots: Path | None = None,
+    cache: Path | None = None,
+    scenarios: Sequence[str] = tuple(SCENARIOS),
+) -> tuple[dict[str, Any], bool]:
+    """The result, and whether every promise is kept; `tell` gets progress and what is not."""
+    began = time.monotonic()
+    for folder in (plots, cache):
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+    pictured = None if plots is None else first
+    runs = all_runs(range(first, first + count), scenarios, tell, pictured=pictured, cache=cache)
+    if plots is not None:
+        from lab.odometry.plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
+
+        draw_all(runs, plots)
+    broken = [promise for promise in all_promises(runs) if not promise.kept]
+    for promise in broken:
+        tell(str(promise))
+    return result_of(runs, time.monotonic() - began), not broken
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Exit code 0: every promise is kept."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--runs", type=int, default=SEEDS, help="number of seeds")
+    parser.add_argument("--only", default=",".join(SCENARIOS), help="scenarios, with commas between")
+    parser.add_argument("--plots", type=Path, help="folder for the pictures")
+    parser.add_argument("--cache", type=Path, help="folder of recordings: taken from there, or put there")
+    given = parser.parse_args(arguments)
+    result, good = bench(
+        given.first, given.runs, print, plots=given.plots, cache=given.cache, scenarios=given.only.split(",")
+    )
+    print("\n".join(result["table"]))
+    for row in result["rows"]:
+        print(f"{row['name']:<36}{row['value']:12.5g} {row['unit']:<12}{row['reference']:10.4g}  {row.get('kept', '')}")
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

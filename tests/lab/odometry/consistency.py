@@ -1,0 +1,74 @@
+"""How honest the estimate is about itself: does its covariance fit its errors, does it notice slip?
+
+NEES    eᵀ P⁻¹ e of e = (x, y, yaw) and of e = (forward speed, yaw rate); ideal 3 and 2 (Bar-Shalom, Li &
+        Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 5.4)
+slip    of truth.py: SLIPPING, a wheel above 20 %, is to be flagged; ROLLING, all of them below 5 %, is
+        not; what lies between is no one's
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lab.odometry.tested_estimator import Ours
+from lab.odometry.truth import Array, Truth, wrapped
+
+SLIPPING, ROLLING = 0.2, 0.05
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Truth rows of a run, of 10 ms each."""
+
+    slipping: int
+    noticed: int  # of the slipping ones
+    rolling: int
+    alarms: int  # of the rolling ones
+    rows: int  # all of them
+
+
+def pose_error(ours: Ours, truth: Truth) -> Array:
+    """(M, 3)"""
+    yaw = wrapped(ours.path.yaw - truth.odom.yaw)
+    return np.column_stack([ours.path.x - truth.odom.x, ours.path.y - truth.odom.y, yaw])
+
+
+def twist_error(ours: Ours, truth: Truth) -> Array:
+    """(M, 2)"""
+    return np.column_stack([ours.linear - truth.linear, ours.angular - truth.angular])
+
+
+def nees(error: Array, covariance: Array) -> Array:
+    """(M,) of (M, n) and (M, n, n); infinite where the covariance is none."""
+    result = np.full(len(error), np.inf)
+    for row, (e, p) in enumerate(zip(error, covariance, strict=True)):
+        if np.isfinite(p).all() and np.linalg.eigvalsh(p)[0] > 0:
+            result[row] = e @ np.linalg.solve(p, e)
+    return result
+
+
+def nees_band(runs: int, dimension: int) -> tuple[float, float]:
+    """In which the mean of `runs` values of χ² with `dimension` degrees of freedom lies with 95 %: quantiles of χ² with
+    n = runs · dimension, over runs, by Wilson & Hilferty (1931), n (1 − 2/(9n) ± 1.96 √(2/(9n)))³, right to 3 % for
+    n = 6 and to 0.01 % for n = 100.
+    """
+    n = runs * dimension
+    part = 2 / (9 * n)
+    low, high = (n * (1 - part + z * math.sqrt(part)) ** 3 / runs for z in (-1.96, 1.96))
+    return low, high
+
+
+def notice(ours: Ours, truth: Truth) -> Notice:
+    """How long slip was there, and noticed."""
+    slipping = (truth.slip > SLIPPING).any(axis=1)
+    rolling = (truth.slip < ROLLING).all(axis=1)
+    return Notice(
+        slipping=int(slipping.sum()),
+        noticed=int((slipping & ours.slip).sum()),
+        rolling=int(rolling.sum()),
+        alarms=int((rolling & ours.slip).sum()),
+        rows=len(rolling),
+    )

@@ -1,0 +1,164 @@
+"""What the odometry promises, each with its measured figure: `scripts/bench odometry`.
+
+The bounds are those of the project's requirements. They hold for robots and sensors as errors.py draws them,
+in the drives of scenarios.py, judged as judge.py says; "with n seeds" where fewer can tell less.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lab.odometry.consistency import nees_band
+from lab.odometry.judge import Run
+from lab.odometry.scenarios import SCENARIOS
+from lab.odometry.tested_estimator import OURS
+from lab.odometry.truth import Array
+
+SIMPLE, RAW, CALIBRATED = "simple part", "raw wheels", "calibrated wheels"
+WITHOUT_SLIP = "random"  # the scenario whose NEES is judged; within default limits on dry ground nothing slips
+WORTH = 0.2  # m, that calibrated wheels have to err by for a slip run to count
+
+
+@dataclass(frozen=True)
+class Promise:
+    """`bound` is the most that `value` may be; with `least`, the least."""
+
+    name: str
+    value: float
+    bound: float
+    unit: str
+    least: bool = False
+
+    @property
+    def kept(self) -> bool:
+        """NaN is not."""
+        return self.value >= self.bound if self.least else self.value <= self.bound
+
+    def __str__(self) -> str:
+        rule = "at least" if self.least else "at most"
+        return f"{self.name}: {self.value:.4g} {self.unit}, promised {rule} {self.bound:.4g}".replace(" ,", ",")
+
+
+def of(runs: Sequence[Run], scenario: str) -> list[Run]:
+    """Those of one scenario."""
+    return [run for run in runs if run.scenario == scenario]
+
+
+def positions(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
+    """m, by seed."""
+    return np.array([run.position[method] for run in of(runs, scenario)])
+
+
+def yaws(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
+    """degrees, by seed."""
+    return np.rad2deg([run.yaw[method] for run in of(runs, scenario)])
+
+
+def all_promises(runs: Sequence[Run]) -> list[Promise]:
+    """Of the scenarios that there are runs of."""
+    there = {run.scenario for run in runs}
+    promises = []
+    for scenario, part in {
+        "umbmark": umbmark,
+        "random": random_drive,
+        "standstill": standstill,
+        "slip": slip,
+    }.items():
+        if scenario in there:
+            promises += part(runs)
+    return promises + false_alarms(runs) + never_worse(runs)
+
+
+def umbmark(runs: Sequence[Run]) -> list[Promise]:
+    """Largest mean return error."""
+    ours, raw = positions(runs, "umbmark"), positions(runs, "umbmark", RAW)
+    return [
+        Promise("UMBmark, worst seed", 1e3 * ours.max(), 40, "mm"),
+        Promise("UMBmark, mean", 1e3 * ours.mean(), 20, "mm"),
+        Promise("UMBmark, raw wheels over ours", raw.mean() / ours.mean(), 20, "", least=True),
+    ]
+
+
+def random_drive(runs: Sequence[Run]) -> list[Promise]:
+    """Ten minutes; and the second half of them without gyro."""
+    drives = of(runs, "random")
+    share = 100 * np.array([run.position[OURS] / run.distance for run in drives])
+    yaw = yaws(runs, "random")
+    killed = {name: float(np.median([run.killed[name] for run in drives])) for name in (OURS, RAW)}
+    return [
+        Promise("random drive, position, p95", float(np.percentile(share, 95)), 0.5, "% of way"),
+        Promise("random drive, yaw, mean", float(yaw.mean()), 1, "°"),
+        Promise("random drive, yaw, p95", float(np.percentile(yaw, 95)), 3, "°"),
+        Promise("NEES of the pose in its band", 100 * in_band(drives, "pose"), 90, "% of times", least=True),
+        Promise("NEES of the twist in its band", 100 * in_band(drives, "twist"), 90, "% of times", least=True),
+        Promise("gyro dead, over raw wheels", killed[OURS] / killed[RAW], 0.2, ""),
+    ]
+
+
+def standstill(runs: Sequence[Run]) -> list[Promise]:
+    """Ten minutes of it, the worst seed."""
+    drifts = np.array([run.drift for run in of(runs, "standstill")])
+    return [
+        Promise("standstill, way in 10 min", 1e3 * drifts[:, 0].max(), 0.1, "mm"),
+        Promise("standstill, yaw in 10 min", np.rad2deg(drifts[:, 1].max()), 0.01, "°"),
+    ]
+
+
+def slip(runs: Sequence[Run]) -> list[Promise]:
+    """A minute of it each."""
+    ours, wheels = positions(runs, "slip"), positions(runs, "slip", CALIBRATED)
+    worth = wheels > WORTH
+    notices = [run.notice for run in of(runs, "slip")]
+    noticed = sum(each.noticed for each in notices) / max(1, sum(each.slipping for each in notices))
+    nees = np.concatenate([run.pose_nees for run in of(runs, "slip")])
+    better = float(np.mean(wheels[worth] >= 5 * ours[worth])) if worth.any() else math.nan
+    return [
+        Promise("slip, 5 × better than wheels", 100 * better, 80, "% of runs", least=True),
+        Promise("slip, worst over wheels", float((ours / wheels).max()), 1.1, ""),
+        Promise("slip above 20 % flagged", 100 * noticed, 90, "% of time", least=True),
+        Promise("slip, mean NEES of the pose", float(np.nanmean(nees)), 10, ""),
+    ]
+
+
+def false_alarms(runs: Sequence[Run]) -> list[Promise]:
+    """Of all runs of a scenario together, where no wheel slips by more than 5 %."""
+    promises = []
+    for scenario in SCENARIOS:
+        notices = [run.notice for run in of(runs, scenario)]
+        if notices and scenario != "standstill":
+            alarms = sum(each.alarms for each in notices) / max(1, sum(each.rolling for each in notices))
+            promises.append(Promise(f"false alarms, {scenario}", 100 * alarms, 3, "% of time"))
+    return promises
+
+
+def never_worse(runs: Sequence[Run]) -> list[Promise]:
+    """Than 1.1 × its simple part: the median over the seeds of ours over that of the simple part, in every scenario."""
+    promises = []
+    for scenario in (name for name in SCENARIOS if of(runs, name)):
+        for what, errors in (("position", positions), ("yaw", yaws)):
+            ratio = np.median(errors(runs, scenario)) / np.median(errors(runs, scenario, SIMPLE))
+            promises.append(Promise(f"{scenario}, {what} over simple part's", float(ratio), 1.1, ""))
+    return promises
+
+
+def in_band(runs: Sequence[Run], what: str) -> float:
+    """Part of the sampled times at which the mean NEES over the runs is inside the band."""
+    _, means, low, high = mean_nees(runs, what)
+    return float(np.mean((means >= low) & (means <= high)))
+
+
+def mean_nees(runs: Sequence[Run], what: str) -> tuple[Array, Array, Array, Array]:
+    """(K,) each: time s, mean over the runs that move then, and the band of as many; of the sampled times that all runs
+    reach, those at which any moves.
+    """
+    series = [run.pose_nees if what == "pose" else run.twist_nees for run in runs]
+    count = min(len(each) for each in series)
+    values = np.array([each[:count] for each in series])
+    moved = (~np.isnan(values)).sum(axis=0)
+    some = moved > 0
+    bands = np.array([nees_band(int(each), 3 if what == "pose" else 2) for each in moved[some]]).reshape(-1, 2)
+    return runs[0].times[:count][some], np.nanmean(values[:, some], axis=0), bands[:, 0], bands[:, 1]

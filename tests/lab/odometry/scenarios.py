@@ -1,0 +1,66 @@
+"""What is driven in the odometry benchmark: scenario and seed → robot, world, commands. A pure function of both.
+
+Every run begins with FIRST_STAND s of standstill, as a robot does that is switched on. Controllers use no pose, so what
+the sensors see does not depend on who estimates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from lab.odometry import drives
+from lab.odometry.drives import FIRST_STAND, Draft
+from lab.odometry.errors import Errors, draw_errors
+from lab.odometry.program import Array
+
+SCENARIO_STREAM = 2  # of the random numbers: those of errors.py are others
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One run. `params`: over the defaults. `scene`: text of an MJCF world; "": that of the parameters.
+    `marks`: cycles at which something begins, by what it is. `up`: away from the centre of the earth, in truth's axes
+    (z of those is the ground's normal).
+    """
+
+    scenario: str
+    seed: int
+    errors: Errors
+    plant_seed: int  # of the sensors' random numbers
+    params: dict[str, Any]
+    commands: Array
+    scene: str = ""
+    marks: dict[str, list[int]] = field(default_factory=dict)
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+
+SCENARIOS: dict[str, Callable[[Draft], None]] = {
+    "umbmark": drives.umbmark,
+    "random": drives.random_drive,
+    "eight": drives.figure_eight,
+    "slope": drives.slope,
+    "ice": drives.ice,
+    "kerb": drives.kerb,
+    "standstill": drives.standstill,
+    "waves": drives.waves,
+    "slip": drives.slip,
+}
+
+
+def draw_trial(scenario: str, seed: int) -> Trial:
+    """The run of that name and seed."""
+    number = list(SCENARIOS).index(scenario)
+    draft = Draft(np.random.default_rng([SCENARIO_STREAM, number, seed]), kind=seed)
+    draft.program.stand(FIRST_STAND)
+    SCENARIOS[scenario](draft)
+    errors = draw_errors(seed)
+    tilt = float(draft.plant.get("slope", 0.0))
+    plant = {**errors.plant(), **draft.plant}
+    params = {"mujoco_plant": plant, "diff_drive_controller": draft.controller, "safety_monitor": draft.safety}
+    up = (float(np.sin(tilt)), 0.0, float(np.cos(tilt)))
+    plant_seed = len(SCENARIOS) * seed + number
+    return Trial(scenario, seed, errors, plant_seed, params, draft.program.commands, draft.scene, draft.marks, up)

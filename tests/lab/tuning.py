@@ -1,0 +1,228 @@
+"""Random sets of limits, gains and feed-forward that set_parameters takes, driven: none makes a robot exceed the
+commanded speed, or shake without a cause.
+
+A set is drawn around what is derived and described, far enough out that most are refused; the first that is taken is
+driven. It is given at rest, or on the way, to a robot that then drives on and stops. A pure function of robot and seed.
+
+    exceeds    a true speed beyond the commanded one by 5 % of it, at least LEAST, for 50 ms without a break; where 0 is
+               commanded, by 20 % of the fastest rim's. Of skid steers, whose wheels scrub, the wheels' mean over 50 ms
+    shakes     a motor whose torque varies within 0.2 s by more than SHAKES of its limit, RMS, all of the last half
+               second, while the monitor neither stops nor warns
+
+What happens after the monitor has stopped the robot does not count.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from robot_control._robot_control import ParameterError
+from robot_control.cause_bits import causes_in
+from robot_control.closed_loop import ClosedLoop, Log
+
+from lab.robot_corpus import DIFFBOT, robot_names, urdf_of
+
+ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
+ALL_RUNS = 100_000
+PART = 0.05
+ASIDE = 0.2  # of the fastest rim, along an axis that is to stand
+LEAST = 0.02  # m/s of a rim
+EXCESS_TIME = 0.05  # s
+SHAKES = 0.6  # of the torque limit: 0.3, and what the counts make of it on the robots here
+BEFORE, DRIVEN, STOPPING = 0.5, 1.5, 0.7  # s
+DRAWS = 200  # sets refused in a row, then the seed is given up
+
+GAINS = {"pid_kp": 100.0, "pid_ki": 100.0, "tracking_bandwidth": 20.0}  # drawn up to so many times either way
+FORWARD = {"mass": 6.0, "yaw_inertia": 12.0, "wheel_inertia": 40.0}
+LIMITS = {
+    "max_linear_speed": (0.05, 1.2),
+    "max_angular_speed": (0.1, 2.5),
+    "max_linear_acceleration": (0.1, 4.0),
+    "max_angular_acceleration": (0.3, 12.0),
+    "max_linear_deceleration": (0.1, 4.0),
+    "max_angular_deceleration": (0.3, 12.0),
+    "max_linear_jerk": (1.0, 1000.0),
+    "max_angular_jerk": (4.0, 4000.0),
+}  # SI units
+EMERGENCY = {"max_linear_emergency_deceleration": 4.0, "max_angular_emergency_deceleration": 12.0}
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """What came of one seed. `values`: the set that was driven; empty where every one that was drawn was refused."""
+
+    robot: str
+    seed: int
+    values: dict[str, Any] = field(default_factory=dict)
+    refused: int = 0
+    faults: tuple[str, ...] = ()
+    causes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.robot}, seed {self.seed}, {self.values}: {'; '.join(self.faults) or 'nothing amiss'}"
+
+
+def draw(random: np.random.Generator, derived: Log, joint: str, effort_limit: float, speed: float) -> dict[str, Any]:
+    """A set; `derived`: a row of the log, `joint` a wheel's, `effort_limit` [N m] and `speed` [rad/s] of the wheels."""
+
+    def times(most: float) -> float:
+        return float(np.exp(random.uniform(-np.log(most), np.log(most))))
+
+    def between(low: float, high: float) -> float:
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+    values: dict[str, Any] = {}
+    forward: dict[str, float] = {}
+    for name, most in GAINS.items():
+        if random.random() < 0.3:
+            column = name if name == "tracking_bandwidth" else f"{joint}_{name}"
+            values[name] = float(derived[column][0]) * times(most)
+    if random.random() < 0.1:
+        values["pid_kd"] = float(derived[f"{joint}_pid_kp"][0]) * between(1e-5, 1e-2)
+    for name, most in FORWARD.items():
+        if random.random() < 0.2:
+            column = f"{joint}_feed_forward_inertia" if name == "wheel_inertia" else f"feed_forward_{name}"
+            forward[name] = float(derived[column][0]) * times(most)
+    if random.random() < 0.2:
+        forward["wheel_damping"] = effort_limit / speed * between(1e-3, 10)
+    if random.random() < 0.2:
+        forward["wheel_friction"] = effort_limit * between(1e-3, 3)
+    for name, (low, high) in LIMITS.items():
+        if random.random() < 0.15:
+            values[name] = between(low, high)
+    if any("acceleration" in name or "deceleration" in name for name in values):
+        values |= EMERGENCY
+    if random.random() < 0.2:
+        values["keep_curvature"] = bool(random.random() < 0.5)
+    if forward:
+        values["feed_forward"] = forward
+    return values or {"pid_kp": float(derived[f"{joint}_pid_kp"][0]) * times(3)}
+
+
+def longest_excess(speed: NDArray[np.float64], bound: float, back: float, cycles: int) -> float:
+    """By how much `speed` lies beyond `bound`, or below −`back`, for `cycles` in a row; not above 0: never."""
+    windows = np.lib.stride_tricks.sliding_window_view(np.maximum(speed - bound, -speed - back), cycles)
+    return float(windows.min(axis=1).max(initial=-np.inf))
+
+
+def shaking(effort: NDArray[np.float64], cycles: int) -> float:
+    """RMS of what is left of a torque without its mean over `cycles`."""
+    mean = np.convolve(effort, np.full(cycles, 1 / cycles), mode="valid")
+    inner = effort[cycles // 2 : cycles // 2 + len(mean)]
+    return float(np.sqrt(np.mean((inner - mean) ** 2)))
+
+
+def carry_out(robot: str, seed: int) -> Tuned:
+    """One set, taken and driven."""
+    random = np.random.default_rng([seed, ROBOTS.index(robot)])
+    loop = ClosedLoop(seed=seed, urdf=urdf_of(robot))
+    wheels = [wheel["joint"] for wheel in loop.robot["wheels"]]
+    limits = {joint["name"]: joint["effort_limit"] for joint in loop.robot["joints"]}
+    rim = loop.robot["effective_wheel_base"] / 2  # m
+    speed = (1.0 + 2.0 * rim) / loop.robot["wheels"][0]["radius"]
+    on_the_way = bool(random.random() < 0.5)
+    kind = random.integers(3)
+    share = 10 ** random.uniform(-1, 0) if random.random() < 0.5 else 1.0
+    linear, angular = (share * part for part in ((1.0, 0.0), (0.0, 2.0), (0.5, 1.0))[kind])
+    before = loop.run(BEFORE, (linear, angular) if on_the_way else (0.0, 0.0))
+    values, refused = _taken(loop, lambda: draw(random, before, wheels[0], limits[wheels[0]], speed))
+    if not values:
+        return Tuned(robot, seed, refused=refused)
+    driven = loop.run(DRIVEN, (linear, angular))
+    stopping = loop.run(STOPPING, (0.0, 0.0))
+    faults = [*_exceeds(loop, driven, stopping, (linear, angular), rim), *_shakes(loop, driven, wheels, limits)]
+    causes = causes_in(np.concatenate([driven["permit_causes"], stopping["permit_causes"]]))
+    return Tuned(robot, seed, values, refused, tuple(faults), tuple(causes))
+
+
+def _taken(loop: ClosedLoop, draw_one: Callable[[], dict[str, Any]]) -> tuple[dict[str, Any], int]:
+    """The first set that is taken, and how many were refused before."""
+    for refused in range(DRAWS):
+        values = draw_one()
+        try:
+            loop.set_parameters(values)
+        except ParameterError:
+            continue
+        return values, refused
+    return {}, DRAWS
+
+
+def _exceeds(loop: ClosedLoop, driven: Log, stopping: Log, command: tuple[float, float], rim: float) -> list[str]:
+    faults = []
+    cycles = max(1, round(EXCESS_TIME / loop.period))
+    fastest = abs(command[0]) + rim * abs(command[1])
+    stops = np.concatenate([driven["permit_causes"], stopping["permit_causes"]]) > 0
+    good = int(np.argmax(stops)) if stops.any() else len(stops)
+    speeds = _speeds(loop, [driven, stopping], cycles)
+    for name, asked, scale in (("linear", command[0], 1.0), ("angular", command[1], rim)):
+        speed = speeds[name][:good]
+        tolerance = max(PART * abs(asked) * scale if asked else ASIDE * fastest, LEAST) / scale
+        if len(speed) < cycles:
+            continue
+        beyond = longest_excess(speed, asked + tolerance, tolerance, cycles)
+        if beyond > 0:
+            faults.append(f"{name} speed beyond {asked:.3g} by {beyond + tolerance:.3g} for {EXCESS_TIME} s")
+    return faults
+
+
+def _speeds(loop: ClosedLoop, logs: list[Log], cycles: int) -> dict[str, NDArray[np.float64]]:
+    """Linear [m/s] and angular [rad/s]: true; of skid steers by the wheels, over `cycles`."""
+    wheels = loop.robot["wheels"]
+    if len(wheels) == 2:
+        return {name: np.concatenate([log[f"truth_{name}"] for log in logs]) for name in ("linear", "angular")}
+    rims: dict[str, list[NDArray[np.float64]]] = {"left": [], "right": []}
+    for wheel in wheels:
+        way = wheel["sign"] * wheel["radius"] * np.concatenate([log[f"{wheel['joint']}_position"] for log in logs])
+        moved = np.concatenate([np.zeros(cycles), way[cycles:] - way[:-cycles]])
+        rims[wheel["side"]].append(moved / (cycles * loop.period))
+    left, right = (np.mean(rims[side], axis=0) for side in ("left", "right"))
+    return {"linear": (left + right) / 2, "angular": (right - left) / loop.robot["effective_wheel_base"]}
+
+
+def _shakes(loop: ClosedLoop, driven: Log, wheels: list[str], limits: dict[str, float]) -> list[str]:
+    last = round(0.5 / loop.period)
+    if np.any(driven["permit_causes"] > 0) or np.any(driven["permit_warnings"][-last:] > 0):
+        return []
+    shares = {
+        name: shaking(driven[f"{name}_effort"][-last:], round(0.2 / loop.period)) / limits[name] for name in wheels
+    }
+    return [f"{name} shakes with {share:.2f} of its torque" for name, share in shares.items() if share > SHAKES]
+
+
+def _one(job: tuple[str, int]) -> Tuned:
+    return carry_out(*job)
+
+
+def bench(first: int, runs: int, tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+    """`runs` sets over all robots that are there, from seed `first` on, and whether none was amiss."""
+    began = time.monotonic()
+    there = [robot for robot in ROBOTS if robot in robot_names()]
+    jobs = [(there[i % len(there)], first + i // len(there)) for i in range(runs)]
+    driven = refused = amiss = stopped = 0
+    with multiprocessing.Pool() as pool:
+        for outcome in pool.imap_unordered(_one, jobs, chunksize=8):
+            driven += bool(outcome.values)
+            refused += outcome.refused
+            stopped += bool(outcome.causes)
+            if outcome.faults:
+                amiss += 1
+                tell(str(outcome))
+    figures = [
+        ("sets driven", driven, ""),
+        ("sets refused", refused, ""),
+        ("sets stopped by the monitor", stopped, ""),
+        ("sets amiss", amiss, ""),
+        ("speed", runs / (time.monotonic() - began), "sets per s"),
+    ]
+    rows = [
+        {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
+        for name, value, unit in figures
+    ]
+    absent = [robot for robot in ROBOTS if robot not in there]
+    return {"bench": "tuning", "rows": rows, "not_judged": absent}, amiss == 0 and driven == runs
