@@ -134,8 +134,8 @@ std::string unstable_message(const Loop& loop, const Loop& derived, const std::s
        << loop.radius(load) << ", must be < 1. ";
   const double part = stable_part(loop, derived);
   if (part > 0) {
-    text << "Use at most pid_kp " << part * gains.kp << ", pid_ki " << part * part * gains.ki << ", pid_kd " << part * gains.kd
-         << ", or leave pid_kp and pid_ki out: then they are derived from the robot.";
+    text << "Use at most pid_kp " << part * gains.kp << ", pid_ki " << part * part * gains.ki << ", pid_kd "
+         << part * gains.kd << ", or leave pid_kp and pid_ki out: then they are derived from the robot.";
   } else {
     text
         << "No smaller gains of this proportion are stable: lower pid_ki or pid_kd against pid_kp, or leave pid_kp and "
@@ -151,8 +151,7 @@ std::string underdamped_message(const Loop& loop, const Loop& derived, const std
        << loop.gains.kd << ", tracking_bandwidth " << loop.bandwidth << " Hz: the loop of joint '" << joint
        << "' oscillates with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
        << (described(loop, load) ? " by the description" : "") << "): damping ratio " << loop.damping(load)
-       << ", must be at least " << Loop::least_damping(derived, load)
-       << ". ";
+       << ", must be at least " << Loop::least_damping(derived, load) << ". ";
   if (const double most = damped_ki(loop, derived); most > 0) {
     text << "Use at most pid_ki " << most;
   } else {
@@ -313,8 +312,8 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
     const JointModel& joint = robot.joints[wheel.joint];
     if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, robot));
     const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, believed, i)};
-    const Loop derived{wheel_loop_gains({}, believed, believed.wheels[i], period), tracking_bandwidth({}, period), period,
-                       loop.loads};
+    const Loop derived{wheel_loop_gains({}, believed, believed.wheels[i], period), tracking_bandwidth({}, period),
+                       period, loop.loads};
     if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
     judged.push_back(loop);
     if (const Load* load = loop.unstable_load()) {

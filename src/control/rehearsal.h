@@ -10,10 +10,10 @@
 ///   (τ'_right − τ'_left)/2 = (r·I/(h·b) + J·b_eff/2r)·ω̇ + r·m·x_c·v·ω/(h·b)
 ///
 /// Motions: straight at full speed and at kSlowPart of it, turning on the spot likewise, and both axes at half speed;
-/// each from rest until it is steady, then back to rest. Steady at full speed, 1 % of the weight pushes the right side's
-/// wheels on for half a second: rolling resistance or a caster that swivels, which the loops must be strong
-/// enough for. What is looked for is by how much a speed lies beyond both ends of its ramp for kExcessTime without a break,
-/// in tolerances of
+/// each from rest until it is steady, then back to rest. Steady at full speed, 1 % of the weight pushes the right
+/// side's wheels on for half a second: rolling resistance or a caster that swivels, which the loops must be strong
+/// enough for. What is looked for is by how much a speed lies beyond both ends of its ramp for kExcessTime without a
+/// break, in tolerances of
 ///
 ///   max(kExcessPart·|speed|, kLeastExcess)      speed: of the motion along that axis; where it is 0,
 ///                                               of the fastest rim

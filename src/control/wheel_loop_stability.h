@@ -24,8 +24,8 @@ struct WheelLoad {
   bool operator==(const WheelLoad&) const noexcept = default;
 };
 
-/// The smallest damping ratio of all modes: with s = ln(λ)/period, ζ = −Re(s)/|s|. 1: no mode oscillates; ≤ 0: unstable.
-/// Each half swing of a mode is e^(−πζ/√(1−ζ²)) of the one before: 0.37 for ζ = 0.3.
+/// The smallest damping ratio of all modes: with s = ln(λ)/period, ζ = −Re(s)/|s|. 1: no mode oscillates; ≤ 0:
+/// unstable. Each half swing of a mode is e^(−πζ/√(1−ζ²)) of the one before: 0.37 for ζ = 0.3.
 double wheel_loop_damping_ratio(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth);
 
 /// `period` s, `bandwidth` Hz of the tracking loop; both > 0. `delay`: cycles beyond the bus' one.

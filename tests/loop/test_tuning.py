@@ -28,6 +28,8 @@ def test_no_set_that_is_taken_exceeds_the_speed_or_shakes_without_a_cause():
         {"feed_forward": {"wheel_inertia": 0.03}, "pid_kp": 20.0},
         {"feed_forward": {"mass": 59.0, "wheel_inertia": 0.149, "yaw_inertia": 3.5}},
         {"pid_kp": 0.05},
+        {"tracking_bandwidth": 300},
+        {"tracking_bandwidth": 1},
     ],
 )
 def test_a_set_that_would_break_a_limit_is_refused(values):
@@ -35,14 +37,14 @@ def test_a_set_that_would_break_a_limit_is_refused(values):
         ClosedLoop().set_parameters(values)
 
 
-# 4096 counts behind a loop of 300 Hz: 1.8 N m RMS of the 3.5 that the motor has.
+# 1000 counts behind a loop of 99 Hz: 1.9 N m RMS of the 3.5 that the motor has.
 def test_a_set_that_makes_the_wheels_shake_is_warned_of_and_stopped():
-    loop = ClosedLoop()
-    loop.set_parameters({"tracking_bandwidth": 300})
-    log = loop.run(3.0, (1.0, 0.0))
+    loop = ClosedLoop(params={"mujoco_plant": {"encoder_resolution": 1000}})
+    loop.set_parameters({"tracking_bandwidth": 99})
+    log = loop.run(4.0, (1.0, 0.0))
     assert causes_in(log["permit_causes"]) == ["torque_oscillation"]
     warned, stopped = (int(np.argmax(log[name] > 0)) for name in ("permit_warnings", "permit_causes"))
-    assert 0 < warned < stopped < 2.5 / loop.period
+    assert 0 < warned < stopped < 3.0 / loop.period
     assert np.abs(log["truth_linear"]).max() < 1.05
 
 
