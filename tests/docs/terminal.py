@@ -1,0 +1,203 @@
+"""A terminal of a user's: runs the commands of the documentation in order, starts and ends those that do not end.
+
+A private ROS master on the loopback. Programs are ended by process id only.
+"""
+
+import os
+import re
+import shlex
+import signal
+import socket
+import subprocess
+import sys
+import time
+import xmlrpc.client
+from contextlib import suppress
+from pathlib import Path
+
+LIMIT = 60.0
+"""s, of a command that ends by itself; measured below 8 on an idle machine."""
+START = 30.0
+"""s, until a server is ready; measured below 4."""
+WATCH = 2.0
+"""s, for which an observer is looked at."""
+
+NODES = {"mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"}
+SERVICES = {"/mujoco_plant/inject_fault", "/e_stop_reset", "/diff_drive_controller/set_parameter_map", "/set_odometry"}
+
+
+class FailedError(AssertionError):
+    """A command of the documentation that does not do what a reader expects; with its output."""
+
+
+class Program:
+    """A program in a process group of its own, its output in a file."""
+
+    def __init__(self, command, folder, environment):
+        self.command = command
+        self.output = folder / f"output_{time.monotonic_ns()}"
+        with self.output.open("wb") as file:
+            self.process = subprocess.Popen(
+                ["env", "--default-signal=INT", "bash", "-c", f"exec {command}"],
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=file,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    @property
+    def running(self):
+        return self.process.poll() is None
+
+    def text(self):
+        return self.output.read_text(errors="replace")
+
+    def end(self):
+        """SIGINT to the program; what is still there after 15 s is killed with its group."""
+        if self.running:
+            self.process.send_signal(signal.SIGINT)
+            with suppress(subprocess.TimeoutExpired):
+                self.process.wait(15)
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+
+
+def until(condition, what, program=None, limit=START):
+    deadline = time.monotonic() + limit
+    while not condition():
+        if program is not None and not program.running:
+            raise FailedError(f"{program.command}: ended while starting\n{program.text()}")
+        if time.monotonic() > deadline:
+            raise FailedError(f"{what}: not within {limit:.0f} s\n{program.text() if program else ''}")
+        time.sleep(0.05)
+
+
+def never_ends(command):
+    """What a command that does not end by itself is: a launch, a node, a sender or an observer; else ""."""
+    words = shlex.split(command)
+    if words[0] == "roslaunch":
+        return "" if any(word.startswith("cycles:=") for word in words) else "launch"
+    if words[:2] == ["rosrun", "robot_control"]:
+        if words[2] in NODES:
+            return "node"
+        return {"send_cmd.py": "sender", "why.py": "observer"}.get(words[2], "")
+    return "observer" if words[:2] == ["rostopic", "hz"] else ""
+
+
+class Terminal:
+    """`folder`: where commands run; holds what they write."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        port = free_port()
+        uri = f"http://127.0.0.1:{port}"
+        self.environment = dict(os.environ, ROS_MASTER_URI=uri, ROS_IP="127.0.0.1", PWD=str(folder))
+        self.environment |= {"ROS_HOME": str(folder / ".ros"), "MPLBACKEND": "Agg", "PYTHONUNBUFFERED": "1"}
+        for name in ("ROS_HOSTNAME", "ROS_NAMESPACE"):
+            self.environment.pop(name, None)
+        self.master = xmlrpc.client.ServerProxy(uri)
+        self.core = Program(f"roscore -p {port}", folder, self.environment)
+        self.launch = None
+        self.others = []
+        until(self._master_answers, "roscore", self.core)
+
+    def _master_answers(self):
+        with suppress(OSError, xmlrpc.client.Error):
+            return self.master.getPid("/terminal")[0] == 1
+        return False
+
+    def registered(self):
+        """Names of nodes and services."""
+        _, _, (publishers, subscribers, services) = self.master.getSystemState("/terminal")
+        nodes = {node for kind in (publishers, subscribers, services) for _, who in kind for node in who}
+        return nodes | {name for name, _ in services}
+
+    def run(self, command):
+        kind = never_ends(command)
+        if kind == "launch":
+            self._start_launch(command)
+        elif kind in ("node", "sender"):
+            self._start(command, kind)
+        elif kind == "observer":
+            self._observe(command)
+        else:
+            self._run_to_its_end(command)
+
+    def _start_launch(self, command):
+        """A launch that runs already with the same arguments goes on."""
+        if self.launch is not None and self.launch.running and self.launch.command == command:
+            return
+        self.end_programs()
+        self.launch = Program(command, self.folder, self.environment)
+        until(lambda: self.registered() >= SERVICES, command, self.launch)
+
+    def _start(self, command, kind):
+        if kind == "node" and self.launch is not None:
+            self.end_programs()
+        program = Program(command, self.folder, self.environment)
+        self.others.append(program)
+        name = "/" + shlex.split(command)[2].removesuffix(".py")
+        until(lambda: any(node.startswith(name) for node in self.registered()), command, program)
+
+    def _observe(self, command):
+        program = Program(command, self.folder, self.environment)
+        try:
+            time.sleep(WATCH)
+            if not program.running or "Traceback" in program.text():
+                raise FailedError(f"{command}: ended\n{program.text()}")
+        finally:
+            program.end()
+
+    def _run_to_its_end(self, command):
+        if "cycles:=" in command:
+            self.end_programs()
+        self.judge(command, ["bash", "-ec", command])
+
+    def run_python(self, text):
+        self.judge(text, [sys.executable, "-c", text])
+
+    def judge(self, what, command):
+        """Must end by itself within LIMIT, with exit code 0 and without a message of an error."""
+        process = subprocess.Popen(
+            command,
+            cwd=self.folder,
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            start_new_session=True,
+        )
+        try:
+            output, _ = process.communicate(timeout=LIMIT)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            output, _ = process.communicate()
+            output += f"\nnot ended after {LIMIT:.0f} s"
+        if process.returncode != 0 or re.search(r"Traceback|^usage: |ERROR: ", output, re.MULTILINE):
+            raise FailedError(f"{what}\nexit code {process.returncode}\n{output}")
+
+    def end_senders(self):
+        for program in reversed(self.others):
+            program.end()
+        self.others = []
+
+    def end_programs(self):
+        self.end_senders()
+        if self.launch is not None:
+            self.launch.end()
+        self.launch = None
+
+    def close(self):
+        self.end_programs()
+        self.core.end()
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
