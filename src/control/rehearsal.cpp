@@ -6,9 +6,12 @@
 #include <vector>
 
 #include "control/drive_controller.h"
-#include "control/drive_limits.h"
 #include "control/kinematics.h"
+<<<<<<< HEAD
 #include "robot/gravity.h"
+=======
+#include "control/limits/drive_limits.h"
+>>>>>>> ready-rooms
 
 namespace robot_control {
 namespace {
