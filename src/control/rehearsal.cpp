@@ -7,11 +7,8 @@
 
 #include "control/drive_controller.h"
 #include "control/kinematics.h"
-<<<<<<< HEAD
-#include "robot/gravity.h"
-=======
 #include "control/limits/drive_limits.h"
->>>>>>> ready-rooms
+#include "robot/gravity.h"
 
 namespace robot_control {
 namespace {
