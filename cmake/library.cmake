@@ -9,7 +9,7 @@ target_compile_options(robot_control_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # GCC 12 sees overlapping copies in "literal" + string (its bug 105329)
 if(CMAKE_UNITY_BUILD)
   target_compile_options(robot_control_options INTERFACE
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)  # GCC takes a source within another for a header
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-error=subobject-linkage>)  # GCC takes a source within another for a header
 endif()
 target_link_libraries(robot_control_options INTERFACE Threads::Threads)
 if(ROBOT_CONTROL_SANITIZER STREQUAL "address")

@@ -205,8 +205,9 @@ class ClosedLoop:
             raise RuntimeError(f"{what} cannot be called from the command function of a run")
 
     def stop_distance(self, speed: float, *, emergency: bool = False) -> float:
-        """Way [m] to rest, straight on from a steady `speed` [m/s], that the limits predict (control/stop_distance.h),
-        from the cycle that takes the command, with the period until its torque acts. `emergency`: as after a timeout.
+        """Distance [m] to rest, straight on from a steady `speed` [m/s], that the limits predict, from the cycle that
+        takes the command, with the period until its torque acts (control/limits/stop_distance.h). `emergency`: as
+        after a timeout.
         """
         return self._loop.stop_distance(speed, emergency)
 

@@ -6,8 +6,8 @@ limits (a, d, j: acceleration, deceleration, jerk) covers no more than
 
     v·(cruise + v/(2a) + v/(2d) + (a + d)/(2j))
 
-(src/control/axis_limiter.h: a ramp to v lasts v/a + a/j and covers half of v times that); the fastest speed is the
-largest for which this fits, less a REACH of reserve.
+(src/control/limits/axis_limiter.h: a ramp to v lasts v/a + a/j and covers half of v times that); the fastest speed is
+the largest for which this fits, less a REACH of reserve.
 """
 
 from __future__ import annotations

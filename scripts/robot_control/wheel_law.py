@@ -1,8 +1,8 @@
 """The law that an identified robot is taken to obey, as rows of a linear regression.
 
 Torque τ and angle q of a wheel, forward positive; v, ω the robot's speeds by its wheels, r the wheel's radius,
-side −1 left, +1 right, h wheels a side, b the wheel base, b' the effective one (the law of src/control/feed_forward.h).
-Wheels behind each other are fitted as one, their mean: the ground carries torque from one to the other, and who of them
+side −1 left, +1 right, h wheels a side, b the wheel base, b' the effective one (the law of
+src/control/wheel_loops/feed_forward.h). Wheels behind each other are fitted as one, their mean: the ground carries torque from one to the other, and who of them
 bears how much is chance.
 
     τ = J_straight·v̇/r + J_turning·side·ω̇·b'/(2r) + d·q̇ + f·sign(q̇) + side·(s·sign(ω) + e·ω)

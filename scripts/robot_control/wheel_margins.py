@@ -1,4 +1,5 @@
-"""How much a wheel loop bears: more gain, more delay, by the eigenvalues of src/control/wheel_loop_stability.h."""
+"""How much a wheel loop bears: more gain, more delay, by the eigenvalues of
+src/control/wheel_loops/wheel_loop_stability.h."""
 
 from __future__ import annotations
 

@@ -8,12 +8,12 @@
 #include <sstream>
 #include <utility>
 
-#include "control/feed_forward.h"
 #include "control/kinematics.h"
 #include "control/measured_robot.h"
 #include "control/rehearsal.h"
-#include "control/wheel_loop_gains.h"
-#include "control/wheel_loop_stability.h"
+#include "control/wheel_loops/feed_forward.h"
+#include "control/wheel_loops/wheel_loop_gains.h"
+#include "control/wheel_loops/wheel_loop_stability.h"
 
 namespace robot_control {
 

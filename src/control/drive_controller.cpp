@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "control/drive_limits.h"
-#include "control/drive_tuning.h"
+#include "control/derived_tuning.h"
+#include "control/limits/drive_limits.h"
 #include "control/measured_robot.h"
-#include "control/wheel_loop_gains.h"
+#include "control/wheel_loops/wheel_loop_gains.h"
 
 namespace robot_control {
 

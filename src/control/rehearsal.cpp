@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "control/drive_controller.h"
-#include "control/drive_limits.h"
 #include "control/kinematics.h"
+#include "control/limits/drive_limits.h"
 
 namespace robot_control {
 namespace {

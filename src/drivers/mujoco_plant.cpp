@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "description/wording.h"
+#include "drivers/contact/rest.h"
 #include "drivers/mujoco_errors.h"
-#include "drivers/rest.h"
 
 namespace robot_control {
 namespace {

@@ -40,14 +40,14 @@
 #include <string>
 #include <vector>
 
-#include "drivers/joint_law.h"
-#include "drivers/motor.h"
-#include "drivers/motor_faults.h"
-#include "drivers/mujoco_model.h"
+#include "drivers/contact/wheel_contacts.h"
+#include "drivers/model/mujoco_model.h"
+#include "drivers/motors/joint_law.h"
+#include "drivers/motors/motor.h"
+#include "drivers/motors/motor_faults.h"
 #include "drivers/mujoco_plant_parameters.h"
-#include "drivers/sensor_errors.h"
-#include "drivers/sensor_faults.h"
-#include "drivers/wheel_contacts.h"
+#include "drivers/sensors/sensor_errors.h"
+#include "drivers/sensors/sensor_faults.h"
 #include "hal/driver.h"
 #include "robot/robot_model.h"
 

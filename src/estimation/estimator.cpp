@@ -6,9 +6,9 @@
 #include <numbers>
 #include <utility>
 
-#include "estimation/algebra.h"
 #include "estimation/estimator_setup.h"
-#include "estimation/placing.h"
+#include "estimation/filter/algebra.h"
+#include "estimation/filter/placing.h"
 
 namespace robot_control {
 namespace {

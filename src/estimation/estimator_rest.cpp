@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "estimation/algebra.h"
 #include "estimation/estimator.h"
-#include "estimation/placing.h"
+#include "estimation/filter/algebra.h"
+#include "estimation/filter/placing.h"
 
 namespace robot_control {
 namespace {

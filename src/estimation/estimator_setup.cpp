@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "estimation/algebra.h"
+#include "estimation/filter/algebra.h"
 
 namespace robot_control {
 

@@ -1,10 +1,10 @@
 #pragma once
 /// What a user sets and what the robot is → what the estimator's parts start with.
 
-#include "estimation/error_state_filter.h"
 #include "estimation/estimator_parameters.h"
-#include "estimation/standstill_window.h"
-#include "estimation/wheel_geometry.h"
+#include "estimation/filter/error_state_filter.h"
+#include "estimation/inertial/standstill_window.h"
+#include "estimation/wheels/wheel_geometry.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

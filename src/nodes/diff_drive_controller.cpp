@@ -1,5 +1,5 @@
-#include "bridge/diff_drive_controller_node.h"
-#include "bridge/node.h"
+#include "bridge/nodes/diff_drive_controller_node.h"
+#include "bridge/nodes/node.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;

@@ -1,5 +1,5 @@
-#include "bridge/node.h"
-#include "bridge/safety_monitor_node.h"
+#include "bridge/nodes/node.h"
+#include "bridge/nodes/safety_monitor_node.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;

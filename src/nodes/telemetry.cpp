@@ -1,5 +1,5 @@
-#include "bridge/node.h"
-#include "bridge/telemetry_node.h"
+#include "bridge/nodes/node.h"
+#include "bridge/nodes/telemetry_node.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "control/drive_limits.h"
+#include "control/limits/drive_limits.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"

@@ -7,7 +7,7 @@
 
 #include "description/mesh.h"
 #include "description/wording.h"
-#include "robot/rigid_bodies.h"
+#include "robot/bodies/rigid_bodies.h"
 
 namespace py = pybind11;
 

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "control/drive_limits.h"
-#include "control/stop_distance.h"
-#include "control/wheel_loop_stability.h"
-#include "drivers/mujoco_model.h"
+#include "control/limits/drive_limits.h"
+#include "control/limits/stop_distance.h"
+#include "control/wheel_loops/wheel_loop_stability.h"
+#include "drivers/model/mujoco_model.h"
 #include "drivers/mujoco_plant.h"
 #include "hal/driver.h"
 #include "python/describe.h"

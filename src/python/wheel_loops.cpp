@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "control/feed_forward.h"
 #include "control/measured_robot.h"
-#include "control/wheel_loop_gains.h"
+#include "control/wheel_loops/feed_forward.h"
+#include "control/wheel_loops/wheel_loop_gains.h"
 
 namespace py = pybind11;
 

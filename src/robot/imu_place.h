@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/rigid_bodies.h"
+#include "robot/bodies/rigid_bodies.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "robot/drive_wheels.h"
+#include "robot/wheels/drive_wheels.h"
 
 namespace robot_control {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/rigid_bodies.h"
+#include "robot/bodies/rigid_bodies.h"
 
 namespace robot_control {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "description/wording.h"
+#include "robot/bodies/rigid_bodies.h"
+#include "robot/bodies/shape_support.h"
+#include "robot/bodies/tipping.h"
 #include "robot/gravity.h"
-#include "robot/rigid_bodies.h"
-#include "robot/shape_support.h"
-#include "robot/tipping.h"
 
 namespace robot_control {
 namespace {

@@ -14,7 +14,7 @@
 /// skipped. Cycles may repeat, not decrease.
 ///
 /// A script begins each run with a request of zero velocity before its first row, because nothing older can be pending:
-/// the first row may move the robot (safety/motion_release.h).
+/// the first row may move the robot (safety/latch/motion_release.h).
 
 #include <cstdint>
 #include <optional>

@@ -14,7 +14,7 @@
 
 #include "hal/faulty_output.h"
 #include "rt/latest_frames.h"
-#include "runtime/cycle_clock.h"
+#include "runtime/cycles/cycle_clock.h"
 #include "runtime/spoilt_frames.h"
 
 namespace robot_control {

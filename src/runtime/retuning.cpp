@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "control/control_problems.h"
-#include "control/drive_tuning.h"
+#include "control/derived_tuning.h"
 #include "parameters/problem_list.h"
 #include "runtime/safety_limits.h"
 #include "safety/derived_limits.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "control/wheel_loop_gains.h"
+#include "control/wheel_loops/wheel_loop_gains.h"
 #include "safety/derived_limits.h"
 
 namespace robot_control {

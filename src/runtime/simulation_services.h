@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "hal/driver.h"
-#include "runtime/driver_cycle.h"
-#include "runtime/loop_hold.h"
+#include "runtime/cycles/driver_cycle.h"
+#include "runtime/processes/loop_hold.h"
 
 namespace robot_control {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "safety/latch/stop_category.h"
 #include "safety/parameter_check.h"
-#include "safety/stop_category.h"
 
 namespace robot_control {
 namespace {

@@ -52,7 +52,7 @@ struct CommandFrame {
   std::uint64_t requests_crowded = 0;   ///< of these: while more than one node sent
   std::uint64_t timeouts = 0;           ///< in this run, one per event
 
-  // What the monitor needs to know before it permits motion (safety/motion_release.h).
+  // What the monitor needs to know before it permits motion (safety/latch/motion_release.h).
   std::uint64_t first_cycle = 0;     ///< of this run, in which this process computed its first command
   std::uint64_t zero_requests = 0;   ///< zero velocities accepted since then, while no other sender requested motion
   std::uint64_t zero_requested = 0;  ///< 1: nothing but such zeros was received since the last of them

@@ -103,14 +103,14 @@ struct Permit {
   std::uint64_t ramp_until = 0;  ///< last cycle of the ramp; kRamp only
   std::uint64_t expiry = 0;      ///< last cycle in which this permit is alive
   SupervisorState state = SupervisorState::kInit;
-  std::uint64_t causes = 0;          ///< latched since the last accepted reset
-  std::uint64_t active = 0;          ///< true in this very cycle
-  std::uint64_t first_cause = 0;     ///< one bit: what stopped the robot first
-  std::uint64_t warnings = 0;        ///< true now or a moment ago, told or slowed down for, not latched
-  std::uint64_t since_cycle = 0;     ///< in which `state` was entered (of this run; 0 after a new run)
-  std::uint64_t missing = 0;         ///< nodes that were not seen in this run
-  std::uint64_t unreleased = 0;      ///< 1: since a start, no zero velocity was requested (safety/motion_release.h)
-  std::uint64_t boot = 0;            ///< SensorFrame::boot of the driver it was issued for
+  std::uint64_t causes = 0;       ///< latched since the last accepted reset
+  std::uint64_t active = 0;       ///< true in this very cycle
+  std::uint64_t first_cause = 0;  ///< one bit: what stopped the robot first
+  std::uint64_t warnings = 0;     ///< true now or a moment ago, told or slowed down for, not latched
+  std::uint64_t since_cycle = 0;  ///< in which `state` was entered (of this run; 0 after a new run)
+  std::uint64_t missing = 0;      ///< nodes that were not seen in this run
+  std::uint64_t unreleased = 0;   ///< 1: since a start, no zero velocity was requested (safety/latch/motion_release.h)
+  std::uint64_t boot = 0;         ///< SensorFrame::boot of the driver it was issued for
   std::uint64_t resets_handled = 0;  ///< counter of the last reset request that was answered
   std::uint64_t reset_refusal = 0;   ///< why that one was refused; 0 = accepted
   double speed_limit = 0;            ///< m/s, of every wheel's rim over the ground; kNoSpeedLimit: none

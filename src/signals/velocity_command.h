@@ -9,7 +9,7 @@ namespace robot_control {
 
 /// The last command on `cmd_vel` or `cmd_vel_stamped` that may be used, and how many may not. `count` grows by one with
 /// every usable one: that, not a clock, tells a new command from an old one. A stamp becomes an age once, when the
-/// message arrives (bridge/command_input.h); from then on only cycles count, which no clock moves.
+/// message arrives (bridge/inputs/command_input.h); from then on only cycles count, which no clock moves.
 struct VelocityCommand {
   Twist twist;  ///< base axes; NaN and infinity are passed on, the controller refuses them
   std::uint64_t count = 0;

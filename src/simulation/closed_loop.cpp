@@ -4,11 +4,11 @@
 #include <string>
 
 #include "drivers/mujoco_plant.h"
-#include "runtime/controller_cycle.h"
-#include "runtime/driver_cycle.h"
-#include "runtime/estimator_cycle.h"
+#include "runtime/cycles/controller_cycle.h"
+#include "runtime/cycles/driver_cycle.h"
+#include "runtime/cycles/estimator_cycle.h"
+#include "runtime/cycles/monitor_cycle.h"
 #include "runtime/gate_setup.h"
-#include "runtime/monitor_cycle.h"
 #include "runtime/retuning.h"
 #include "runtime/safety_limits.h"
 #include "runtime/start_check.h"

@@ -1,5 +1,5 @@
 // Which connection gives way where descriptors run out.
-#include "bridge/accepted_sockets.h"
+#include "bridge/network/accepted_sockets.h"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>

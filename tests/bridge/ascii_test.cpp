@@ -1,9 +1,9 @@
-#include "bridge/ascii.h"
+#include "bridge/reports/ascii.h"
 
 #include <gtest/gtest.h>
 
-#include "bridge/diagnostics.h"
-#include "bridge/status_messages.h"
+#include "bridge/messages/status_messages.h"
+#include "bridge/reports/diagnostics.h"
 #include "signals/names.h"
 
 namespace robot_control {

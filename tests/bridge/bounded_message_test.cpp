@@ -1,5 +1,5 @@
 // What a publisher may put on the wire, and what of it is looked at.
-#include "bridge/bounded_message.h"
+#include "bridge/messages/bounded_message.h"
 
 #include <gtest/gtest.h>
 

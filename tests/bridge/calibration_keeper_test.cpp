@@ -1,4 +1,4 @@
-#include "bridge/calibration_keeper.h"
+#include "bridge/nodes/calibration_keeper.h"
 
 #include <gtest/gtest.h>
 

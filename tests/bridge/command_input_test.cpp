@@ -1,4 +1,4 @@
-#include "bridge/command_input.h"
+#include "bridge/inputs/command_input.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "bridge/command_report.h"
+#include "bridge/reports/command_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

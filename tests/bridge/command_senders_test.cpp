@@ -1,4 +1,4 @@
-#include "bridge/command_senders.h"
+#include "bridge/inputs/command_senders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

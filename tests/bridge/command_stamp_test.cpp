@@ -1,4 +1,4 @@
-#include "bridge/command_stamp.h"
+#include "bridge/inputs/command_stamp.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bridge/description.h"
+#include "bridge/startup/description.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

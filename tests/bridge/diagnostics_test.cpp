@@ -1,4 +1,4 @@
-#include "bridge/diagnostics.h"
+#include "bridge/reports/diagnostics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "bridge/launch_end.h"
+#include "bridge/nodes/launch_end.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Where a socket that wants every address ends up.
-#include "bridge/loopback.h"
+#include "bridge/network/loopback.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

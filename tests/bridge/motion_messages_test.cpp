@@ -1,4 +1,4 @@
-#include "bridge/motion_messages.h"
+#include "bridge/messages/motion_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

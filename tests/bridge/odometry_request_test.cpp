@@ -1,4 +1,4 @@
-#include "bridge/odometry_request.h"
+#include "bridge/inputs/odometry_request.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

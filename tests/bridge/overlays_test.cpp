@@ -1,4 +1,4 @@
-#include "bridge/overlays.h"
+#include "bridge/startup/overlays.h"
 
 #include <gtest/gtest.h>
 #include <xmlrpcpp/XmlRpcValue.h>

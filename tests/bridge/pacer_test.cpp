@@ -1,4 +1,4 @@
-#include "bridge/pacer.h"
+#include "bridge/reports/pacer.h"
 
 #include <gtest/gtest.h>
 

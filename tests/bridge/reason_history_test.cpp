@@ -1,4 +1,4 @@
-#include "bridge/reason_history.h"
+#include "bridge/reports/reason_history.h"
 
 #include <gtest/gtest.h>
 

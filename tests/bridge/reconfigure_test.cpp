@@ -1,5 +1,5 @@
 // The live parameters as dynamic_reconfigure shows and sets them.
-#include "bridge/reconfigure.h"
+#include "bridge/inputs/reconfigure.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bridge/robot_report.h"
+#include "bridge/reports/robot_report.h"
 
 #include <gtest/gtest.h>
 

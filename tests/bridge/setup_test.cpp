@@ -1,9 +1,9 @@
-#include "bridge/setup.h"
+#include "bridge/startup/setup.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bridge/node.h"
+#include "bridge/nodes/node.h"
 
 namespace robot_control {
 namespace {

@@ -1,4 +1,4 @@
-#include "bridge/status_messages.h"
+#include "bridge/messages/status_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

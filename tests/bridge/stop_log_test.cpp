@@ -1,11 +1,11 @@
-#include "bridge/stop_log.h"
+#include "bridge/reports/stop_log.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "bridge/status_messages.h"
+#include "bridge/messages/status_messages.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "bridge/time_map.h"
+#include "bridge/messages/time_map.h"
 
 #include <gtest/gtest.h>
 #include <ros/time.h>

@@ -1,5 +1,5 @@
 // What peers send, as the checked functions of roscpp take it.
-#include "bridge/wire_guard.h"
+#include "bridge/network/wire_guard.h"
 
 #include <gtest/gtest.h>
 #include <ros/header.h>
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "bridge/interposition.h"
+#include "bridge/network/interposition.h"
 
 namespace robot_control {
 namespace {

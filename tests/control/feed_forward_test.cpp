@@ -1,4 +1,4 @@
-#include "control/feed_forward.h"
+#include "control/wheel_loops/feed_forward.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <sstream>
 
-#include "control/speed_limiter.h"
+#include "control/limits/speed_limiter.h"
 #include "signals/command_frame.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "control/speed_limiter.h"
+#include "control/limits/speed_limiter.h"
 
 #include <gtest/gtest.h>
 

@@ -21,8 +21,9 @@ namespace {
 constexpr double kPromisedNs = 200;  // the median on a quiet machine, whose kernel takes 92
 constexpr std::size_t kCycles = 1000;
 constexpr int kBlocks = 21;
-// A neighbour on the same core halves throughput, for seconds, and hardly touches the kernel's latency. A step that costs
-// too much does so in every round; one good round proves that it does not. The rounds are spread over ten seconds.
+// A neighbour on the same core halves throughput, for seconds, and hardly touches the kernel's latency. A step that
+// costs too much does so in every round; one good round proves that it does not. The rounds are spread over ten
+// seconds.
 constexpr int kRounds = 40;
 constexpr std::chrono::milliseconds kBetweenRounds(250);
 

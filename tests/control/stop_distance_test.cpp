@@ -1,4 +1,4 @@
-#include "control/stop_distance.h"
+#include "control/limits/stop_distance.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "control/speed_limiter.h"
+#include "control/limits/speed_limiter.h"
 #include "support/constants.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "control/tracking_loop.h"
+#include "control/wheel_loops/tracking_loop.h"
 
 #include <gtest/gtest.h>
 

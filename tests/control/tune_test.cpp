@@ -6,7 +6,7 @@
 #include <random>
 
 #include "control/control_bench.h"
-#include "control/drive_tuning.h"
+#include "control/derived_tuning.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {

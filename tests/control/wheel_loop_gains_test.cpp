@@ -1,4 +1,4 @@
-#include "control/wheel_loop_gains.h"
+#include "control/wheel_loops/wheel_loop_gains.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <random>
 
 #include "control/control_problems.h"
-#include "control/feed_forward.h"
 #include "control/test_robot.h"
-#include "control/wheel_loop_stability.h"
+#include "control/wheel_loops/feed_forward.h"
+#include "control/wheel_loops/wheel_loop_stability.h"
 #include "support/constants.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "control/wheel_loop_stability.h"
+#include "control/wheel_loops/wheel_loop_stability.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <deque>
 #include <limits>
 
-#include "control/wheel_loop.h"
+#include "control/wheel_loops/wheel_loop.h"
 #include "support/constants.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "control/wheel_loop.h"
+#include "control/wheel_loops/wheel_loop.h"
 
 #include <gtest/gtest.h>
 

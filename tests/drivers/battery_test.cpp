@@ -1,6 +1,6 @@
 /// The voltage under load, of the law alone and in the plant.
 
-#include "drivers/battery.h"
+#include "drivers/motors/battery.h"
 
 #include <gtest/gtest.h>
 

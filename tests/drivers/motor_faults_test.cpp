@@ -1,6 +1,6 @@
 /// Motors × every kind, on a bench: the effort that comes of a drive that was asked for one.
 
-#include "drivers/motor_faults.h"
+#include "drivers/motors/motor_faults.h"
 
 #include <gtest/gtest.h>
 

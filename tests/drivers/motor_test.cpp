@@ -1,4 +1,4 @@
-#include "drivers/motor.h"
+#include "drivers/motors/motor.h"
 
 #include <gtest/gtest.h>
 

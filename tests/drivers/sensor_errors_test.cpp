@@ -2,7 +2,7 @@
 /// mean σ/√n, a correlation 1/√n; every bound is five of them, which one test in a million misses, and the seeds are
 /// fixed.
 
-#include "drivers/sensor_errors.h"
+#include "drivers/sensors/sensor_errors.h"
 
 #include <gtest/gtest.h>
 

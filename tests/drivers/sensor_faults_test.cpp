@@ -2,7 +2,7 @@
 /// k mrad/s, the right one at −k and −k, gyro and accelerometer read (k, 2k, 3k)·10⁻³, the battery gives 24 V + k mV
 /// and k mA, nobody presses the e-stop button.
 
-#include "drivers/sensor_faults.h"
+#include "drivers/sensors/sensor_faults.h"
 
 #include <gtest/gtest.h>
 

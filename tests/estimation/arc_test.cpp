@@ -1,4 +1,4 @@
-#include "estimation/arc.h"
+#include "estimation/wheels/arc.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "estimation/estimator_fixture.h"
-#include "estimation/slip_watch.h"
+#include "estimation/wheels/slip_watch.h"
 #include "support/constants.h"
 
 namespace robot_control {

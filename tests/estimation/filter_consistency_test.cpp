@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "estimation/algebra.h"
+#include "estimation/filter/algebra.h"
 #include "estimation/filter_errors.h"
 
 namespace robot_control {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "estimation/error_state_filter.h"
+#include "estimation/filter/error_state_filter.h"
 
 namespace robot_control {
 

@@ -1,4 +1,4 @@
-#include "estimation/imu_samples.h"
+#include "estimation/inertial/imu_samples.h"
 
 #include <gtest/gtest.h>
 

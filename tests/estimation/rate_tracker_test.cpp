@@ -1,4 +1,4 @@
-#include "estimation/rate_tracker.h"
+#include "estimation/inertial/rate_tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -19,7 +19,7 @@
 #include <random>
 
 #include "estimation/estimator_parameters.h"
-#include "estimation/wheel_geometry.h"
+#include "estimation/wheels/wheel_geometry.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
 

@@ -1,4 +1,4 @@
-#include "estimation/side_encoder.h"
+#include "estimation/wheels/side_encoder.h"
 
 #include <gtest/gtest.h>
 

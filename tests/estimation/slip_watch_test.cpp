@@ -1,6 +1,6 @@
 // The watch itself, on a filter whose velocity and corrections are set by hand.
 
-#include "estimation/slip_watch.h"
+#include "estimation/wheels/slip_watch.h"
 
 #include <gtest/gtest.h>
 

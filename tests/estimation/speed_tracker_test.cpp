@@ -1,4 +1,4 @@
-#include "estimation/speed_tracker.h"
+#include "estimation/wheels/speed_tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "estimation/standstill_window.h"
+#include "estimation/inertial/standstill_window.h"
 
 #include <gtest/gtest.h>
 

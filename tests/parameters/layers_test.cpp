@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "control/drive_limits.h"
+#include "control/limits/drive_limits.h"
 #include "parameter_file.h"
 #include "parameters/suggestion.h"
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "hal/driver.h"
-#include "runtime/controller_cycle.h"
-#include "runtime/driver_cycle.h"
-#include "runtime/estimator_cycle.h"
-#include "runtime/monitor_cycle.h"
+#include "runtime/cycles/controller_cycle.h"
+#include "runtime/cycles/driver_cycle.h"
+#include "runtime/cycles/estimator_cycle.h"
+#include "runtime/cycles/monitor_cycle.h"
 
 namespace robot_control {
 

@@ -1,6 +1,6 @@
 /// The driver's process and the services of its simulated machine: who may touch what, from which thread.
 
-#include "runtime/driver_process.h"
+#include "runtime/processes/driver_process.h"
 
 #include <gtest/gtest.h>
 

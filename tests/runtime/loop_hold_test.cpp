@@ -1,4 +1,4 @@
-#include "runtime/loop_hold.h"
+#include "runtime/processes/loop_hold.h"
 
 #include <gtest/gtest.h>
 

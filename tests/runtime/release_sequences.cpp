@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "bridge/command_input.h"
+#include "bridge/inputs/command_input.h"
 #include "cycle_fixture.h"
 
 namespace robot_control {

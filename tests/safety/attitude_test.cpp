@@ -1,6 +1,6 @@
 /// Up, from gyro and accelerometer at 1 kHz. The healthy case: upright, at rest, known.
 
-#include "safety/attitude.h"
+#include "safety/measurements/attitude.h"
 
 #include <gtest/gtest.h>
 

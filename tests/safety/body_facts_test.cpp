@@ -1,7 +1,7 @@
 /// What happens to the body, at 1 kHz. The healthy case: a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart, its IMU
 /// in the middle, upright, rolling straight at 0.5 m/s; the last bits of every sample are others.
 
-#include "safety/body_facts.h"
+#include "safety/conditions/body_facts.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "safety/finite.h"
+#include "safety/measurements/finite.h"
 #include "safety/monitor_fixture.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"

@@ -1,4 +1,4 @@
-#include "safety/clearance.h"
+#include "safety/measurements/clearance.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "safety/latch/stop_category.h"
 #include "safety/monitor_fixture.h"
-#include "safety/stop_category.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "safety/latch/stop_category.h"
 #include "safety/monitor_fixture.h"
-#include "safety/stop_category.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -1,6 +1,6 @@
 // What the machine says of itself: overruns of the last second.
 
-#include "safety/machine_facts.h"
+#include "safety/conditions/machine_facts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "safety/motion_release.h"
+#include "safety/latch/motion_release.h"
 
 #include "safety/monitor_fixture.h"
 

@@ -1,6 +1,6 @@
 // A body may slide on after its wheels have stopped.
 
-#include "safety/slide.h"
+#include "safety/measurements/slide.h"
 
 #include "safety/monitor_fixture.h"
 

@@ -1,10 +1,10 @@
-#include "safety/supervisor_table.h"
+#include "safety/latch/supervisor_table.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "safety/stop_category.h"
+#include "safety/latch/stop_category.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "safety/wheel_motion.h"
+#include "safety/measurements/wheel_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "safety/standstill.h"
+#include "safety/measurements/joint_standstill.h"
 #include "support/constants.h"
 
 namespace robot_control {

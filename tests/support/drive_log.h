@@ -11,7 +11,7 @@
 
 #include "hal/bus.h"
 #include "rt/ring.h"
-#include "runtime/trace_sink.h"
+#include "runtime/cycles/trace_sink.h"
 #include "signals/trace.h"
 
 namespace robot_control {

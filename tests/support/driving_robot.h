@@ -9,7 +9,7 @@
 
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "runtime/process.h"
+#include "runtime/processes/process.h"
 #include "signals/names.h"
 #include "support/drive_log.h"
 #include "support/node_processes.h"

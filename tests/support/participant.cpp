@@ -19,11 +19,11 @@
 #include "rt/futex.h"
 #include "rt/last_words.h"
 #include "rt/realtime_thread.h"
-#include "runtime/controller_process.h"
-#include "runtime/driver_process.h"
-#include "runtime/estimator_process.h"
-#include "runtime/monitor_process.h"
-#include "runtime/telemetry_process.h"
+#include "runtime/processes/controller_process.h"
+#include "runtime/processes/driver_process.h"
+#include "runtime/processes/estimator_process.h"
+#include "runtime/processes/monitor_process.h"
+#include "runtime/processes/telemetry_process.h"
 
 namespace robot_control {
 namespace {

@@ -145,6 +145,26 @@ def test_linked_libraries_are_included_libraries():
     assert wrong == []
 
 
+def product_folders():
+    """Folders with code of the product, each with the number of files that lie directly in it."""
+    folders = [SRC, *(path for path in SRC.rglob("*") if path.is_dir())]
+    return {str(path.relative_to(ROOT)): sum(item.is_file() for item in path.iterdir()) for path in folders}
+
+
+def test_folders_stay_small():
+    """At most 25 files, so that a listing is read at a glance."""
+    assert {name: count for name, count in product_folders().items() if count > 25} == {}
+
+
+def test_no_two_headers_share_a_name():
+    names = [path.name for path in FILES if path.suffix == ".h"]
+    assert sorted(name for name in set(names) if names.count(name) > 1) == []
+
+
+def test_gtest_files_are_named_after_what_they_test():
+    assert sorted(str(path.relative_to(ROOT)) for path in (ROOT / "tests").rglob("test_*.cpp")) == []
+
+
 def test_source_files_stay_small():
     """One concept per file; 400 lines hold one, with the header that tells its law."""
     assert [str(path.relative_to(ROOT)) for path in FILES if len(path.read_text().splitlines()) > 400] == []

@@ -13,7 +13,7 @@ over MEAN_TIME give less than STANDING_SPEED; or the robot rocks on its casters,
     machine    The simulation does not diverge.
 
 What no brake can do, is not asked for. A motor that is off, intermittent or gives garbage takes its brake with it
-(drivers/motor_faults.h): while one does, s may grow by what the slope gives a free robot, g sin 5° t, and by
+(drivers/motors/motor_faults.h): while one does, s may grow by what the slope gives a free robot, g sin 5° t, and by
 GARBAGE_SPEED, and the robot need not come to rest. A monitor that errs (garbage, wrong) gives permits by itself: then
 only what the gate answers for is judged: "permit", "machine", that "brake" ends at rest, and "rest" once it is well. A
 blocked wheel, or a motor that gives what it was not told, jolts the robot harder than any brake: its tilt is not the

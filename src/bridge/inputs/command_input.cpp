@@ -1,0 +1,120 @@
+#include "bridge/inputs/command_input.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "bridge/reports/joined.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::size_t kMostNames = 16;  // remembered, as in CommandSenders
+
+std::int64_t nanoseconds(double seconds) {
+  return std::llround(1.0e9 * seconds);
+}
+
+std::string seconds(double value) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), std::abs(value) < 100 ? "%.3g s" : "%.0f s", value);
+  return text.data();
+}
+
+}  // namespace
+
+CommandInput::CommandInput(double timeout, bool one_sender) : one_sender_(one_sender) {
+  limit(timeout);
+}
+
+void CommandInput::limit(double timeout) {
+  timeout_ = timeout;
+  timeout_ns_ = nanoseconds(timeout);
+  senders_.limit(nanoseconds(std::max(timeout, kSenderWindow)));
+  moving_.limit(timeout > 0 ? timeout_ns_ : nanoseconds(1));
+}
+
+void CommandInput::hear(const ArrivedCommand& arrived, const ArrivalTime& time) {
+  const JudgedStamp stamp = judge_stamp(arrived.stamp_ns, time.ros_ns, timeout_ns_);
+  if (stamp.verdict != StampVerdict::kUsable) {
+    ++value_.stale;
+    moving_.hear(arrived.sender, time.loop_ns);
+    refuse_stamp(arrived.sender, stamp, time.loop_ns);
+    return;
+  }
+  told_wrong_.erase(arrived.sender);
+  senders_.hear(arrived.sender, time.loop_ns);
+  look(time.loop_ns);
+  if (value_.many_senders != 0) {
+    ++value_.crowded;
+    moving_.hear(arrived.sender, time.loop_ns);
+    return;
+  }
+  if (zero(arrived.twist)) {
+    moving_.drop(arrived.sender);
+  } else {
+    moving_.hear(arrived.sender, time.loop_ns);
+  }
+  value_.contested = zero(arrived.twist) && moving_.count(time.loop_ns) > 0 ? 1 : 0;
+  value_.twist = arrived.twist;
+  value_.age_ns = stamp.age_ns;
+  ++value_.count;
+}
+
+bool CommandInput::look(std::int64_t loop_ns) {
+  tell_crowd(loop_ns);
+  const std::uint64_t many = one_sender_ && senders_.count(loop_ns) > 1 ? 1 : 0;
+  return std::exchange(value_.many_senders, many) != many;
+}
+
+std::vector<ReportLine> CommandInput::lines() {
+  return std::exchange(lines_, {});
+}
+
+void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns) {
+  const bool too_old = stamp.verdict == StampVerdict::kTooOld;
+  const auto told = told_wrong_.find(sender);
+  if (told != told_wrong_.end() && told->second == stamp.verdict) return;
+  if (!may_tell(sender + (too_old ? " behind" : " ahead"), loop_ns)) return;
+  if (told_wrong_.size() >= kMostNames) told_wrong_.clear();
+  told_wrong_[sender] = stamp.verdict;
+  const double age = 1.0e-9 * static_cast<double>(stamp.age_ns);
+  const std::string remedy =
+      "; synchronise it (chrony), or let it publish on cmd_vel, whose age counts from its arrival";
+  if (too_old) {
+    lines_.push_back({true, "cmd_vel_stamped of " + sender + " is " + seconds(age) +
+                                " old by its stamp, more than cmd_vel_timeout (" + seconds(timeout_) +
+                                "): refused; it was long under way, or that sender's clock is behind" + remedy});
+  } else {
+    lines_.push_back({true, "cmd_vel_stamped of " + sender + " is stamped " + seconds(-age) +
+                                " in the future, more than clocks may differ (" + seconds(1.0e-9 * kClockSkew) +
+                                "): refused; that sender's clock is ahead, or is not the robot's /clock" + remedy});
+  }
+}
+
+void CommandInput::tell_crowd(std::int64_t loop_ns) {
+  const std::vector<std::string> names = senders_.at(loop_ns);
+  if (names.size() < 2) {
+    if (crowd_.empty()) return;
+    lines_.push_back(
+        {false, names.empty() ? "nobody sends commands any more" : "one sender of commands is left: " + names.front()});
+    crowd_.clear();
+    return;
+  }
+  if (std::ranges::includes(crowd_, names) || !may_tell(joined(names), loop_ns)) return;
+  const std::string consequence = one_sender_ ? "refused (one_sender), ramping down to standstill until one is left"
+                                              : "each message overrides the one before (one_sender: true refuses them)";
+  lines_.push_back(
+      {true, std::to_string(names.size()) + " nodes send commands: " + joined(names) + "; " + consequence});
+  crowd_ = names;
+}
+
+bool CommandInput::may_tell(const std::string& what, std::int64_t loop_ns) {
+  std::erase_if(told_ns_, [&](const auto& told) { return std::abs(loop_ns - told.second) >= kToldAgain; });
+  return told_ns_.size() < kMostNames && told_ns_.emplace(what, loop_ns).second;
+}
+
+}  // namespace robot_control

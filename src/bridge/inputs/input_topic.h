@@ -1,0 +1,67 @@
+#pragma once
+/// A topic into the loop: sent without delay, its queue bounded, its messages of the right length.
+///
+/// A flood costs the ordinary threads of ROS time and nobody else: the queue drops its oldest message, and what is
+/// heard goes into an inbox that keeps the latest value alone (rt/latest_value.h).
+
+#include <ros/ros.h>
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "bridge/messages/bounded_message.h"
+#include "rt/clock.h"
+
+namespace robot_control {
+
+template <class BoundedMessage>
+class InputTopic {
+ public:
+  using Message = decltype(BoundedMessage::message);
+
+  /// Queue lengths: 1 where only the latest message counts, more where none must be lost.
+  InputTopic(std::string name, std::uint32_t queue) : name_(std::move(name)), queue_(queue) {}
+  InputTopic(const InputTopic&) = delete;
+  InputTopic& operator=(const InputTopic&) = delete;
+
+  /// `malformed`: called instead of `hear` for what cannot be a message of this type. That is told every 10 s at most.
+  void connect(
+      ros::NodeHandle& handle, const std::function<void(const Message&)>& hear,
+      const std::function<void()>& malformed = [] {}) {
+    connect_with_sender(
+        handle, [hear](const Message& message, const std::string&) { hear(message); }, malformed);
+  }
+
+  /// The same with the name of the node that published it.
+  void connect_with_sender(
+      ros::NodeHandle& handle, const std::function<void(const Message&, const std::string&)>& hear,
+      const std::function<void()>& malformed = [] {}) {
+    using Event = ros::MessageEvent<const BoundedMessage>;
+    const boost::function<void(const Event&)> callback = [this, hear, malformed](const Event& event) {
+      const BoundedMessage& heard = *event.getConstMessage();
+      if (heard.accepted) return hear(heard.message, event.getPublisherName());
+      malformed();
+      tell();
+    };
+    subscriber_ = handle.subscribe<BoundedMessage, const Event&>(name_, queue_, callback, nullptr,
+                                                                 ros::TransportHints().tcpNoDelay());
+  }
+
+ private:
+  void tell() {
+    constexpr std::int64_t kSilence = 10'000'000'000;  // ns
+    const std::int64_t now_ns = monotonic_ns();
+    if (told_ns_ != 0 && now_ns - told_ns_ < kSilence) return;
+    told_ns_ = now_ns;
+    ROS_WARN("%s: a message of the wrong length was refused; look who publishes it: rostopic info %s", name_.c_str(),
+             subscriber_.getTopic().c_str());
+  }
+
+  std::string name_;
+  std::uint32_t queue_;
+  ros::Subscriber subscriber_;
+  std::atomic<std::int64_t> told_ns_{0};
+};
+
+}  // namespace robot_control

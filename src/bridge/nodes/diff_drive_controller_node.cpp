@@ -1,0 +1,229 @@
+#include "bridge/nodes/diff_drive_controller_node.h"
+
+#include <ros/ros.h>
+
+#include <atomic>
+#include <mutex>
+#include <utility>
+
+#include "bridge/inputs/command_input.h"
+#include "bridge/inputs/input_topic.h"
+#include "bridge/inputs/live_overrides.h"
+#include "bridge/inputs/reconfigure.h"
+#include "bridge/messages/motion_messages.h"
+#include "bridge/messages/tuning_messages.h"
+#include "bridge/nodes/process_node.h"
+#include "bridge/reports/ascii.h"
+#include "bridge/reports/command_report.h"
+#include "bridge/reports/diagnostics.h"
+#include "bridge/reports/pacer.h"
+#include "bridge/reports/reason_history.h"
+#include "bridge/reports/report_line.h"
+#include "runtime/processes/controller_process.h"
+
+namespace robot_control {
+namespace {
+
+class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
+ public:
+  explicit DiffDriveControllerNode(const Setup& setup)
+      : ProcessNode(setup),
+        input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
+        pace_(report().command_rate),
+        command_report_(robot(), parameters().controller) {}
+
+  void connect(ros::NodeHandle& handle) override {
+    expect_monitor();
+    ros::NodeHandle own("~");
+    set_parameters_ = own.advertiseService("set_parameters", &DiffDriveControllerNode::set_parameters, this);
+    set_parameter_map_ = own.advertiseService("set_parameter_map", &DiffDriveControllerNode::set_parameter_map, this);
+    descriptions_ = own.advertise<msg::ConfigDescription>("parameter_descriptions", 1, true);
+    updates_ = own.advertise<msg::Config>("parameter_updates", 1, true);
+    descriptions_.publish(description_of(process().retuning().live()));
+    updates_.publish(config_of(process().retuning().live()));
+    joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);
+    joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
+    velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
+    drive_state_ = handle.advertise<msg::DriveState>("drive_state", 10);
+    cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const std::string& sender) {
+      receive({.sender = sender, .twist = twist_of(message)});
+    });
+    cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const std::string& sender) {
+      const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
+      receive({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
+    });
+  }
+
+  std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {report().command_rate}); }
+
+  void publish() override {
+    SensorFrame sensors;
+    if (process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head)) return;
+    look_at_senders();
+    if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return;
+    const FrameHead& head = command_.head;
+    const std::uint64_t reasons = history_.look(process().output(), command_);
+    since_message_ |= reasons;
+    since_report_ |= reasons;
+    time().follow(sensors);
+    if (!pace_.due(head.run, head.stamp_ns)) return;
+    const ros::Time stamp = time().at(head.stamp_ns);
+    joint_commands_.publish(joint_commands(command_, robot()));
+    joint_targets_.publish(joint_targets(command_, robot(), stamp));
+    velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
+    drive_state_.publish(drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp));
+    if (report_outdated_.exchange(false)) command_report_.limit(process().retuning().in_force());
+    tell(command_report_.look(command_));
+  }
+
+  void diagnose(DiagnosticReport& report) override {
+    const std::lock_guard lock(input_mutex_);
+    report_command(report, command_, std::exchange(since_report_, 0), input_.senders(loop_ns()));
+  }
+
+ private:
+  /// Two topics, two threads, one inbox.
+  void receive(const ArrivedCommand& arrived) {
+    const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
+    const std::lock_guard lock(input_mutex_);
+    tell_dropped(arrived.sender);
+    ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
+    time.ros_ns = lockstep ? time.loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+    input_.hear(arrived, time);
+    process().cycle().inbox().store(input_.value());
+  }
+
+  /// A command that arrives before the loop runs moves nothing later: said once, until the loop has run.
+  void tell_dropped(const std::string& sender) {
+    SensorFrame sensors;
+    CommandFrame command;
+    const bool runs = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head) &&
+                      process().output().newest(command) == Lookup::kFrame && command.head.run == sensors.head.run;
+    if (!runs && !dropped_told_) {
+      ROS_WARN(
+          "a command of %s arrived before the loop runs and is dropped, as are all until it does; send it again "
+          "when safety_status says READY",
+          sender.c_str());
+    }
+    dropped_told_ = !runs;
+  }
+
+  /// Stamp of the newest sensor frame. Any thread that holds the lock.
+  std::int64_t loop_ns() {
+    SensorFrame sensors;
+    const bool found = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
+    if (found) loop_ns_ = sensors.head.stamp_ns;
+    return loop_ns_;
+  }
+
+  /// Whatever it cannot read keeps it from starting, too.
+  void expect_monitor() {
+    try {
+      process().retuning().expect_monitor(parameters_of("safety_monitor"));
+    } catch (const ParameterError&) {
+    }
+  }
+
+  bool set_parameter_map(msg::SetParametersRequest& request, msg::SetParametersResponse& response) {
+    const Answer answer = retune(request.parameters);
+    response.success = answer.accepted ? 1 : 0;
+    response.message = ascii(answer.text);
+    return true;
+  }
+
+  /// As dynamic_reconfigure has it: the response holds what is in force, whether the request was taken or not.
+  bool set_parameters(msg::ReconfigureRequest& request, msg::ReconfigureResponse& response) {
+    const std::string text = request_text(request.config, process().retuning().live());
+    if (!text.empty()) retune(text);
+    response.config = config_of(process().retuning().live());
+    return true;
+  }
+
+  struct Answer {
+    bool accepted = false;
+    std::string text;
+  };
+
+  /// Takes a set as a whole or refuses it; says so in the log.
+  Answer retune(const std::string& request) {
+    // One set at a time: what the server is told last is what holds. Nobody waits for it: the master may hang, and a
+    // callback thread has to be left for the commands.
+    const std::unique_lock lock(tuning_mutex_, std::try_to_lock);
+    Answer answer;
+    if (!lock) {
+      answer.text =
+          "set_parameters refused, nothing is changed: another set is being taken, or waits for the ROS master; call "
+          "again";
+      ROS_WARN("%s", answer.text.c_str());
+      return answer;
+    }
+    try {
+      const Retuned retuned = process().retuning().set(request);
+      follow(process().retuning().in_force());
+      updates_.publish(config_of(process().retuning().live()));
+      const std::string unwritten = write_overrides(retuned.values);
+      answer = {.accepted = true, .text = sentence(retuned) + (unwritten.empty() ? "" : "; " + unwritten)};
+      ROS_INFO("set_parameters: %s", answer.text.c_str());
+    } catch (const ParameterError& error) {
+      answer.text = error.what();
+      ROS_WARN("%s", answer.text.c_str());
+    }
+    return answer;
+  }
+
+  /// What beside the controller goes by its limits.
+  void follow(const DriveControllerParameters& parameters) {
+    const std::lock_guard lock(input_mutex_);
+    input_.limit(parameters.cmd_vel_timeout);
+    report_outdated_.store(true);
+  }
+
+  void look_at_senders() {
+    std::vector<ReportLine> lines;
+    {
+      const std::lock_guard lock(input_mutex_);
+      if (input_.look(loop_ns())) process().cycle().inbox().store(input_.value());
+      lines = input_.lines();
+    }
+    tell(lines);
+  }
+
+  /// What the wheels do now was planned two cycles ago; while that is not known, nothing was.
+  CommandFrame plan() {
+    CommandFrame plan;
+    const FrameHead& head = command_.head;
+    const bool found = head.cycle >= 2 && process().output().at(head.run, head.cycle - 2, plan) == Lookup::kFrame;
+    return found ? plan : CommandFrame{};
+  }
+
+  ros::Publisher joint_commands_;
+  ros::Publisher joint_targets_;
+  ros::Publisher velocity_out_;
+  InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
+  InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
+  ros::Publisher drive_state_;
+  ros::ServiceServer set_parameters_;
+  ros::ServiceServer set_parameter_map_;
+  ros::Publisher descriptions_;
+  ros::Publisher updates_;
+  std::mutex tuning_mutex_;                   ///< one set at a time; only ever tried
+  std::atomic<bool> report_outdated_{false};  ///< other limits hold than `command_report_` knows
+  std::mutex input_mutex_;
+  CommandInput input_;
+  std::int64_t loop_ns_ = 0;
+  bool dropped_told_ = false;
+  Pacer pace_;
+  CommandReport command_report_;
+  CommandFrame command_;
+  ReasonHistory history_;
+  std::uint64_t since_message_ = 0;  ///< CommandReason bits since the last drive_state
+  std::uint64_t since_report_ = 0;   ///< likewise, of /diagnostics
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup) {
+  return std::make_unique<DiffDriveControllerNode>(setup);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,41 @@
+#pragma once
+/// A Node whose work is a Process: everything that the four nodes of the loop have in common.
+
+#include <string>
+#include <vector>
+
+#include "bridge/messages/time_map.h"
+#include "bridge/nodes/node.h"
+#include "runtime/processes/process.h"
+
+namespace robot_control {
+
+template <class Work>
+class ProcessNode : public Node {
+ public:
+  explicit ProcessNode(const Setup& setup)
+      : setup_(setup), time_(setup.parameters.loop.clock), process_(setup.parameters, setup.robot, setup.bus) {}
+
+  void poll() override { process_.poll(); }
+  bool finished() const override { return process_.finished(); }
+  void stop() override { process_.stop(); }
+
+  /// As of the last poll; any thread.
+  std::vector<std::string> missing() const override { return process_.last_missing(); }
+
+  std::vector<std::string> realtime_messages() const override { return process_.realtime_messages(); }
+
+ protected:
+  const Parameters& parameters() const { return setup_.parameters; }
+  const ReportParameters& report() const { return setup_.parameters.report; }
+  const RobotModel& robot() const { return setup_.robot; }
+  Work& process() { return process_; }
+  TimeMap& time() { return time_; }
+
+ private:
+  Setup setup_;
+  TimeMap time_;
+  Work process_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,176 @@
+#include "bridge/nodes/safety_monitor_node.h"
+
+#include <ros/ros.h>
+
+#include <mutex>
+
+#include "bridge/inputs/input_topic.h"
+#include "bridge/messages/messages.h"
+#include "bridge/messages/status_messages.h"
+#include "bridge/network/graph.h"
+#include "bridge/nodes/process_node.h"
+#include "bridge/reports/ascii.h"
+#include "bridge/reports/diagnostics.h"
+#include "bridge/reports/stop_log.h"
+#include "rt/clock.h"
+#include "rt/futex.h"
+#include "runtime/processes/monitor_process.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::int64_t kStatusPeriod = 1'000'000'000;  // ns, at the latest
+constexpr std::int64_t kStatusGap = 20'000'000;        // ns, at the earliest: a flickering cause floods nobody
+constexpr std::int64_t kTriggerWait = 500'000'000;     // ns; the other callback thread still hears the topic e_stop
+constexpr std::int64_t kResetWait = 1'000'000'000;     // ns
+constexpr std::int64_t kResetLook = 2'000'000;         // ns
+
+class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
+ public:
+  using ProcessNode::ProcessNode;
+
+  void connect(ros::NodeHandle& handle) override {
+    command_topics_ = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
+    status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
+    // What is no Bool stops, too: who sends it means something by it.
+    e_stop_.connect(
+        handle, [this](const msg::Bool& message) { hear_e_stop(message.data != 0); }, [this] { hear_e_stop(true); });
+    heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
+    clearance_.connect(handle, [this](const msg::Float64& message) { hear_clearance(message.data); });
+    trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
+    reset_ = handle.advertiseService("e_stop_reset", &SafetyMonitorNode::reset, this);
+    if (!process().restored().empty()) ROS_WARN("%s", process().restored().c_str());
+  }
+
+  std::int64_t tick_ns() const override { return publish_tick_ns(parameters(), {1.0e9 / kStatusGap}); }
+
+  void publish() override {
+    const std::int64_t now_ns = monotonic_ns();
+    Permit permit;
+    const bool found = seen(permit);
+    const std::vector<std::string> absent = missing();
+    const bool changed = found != told_permit_ || absent != told_missing_ || (found && news(told_, permit));
+    const std::int64_t silence_ns = now_ns - told_ns_;
+    if (told_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
+    if (SensorFrame sensors; live(sensors)) time().follow(sensors);
+    msg::SafetyStatus status =
+        found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns()) : waiting_status(absent);
+    note_latch_file(status);
+    status_.publish(status);
+    tell(stop_log_.look(status));
+    told_permit_ = found;
+    told_missing_ = absent;
+    told_ = permit;
+    told_ns_ = now_ns;
+  }
+
+  void diagnose(DiagnosticReport& report) override {
+    if (Permit permit; seen(permit)) report_permit(report, permit);
+  }
+
+ private:
+  bool live(SensorFrame& sensors) {
+    return process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
+  }
+
+  /// A permit of this process. What an earlier one left is none.
+  bool seen(Permit& permit) {
+    return process().output().newest(permit) == Lookup::kFrame && permit.head.run == process().cycle().published_run();
+  }
+
+  void note_latch_file(msg::SafetyStatus& status) {
+    const std::string& problem = process().latch_file_problem();
+    if (problem.empty()) return;
+    status.warnings.emplace_back("latch_file");
+    status.warning_sentences.push_back(
+        ascii("a stop would not outlive a reboot, latch_file cannot be written: " + problem +
+              " (set safety_monitor/latch_file to a file that this user may write)"));
+  }
+
+  void add(std::uint64_t OperatorInput::*counter) {
+    const std::lock_guard lock(input_mutex_);
+    ++(input_.*counter);
+    process().cycle().inbox().store(input_);
+  }
+
+  void hear_e_stop(bool stop) {
+    const std::lock_guard lock(input_mutex_);
+    input_.e_stop_level = stop ? 1 : 0;
+    ++input_.e_stop_messages;
+    if (stop) ++input_.e_stop_triggers;
+    process().cycle().inbox().store(input_);
+  }
+
+  void hear_clearance(double clearance) {
+    const std::lock_guard lock(input_mutex_);
+    input_.clearance = clearance;
+    ++input_.clearances;
+    process().cycle().inbox().store(input_);
+  }
+
+  bool trigger(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    add(&OperatorInput::e_stop_services);
+    Permit permit;
+    for (const std::int64_t end = monotonic_ns() + kTriggerWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
+      if (!seen(permit) || (permit.causes & kCauseEmergencyStopService) == 0) continue;
+      response.success = 1;
+      response.message = "stopped; e_stop_reset releases";
+      return true;
+    }
+    response.success = 0;
+    response.message = "the stop is not confirmed: the monitor's loop has not latched it yet; use the hardware e-stop";
+    for (const std::string& name : missing()) response.message += "; waiting for " + ascii(name);
+    return true;
+  }
+
+  bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+    const std::unique_lock one_at_a_time(reset_mutex_, std::try_to_lock);
+    if (!one_at_a_time) {  // waiting here would leave no thread to hear e_stop
+      response.success = 0;
+      response.message = "another reset is being answered: ask again";
+      return true;
+    }
+    Permit permit;
+    Permit before;
+    if (seen(permit)) before = permit;
+    add(&OperatorInput::resets);
+    for (const std::int64_t end = monotonic_ns() + kResetWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
+      if (!seen(permit)) continue;
+      if (permit.resets_handled == before.resets_handled) {
+        before = permit;
+        continue;
+      }
+      response.success = permit.reset_refusal == 0;
+      response.message = ascii(reset_text(before, permit, publishers_of(command_topics_)));
+      return true;
+    }
+    response.success = 0;
+    response.message = "not handled within 1 s: the monitor sees no sensor frames";
+    for (const std::string& name : missing()) response.message += ascii("; waiting for " + name);
+    return true;
+  }
+
+  std::vector<std::string> command_topics_;
+  ros::Publisher status_;
+  InputTopic<BoundedBool> e_stop_{"e_stop", 10};
+  InputTopic<BoundedEmpty> heartbeat_{"heartbeat", 1};
+  InputTopic<BoundedFloat64> clearance_{"clearance", 1};
+  ros::ServiceServer trigger_;
+  ros::ServiceServer reset_;
+  std::mutex input_mutex_;
+  std::mutex reset_mutex_;
+  OperatorInput input_;
+  StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9, parameters().controller.cmd_vel_timeout};
+  Permit told_;
+  bool told_permit_ = false;
+  std::vector<std::string> told_missing_;
+  std::int64_t told_ns_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Node> make_safety_monitor(const Setup& setup) {
+  return std::make_unique<SafetyMonitorNode>(setup);
+}
+
+}  // namespace robot_control

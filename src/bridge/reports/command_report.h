@@ -1,0 +1,80 @@
+#pragma once
+/// What the controller tells about the commands it received, and what it makes of them. Pure.
+///
+///   it drives them        the wheel speeds they lead to, after the speed limits where it lies above them
+///   it brakes or ramps    that the command has no effect, and why
+///   it is slowed down     by the safety monitor, and where the reason stands
+///   warnings              a timeout that stopped a motion, a series of refused (NaN, infinite) messages
+///
+/// A line comes when one of these changes, wheel speeds by kSpeedStep or more, and at most once per kGap each; a change
+/// within the gap is told when that has passed. Another effect is told when it has lasted for kSettle: a single late
+/// cycle is none. What is refused for its stamp or its sender is told by command_input.h. Time is that of the frames.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bridge/reports/report_line.h"
+#include "control/drive_controller.h"
+#include "control/kinematics.h"
+#include "control/limits/speed_limiter.h"
+#include "robot/robot_model.h"
+#include "signals/command_frame.h"
+
+namespace robot_control {
+
+class CommandReport {
+ public:
+  static constexpr std::int64_t kGap = 1'000'000'000;   ///< ns
+  static constexpr std::int64_t kSettle = 100'000'000;  ///< ns
+  static constexpr double kSpeedStep = 0.01;            ///< m/s
+
+  CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters);
+
+  /// Other limits and another timeout, from now on.
+  void limit(const DriveControllerParameters& parameters);
+
+  /// Any number of cycles may lie between two frames.
+  std::vector<ReportLine> look(const CommandFrame& command);
+
+ private:
+  /// What is told of a command.
+  struct Told {
+    SidePair rims;  ///< m/s, after the speed limits
+    bool zero = true;
+    bool limited = false;
+    std::uint64_t hindrance = 0;  ///< CommandReason bits
+  };
+
+  /// When a line of a kind came last.
+  class Gap {
+   public:
+    bool over(std::int64_t now_ns) const { return !last_ns_ || now_ns - *last_ns_ >= kGap; }
+    void begin(std::int64_t now_ns) { last_ns_ = now_ns; }
+
+   private:
+    std::optional<std::int64_t> last_ns_;
+  };
+
+  void enter_run(const CommandFrame& command);
+  Told made_of(const CommandFrame& command) const;
+  std::string text(const Told& told, const CommandFrame& command) const;
+  static bool same(const Told& one, const Told& other);
+
+  DriveKinematics kinematics_;
+  SpeedLimits limits_;
+  double timeout_;  ///< s
+  std::uint64_t run_ = 0;
+  std::uint64_t refused_ = 0;  ///< NaN, infinite
+  std::uint64_t timeouts_ = 0;
+  bool refusing_ = false;
+  std::optional<Told> told_;     ///< of the motion that goes on
+  std::uint64_t hindrance_ = 0;  ///< of the last frame
+  std::int64_t hindered_since_ns_ = 0;
+  Gap line_gap_;
+  Gap timeout_gap_;
+  Gap refusal_gap_;
+};
+
+}  // namespace robot_control

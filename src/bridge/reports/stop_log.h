@@ -1,0 +1,56 @@
+#pragma once
+/// What the safety monitor writes into its log: one line per event of SafetyStatus, so that no stop is silent.
+///
+///   a cause latches            WARN  state, cause, what was measured and its limit, remedy; several at once: one line
+///   a ramp has ended           INFO
+///   a reset releases           INFO
+///   INIT has ended             INFO  "ready: send cmd_vel"
+///   INIT waits for a zero      WARN  once the wait is longer than silence on cmd_vel would need to end it
+///   a warning, no speed        WARN  at most every kRepeat s for each
+///
+/// Time is counted in cycles of the permits. Pure.
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bridge/messages/messages.h"
+#include "bridge/reports/report_line.h"
+
+namespace robot_control {
+
+class StopLog {
+ public:
+  static constexpr double kRepeat = 10;        ///< s
+  static constexpr double kReserve = 0.25;     ///< s, beyond `zero_silence`, until INIT is said to wait for a zero
+  static constexpr double kNoSpeed = 0.01;     ///< m/s; a speed limit below it is none to drive with
+  static constexpr double kZeroSilence = 1.0;  ///< s, where cmd_vel_timeout is 0
+
+  /// `period` of the loop and `cmd_vel_timeout` [s]: a silence of that length counts as a zero request.
+  StopLog(double period, double cmd_vel_timeout)
+      : period_(period), zero_silence_(cmd_vel_timeout > 0 ? cmd_vel_timeout : kZeroSilence) {}
+
+  /// Every status that is published, in that order.
+  std::vector<ReportLine> look(const msg::SafetyStatus& status);
+
+ private:
+  void look_at_causes(const msg::SafetyStatus& status, std::vector<ReportLine>& lines);
+  void look_at_start(const msg::SafetyStatus& status, std::vector<ReportLine>& lines);
+  void look_at_warnings(const msg::SafetyStatus& status, std::vector<ReportLine>& lines);
+  bool due(const std::string& name, bool present, double now);
+
+  double period_;        ///< s
+  double zero_silence_;  ///< s
+  std::set<std::string> latched_;
+  bool stopping_ = false;
+  bool starting_ = true;  ///< INIT since the last "ready"
+  std::uint64_t run_ = 0;
+  double awaiting_since_ = -1;  ///< s of this run; negative: it does not wait, or that was said
+  bool awaiting_ = false;
+  std::set<std::string> present_;       ///< warnings of the last status
+  std::map<std::string, double> told_;  ///< s of this run, by warning
+};
+
+}  // namespace robot_control

@@ -1,0 +1,100 @@
+#include "bridge/startup/overlays.h"
+
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace robot_control {
+namespace {
+
+std::string number(double value) {
+  if (std::isnan(value)) return ".nan";
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+/// As a YAML scalar that is a text whatever stands in it: the server knows types.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n') {
+      result += "\\n";
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+std::string text_of(XmlRpc::XmlRpcValue value) {
+  switch (value.getType()) {
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return static_cast<bool>(value) ? "true" : "false";
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return std::to_string(static_cast<int>(value));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return number(static_cast<double>(value));
+    case XmlRpc::XmlRpcValue::TypeString:
+      return quoted(static_cast<std::string>(value));
+    case XmlRpc::XmlRpcValue::TypeArray: {
+      std::string text = "[";
+      for (int i = 0; i < value.size(); ++i) text.append(i == 0 ? "" : ", ").append(text_of(value[i]));
+      return text.append("]");
+    }
+    default:
+      return quoted(value.toXml());  // what no parameter is: the schema refuses it
+  }
+}
+
+bool is_empty_text(XmlRpc::XmlRpcValue value) {
+  return value.getType() == XmlRpc::XmlRpcValue::TypeString && static_cast<std::string>(value).empty();
+}
+
+}  // namespace
+
+std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::string& block,
+                                 const std::string& server_name, const std::vector<std::string>& ignored) {
+  std::vector<Overlay> overlays;
+  if (tree.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
+    if (tree.valid() && !is_empty_text(tree)) overlays.push_back({block, text_of(tree), server_name});
+    return overlays;
+  }
+  XmlRpc::XmlRpcValue copy = tree;  // its iterators are not const
+  for (auto& [key, value] : copy) {
+    if (std::ranges::find(ignored, key) != ignored.end()) continue;
+    const std::vector<Overlay> inner = overlays_of(value, block + "." + key, server_name + "/" + key);
+    overlays.insert(overlays.end(), inner.begin(), inner.end());
+  }
+  return overlays;
+}
+
+std::set<std::string> set_by_launch(const char* const* environment) {
+  std::set<std::string> paths;
+  for (; *environment != nullptr; ++environment) {
+    const std::string_view variable(*environment);
+    const std::size_t equals = variable.find('=');
+    if (!variable.starts_with(kSetByLaunch) || equals == std::string_view::npos) continue;
+    std::istringstream words{std::string(variable.substr(equals + 1))};
+    for (std::string path; words >> path;) paths.insert(path);
+  }
+  return paths;
+}
+
+std::vector<std::string> override_lines(const std::vector<Overlay>& overlays, const std::string& file,
+                                        const std::set<std::string>& unsaid) {
+  std::vector<std::string> lines;
+  for (const Overlay& overlay : overlays) {
+    if (unsaid.contains(overlay.path)) continue;
+    lines.push_back(overlay.origin + " = " + overlay.text + " overrides " + overlay.path + " of " + file);
+  }
+  return lines;
+}
+
+}  // namespace robot_control

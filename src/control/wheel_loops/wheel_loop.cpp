@@ -1,0 +1,87 @@
+#include "control/wheel_loops/wheel_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+constexpr double kForgetting = 0.1;  // s
+
+}  // namespace
+
+WheelLoop::WheelLoop(const WheelLoopGains& gains, double bandwidth, double effort_limit, double period)
+    : gains_(gains), effort_limit_(effort_limit), period_(period), tracking_(bandwidth, period) {}
+
+void WheelLoop::reset() noexcept {
+  tracked_ = false;
+  integral_ = 0;
+  load_ = 0;
+  surprise_ = 0;
+  last_gains_.reset();
+  saturated_ = false;
+}
+
+void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, double feed_forward_less) noexcept {
+  tracking_.tune(bandwidth, surprise_ / gains_.model_inertia - surprise_ / gains.model_inertia);
+  if (!last_gains_ && (gains.kp != gains_.kp || gains.kd != gains_.kd)) last_gains_ = gains_;
+  gains_ = gains;
+  integral_ = std::clamp(integral_ + feed_forward_less, -effort_limit_, effort_limit_);
+  // The torques under way were planned with the old feed-forward: without this they would surprise the tracking loop.
+  load_ += feed_forward_less;
+  for (WheelPlan& plan : plans_) plan.feed_forward -= feed_forward_less;
+}
+
+void WheelLoop::measure(const JointSample& sample, double periods, bool driven) noexcept {
+  if (!tracked_) {
+    tracking_.seed(sample.position, sample.velocity);
+    tracked_ = true;
+    surprise_ = 0;
+    resume();
+    return;
+  }
+  // While commands were skipped the driver held the last one.
+  if (periods > 1) plans_[1] = plans_[0];
+  const WheelPlan& plan = plans_[1];
+  surprise_ = driven ? sample.effort - plan.feed_forward - load_ : 0;
+  tracking_.step(sample.position, driven ? plan.acceleration + surprise_ / gains_.model_inertia : 0.0, periods);
+}
+
+void WheelLoop::resume() noexcept {
+  plans_.fill({.velocity = velocity()});
+  load_ = integral_;
+  last_gains_.reset();
+  saturated_ = false;
+}
+
+void WheelLoop::carry(double effort) noexcept {
+  integral_ = std::clamp(effort + gains_.kd * tracking_.acceleration(), -effort_limit_, effort_limit_);
+  load_ = integral_;
+}
+
+double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noexcept {
+  const double error = plans_[1].velocity - velocity();
+  const auto direct_with = [&](const WheelLoopGains& gains) {
+    return plan.feed_forward + gains.kp * error - gains.kd * tracking_.acceleration();
+  };
+  const double direct = direct_with(gains_);
+  if (last_gains_) {
+    const double effort = std::clamp(direct_with(*last_gains_) + integral_, -effort_limit_, effort_limit_);
+    integral_ = std::clamp(effort - direct, -effort_limit_, effort_limit_);
+    last_gains_.reset();
+  }
+  if (gains_.ki == 0) integral_ -= integral_ * std::min(1.0, periods * period_ / kForgetting);
+  const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
+  const bool at_limit = clamped || std::abs(direct + integral) > effort_limit_;
+  const bool winds_up = at_limit && (direct + integral) * error > 0;
+  if (!winds_up) integral_ = integral;
+
+  wanted_ = direct + integral_;
+  const double effort = std::clamp(wanted_, -effort_limit_, effort_limit_);
+  saturated_ = effort != wanted_;
+  plans_[1] = plans_[0];
+  plans_[0] = plan;
+  return effort;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,62 @@
+#include "estimation/inertial/imu_samples.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace robot_control {
+
+void ImuSamples::reset() noexcept {
+  for (Channel* channel : {&gyro_, &accelerometer_}) {  // GCC 12 with a sanitizer takes `= {}` for uninitialised
+    channel->mean.reset();
+    channel->last.setZero();
+    channel->heard = channel->known = channel->fresh = channel->catches_up = false;
+    channel->age = channel->last_gap = channel->gap = 0;
+    channel->hold = kShortHold;
+  }
+  refused_ = false;
+}
+
+void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
+                      bool trapezoid) noexcept {
+  channel.age += dt;
+  channel.fresh = sample.has_value();
+  channel.catches_up = false;
+  if (sample) {
+    const bool continued = channel.known && channel.age <= channel.hold && dt > 0;
+    const double steps = continued ? channel.age / dt : 1;
+    channel.mean = *sample;
+    if (continued && trapezoid) channel.mean = channel.last + (*sample - channel.last) * (steps / 2);
+    channel.catches_up = continued && trapezoid && channel.age > dt;
+    if (channel.heard && dt > channel.hold) channel.mean.reset();  // one sample does not speak for a step that long
+    // Also from a sample that was lost in between: else who comes slower than the short hold would be lost for ever.
+    if (channel.heard && channel.age > 0) {
+      channel.gap = std::min(channel.age, std::exchange(channel.last_gap, channel.age));
+      channel.hold = std::clamp(3 * channel.age, kShortHold, kLongHold);
+    }
+    channel.last = *sample;
+    channel.heard = channel.known = true;
+    channel.age = 0;
+  } else if (channel.known && channel.age <= channel.hold) {
+    channel.mean = channel.last;
+  } else {
+    channel.mean.reset();
+    channel.known = false;
+  }
+}
+
+void ImuSamples::step(const SensorFrame& sensors, const Eigen::Matrix3d& base_from_imu, double dt) noexcept {
+  refused_ = false;
+  const auto sample = [&](std::uint64_t bit, const Vector3& values, double range) -> std::optional<Eigen::Vector3d> {
+    if ((sensors.valid & bit) == 0) return std::nullopt;
+    const Eigen::Vector3d vector(values[0], values[1], values[2]);
+    if (!(vector.squaredNorm() <= range * range)) {
+      refused_ = true;
+      return std::nullopt;
+    }
+    return Eigen::Vector3d(base_from_imu * vector);
+  };
+  take(gyro_, sample(kValidGyro, sensors.imu.angular_velocity, kGyroRange), dt, true);
+  take(accelerometer_, sample(kValidAccelerometer, sensors.imu.linear_acceleration, kAccelerometerRange), dt, false);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,66 @@
+#include "estimation/wheels/side_encoder.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+
+SideEncoder::Wheel::Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept
+    : joint(wheel.joint), metres_per_radian(wheel.sign * wheel.radius), velocity_bound(1000) {
+  const double limit = joint < robot.joints.size() ? robot.joints[joint].velocity_limit : 0;
+  if (limit > 0 && std::isfinite(limit)) velocity_bound = 2 * limit;
+}
+
+bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
+  return (sensors.valid & kValidJoints) != 0 && joint < sensors.joint_count && joint < kMaxJoints &&
+         std::isfinite(sensors.joints[joint].position);
+}
+
+bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) const noexcept {
+  return std::abs(sensors.joints[joint].position - angle) <= velocity_bound * time + kSlack;
+}
+
+double SideEncoder::Wheel::take(const SensorFrame& sensors) noexcept {
+  const double position = sensors.joints[joint].position;
+  const double travel = metres_per_radian * (position - angle);
+  angle = position;
+  return travel;
+}
+
+SideEncoder::SideEncoder(const RobotModel& robot, Side side) {
+  for (const WheelModel& wheel : robot.wheels) {
+    if (wheel.side == side) wheels_.emplace_back(wheel, robot);
+  }
+}
+
+void SideEncoder::reset() noexcept {
+  travel_ = time_ = waiting_ = gap_ = 0;
+  known_ = false;
+  rejected_ = 0;
+}
+
+EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept {
+  travel_ = 0;
+  waiting_ += dt;
+  const auto measured = [&](const Wheel& wheel) { return wheel.measured(sensors); };
+  const auto plausible = [&](const Wheel& wheel) { return wheel.plausible(sensors, waiting_); };
+  if (!std::ranges::all_of(wheels_, measured)) return EncoderReading::kRejected;
+  EncoderReading reading = EncoderReading::kTravel;
+  if (!known_) {
+    reading = EncoderReading::kOffset;
+  } else if (!std::ranges::all_of(wheels_, plausible)) {
+    if (++rejected_ <= kMaxRejected) return EncoderReading::kRejected;
+    reading = EncoderReading::kLost;
+  }
+  double sum = 0;
+  for (Wheel& wheel : wheels_) sum += wheel.take(sensors);
+  if (reading == EncoderReading::kTravel) travel_ = sum / static_cast<double>(wheels_.size());
+  time_ = waiting_;
+  gap_ = std::min(waiting_, kLongGap);
+  waiting_ = 0;
+  known_ = true;
+  rejected_ = 0;
+  return reading;
+}
+
+}  // namespace robot_control

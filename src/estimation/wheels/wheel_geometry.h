@@ -1,0 +1,38 @@
+#pragma once
+/// From the wheels' travel to the motion of base_link; wheels behind each other turn the robot about their middle.
+///
+///   distance = (right + left) / 2        turn = (right − left) / wheel_base
+///   forward  = distance + turn · axle_y  left = −turn · axle_x
+///
+/// wheel_base is the effective one (RobotModel); left and right are the means of a side. (axle_x, axle_y) is the middle
+/// of the wheels in base axes: rigid-body motion of a point beside it. `ground` is the height of the contacts.
+
+#include "estimation/wheels/arc.h"
+#include "robot/robot_model.h"
+
+namespace robot_control {
+
+struct WheelGeometry {
+  double wheel_base = 1;  ///< m, effective
+  double axle_x = 0;      ///< m
+  double axle_y = 0;      ///< m
+  double ground = 0;      ///< m
+
+  explicit WheelGeometry(const RobotModel& robot) noexcept : wheel_base(robot.effective_wheel_base()) {
+    const auto count = static_cast<double>(robot.wheels.size());
+    for (const WheelModel& wheel : robot.wheels) {
+      axle_x += wheel.centre_base[0] / count;
+      axle_y += wheel.centre_base[1] / count;
+      ground += (wheel.centre_base[2] - wheel.radius) / count;
+    }
+  }
+
+  double turn(double left, double right) const noexcept { return (right - left) / wheel_base; }
+
+  /// Works on travel [m, rad] as on speed [m/s, rad/s].
+  Motion base_motion(double distance, double turn) const noexcept {
+    return {distance + turn * axle_y, -turn * axle_x, turn};
+  }
+};
+
+}  // namespace robot_control

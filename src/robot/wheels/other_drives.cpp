@@ -1,0 +1,121 @@
+#include "robot/wheels/other_drives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "description/wording.h"
+#include "robot/bodies/feet.h"
+#include "robot/wheels/swivel.h"
+#include "robot/wheels/wheel.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kCrosswise = 5 * M_PI / 180;
+constexpr double kAlike = 0.1;  // of the radius
+
+const char* const kRemedy =
+    "Only differential and skid-steer drives are supported; to drive it as one all the same, name the wheels by "
+    "robot/left_wheel_joints: […] and robot/right_wheel_joints: […]";
+
+class Judge {
+ public:
+  Judge(const RigidBodies& robot, const DriveTrain& train, bool named, std::vector<RobotNote>& notes)
+      : robot_(robot), train_(train), named_(named), notes_(notes) {
+    for (std::size_t i = 1; i < robot.bodies.size(); ++i) {
+      if (!is_drive_wheel(i)) judge(i);
+    }
+  }
+
+ private:
+  bool is_drive_wheel(std::size_t body) const {
+    return std::any_of(train_.wheels.begin(), train_.wheels.end(),
+                       [body](const RollingBody& wheel) { return wheel.body == body; });
+  }
+
+  bool turns_on_a_drive_wheel(std::size_t body) const {
+    for (std::size_t i = robot_.bodies[body].parent; i != 0; i = robot_.bodies[i].parent) {
+      if (is_drive_wheel(i)) return true;
+    }
+    return false;
+  }
+
+  void judge(std::size_t index) {
+    const RigidBody& body = robot_.bodies[index];
+    const RollingMeasure measure = measure_wheel(body);
+    if (!measure.objection.empty() || turns_on_a_drive_wheel(index)) return;
+    if (measure.wheel.centre_base[2] - measure.wheel.radius > floor_height(train_) + kCasterTolerance) return;
+    const RigidBody* swivel = swivel_of(robot_, index);
+    if (swivel != nullptr && is_steered(*swivel, body, measure)) {
+      return refuse_or_note(body, "it is steered: it stands below " + swivel->joint.name +
+                                      ", which turns it into another direction than that of the drive wheels");
+    }
+    if (swivel == nullptr && is_crosswise(body, measure)) {
+      return refuse_or_note(body, "it reaches the floor, and its axis is " + number(axle_tilt(measure) * 180 / M_PI) +
+                                      "° off the lateral (y) axis of " + robot_.bodies[0].name +
+                                      ": the drive wheels would drag it sideways, unless all are omni wheels");
+    }
+    if (!body.joint.driven && (swivel == nullptr || !swivel->joint.driven)) return;
+    if (swivel == nullptr && on_the_middle_line(measure)) {
+      return refuse_or_note(body,
+                            "the file says that it is driven, and it stands on the middle line between the others");
+    }
+    notes_.push_back({RobotNote::Kind::kSuspicious, joint_element(body.joint.name),
+                      std::string("the file says that it, or what turns it, is driven: it is not, but ") +
+                          (swivel != nullptr ? "follows its swivel as a caster" : "rolls along")});
+  }
+
+  bool is_crosswise(const RigidBody& body, const RollingMeasure& measure) const {
+    const Shape* shape = rolling_shape(body);
+    if (axle_tilt(measure) <= kCrosswise) return false;
+    if (body.joint.driven) return true;
+    const bool ball = shape != nullptr && shape->type == ShapeType::kSphere;
+    const double radius = train_.wheels.front().wheel.radius;
+    const bool alike = std::abs(measure.wheel.radius - radius) <= kAlike * radius;
+    const bool unsaid = std::none_of(train_.wheels.begin(), train_.wheels.end(), [this](const RollingBody& wheel) {
+      return robot_.bodies[wheel.body].joint.driven;
+    });
+    return !ball && alike && unsaid;
+  }
+
+  bool on_the_middle_line(const RollingMeasure& measure) const {
+    double middle = 0;
+    for (const RollingBody& wheel : train_.wheels) {
+      middle += wheel.wheel.centre_base[1] / static_cast<double>(train_.wheels.size());
+    }
+    return std::abs(measure.wheel.centre_base[1] - middle) < wheel_base_of(train_.wheels) / 4;
+  }
+
+  void refuse_or_note(const RigidBody& body, const std::string& text) {
+    if (!named_) refuse(robot_.source, joint_element(body.joint.name), text, kRemedy);
+    notes_.push_back({RobotNote::Kind::kSuspicious, joint_element(body.joint.name), text});
+  }
+
+  const RigidBodies& robot_;
+  const DriveTrain& train_;
+  bool named_;
+  std::vector<RobotNote>& notes_;
+};
+
+void note_plugins(const RigidBodies& robot, std::vector<RobotNote>& notes) {
+  for (const std::string& plugin : robot.sideways_plugins) {
+    notes.push_back(
+        {RobotNote::Kind::kSuspicious, "<plugin> " + plugin,
+         "it moves a robot sideways, too: the wheels may be omni or mecanum wheels; they are driven as plain "
+         "ones, and do not roll sideways"});
+  }
+  for (const std::string& plugin : robot.steering_plugins) {
+    notes.push_back({RobotNote::Kind::kSuspicious, "<plugin> " + plugin,
+                     "it steers wheels: the robot is driven as a differential drive, by its wheels' speeds alone"});
+  }
+}
+
+}  // namespace
+
+void judge_other_drives(const RigidBodies& robot, const DriveTrain& train, bool named, std::vector<RobotNote>& notes) {
+  note_plugins(robot, notes);
+  const Judge judge(robot, train, named, notes);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,22 @@
+#pragma once
+/// Machines that look like a differential drive and are none.
+///
+/// Of all that rolls on the floor beside the drive wheels:
+///   steered     (swivel.h) refused, unless the user named the drive wheels: then noted, it slides without friction
+///   crosswise   a wheel, no ball, that turns about a level axle more than 5° off the lateral one and that drives:
+///               the file says so, or names no drive at all and the wheel has the drive wheels' radius within 10 %;
+///               likewise
+///   driven      that the file drives, and that is none of the drive wheels: on the middle line refused, as a tricycle
+///               has it, where the user named no wheels; else noted
+/// What moves the robot sideways or steers it, by the names of its plugins, is noted.
+
+#include <vector>
+
+#include "robot/wheels/drive_wheels.h"
+
+namespace robot_control {
+
+/// Throws RobotError as above. `named`: the user named the drive wheels.
+void judge_other_drives(const RigidBodies& robot, const DriveTrain& train, bool named, std::vector<RobotNote>& notes);
+
+}  // namespace robot_control

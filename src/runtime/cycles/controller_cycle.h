@@ -1,0 +1,63 @@
+#pragma once
+/// The controller's duty in one cycle: state k (which woke it), sensors k and the newest live permit ≤ k-1
+/// → command k. A token is passed on, and a state that is corrupt is one. Told to fail, it does (faulty_writer.h).
+
+#include <cstdint>
+
+#include "control/drive_controller.h"
+#include "rt/latest_frames.h"
+#include "rt/latest_value.h"
+#include "runtime/command_script.h"
+#include "runtime/cycles/cycle_clock.h"
+#include "runtime/faulty_writer.h"
+#include "signals/trace.h"
+
+namespace robot_control {
+
+class ControllerCycle {
+ public:
+  struct Channels {
+    const FrameReader<SensorFrame>* sensors;
+    const FrameReader<StateFrame>* state;
+    const FrameReader<Permit>* permit;
+    FrameWriter<CommandFrame> command;
+  };
+
+  ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
+                  const Channels& channels, CommandScript script, Now now);
+
+  /// In from the outside: one ordinary thread stores, this cycle loads.
+  LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
+
+  /// Likewise for other limits and gains: they hold from the next cycle on that computes a command.
+  LatestValue<DriveTuning>& tunings() noexcept { return tunings_; }
+
+  /// True when there was a new state of the driver's current run, and a command was published.
+  bool step() noexcept;
+
+  const ControllerTrace& trace() const noexcept { return trace_; }
+
+ private:
+  void take_over(const VelocityCommand& arrived) noexcept;
+  void enter_run() noexcept;
+  void receive(std::uint64_t cycle) noexcept;
+  void tune() noexcept;
+
+  DriveController controller_;
+  CycleClock clock_;
+  Channels channels_;
+  FaultyWriter<CommandFrame> out_{FaultComponent::kController};
+  CommandScript script_;
+  std::uint64_t robot_hash_;
+  LatestValue<VelocityCommand> inbox_;
+  LatestValue<DriveTuning> tunings_;
+  std::uint64_t tunings_seen_ = 0;  ///< version of the one that was looked at
+  VelocityCommand received_;        ///< what the inbox held when last looked at
+  VelocityCommand request_;         ///< inbox and script merged in the order of arrival
+  SensorFrame sensors_;
+  StateFrame state_;
+  Permit permit_;
+  ControllerTrace trace_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,94 @@
+#pragma once
+/// The driver's duty in one tick k:
+///   latch command k-1 and permit k-1 → sample sensors of x(t_k) → publish sensors k → gate
+///   → apply torque over [t_k, t_k+1).
+/// Latched are the newest command of cycles k-4 … k-1 and the newest permit of cycles k-7 … k-1, of which the gate
+/// tells one that has expired from none.
+/// Sensor-to-torque delay is exactly one period. No clock is read here; `now` stamps the trace only.
+
+#include <cstdint>
+
+#include "hal/driver.h"
+#include "hal/gate.h"
+#include "robot/robot_model.h"
+#include "rt/latest_frames.h"
+#include "runtime/cycles/cycle_clock.h"
+#include "signals/trace.h"
+
+namespace robot_control {
+
+class DriverCycle {
+ public:
+  struct Channels {
+    FrameWriter<SensorFrame> sensors;
+    FrameWriter<TruthFrame> truth;
+    const FrameReader<CommandFrame>* command;
+    const FrameReader<Permit>* permit;
+  };
+
+  DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
+              const GateParameters& gate = {});
+
+  /// The number of this process; see SensorFrame::boot.
+  void set_boot(std::uint64_t boot) noexcept { boot_ = boot; }
+
+  /// Announces a run in the head of the sensors channel and wakes its readers, so that they attach to it.
+  /// `run`: random, not 0. Cycles count from 0.
+  void begin_run(std::uint64_t run) noexcept;
+
+  /// Stamp of cycle 0, ns. A later run of the same process begins one period after the last stamp or later.
+  void set_start(std::int64_t stamp_ns) noexcept { start_ns_ = stamp_ns; }
+
+  /// One tick. The first one of a run is cycle 0.
+  void step() noexcept;
+
+  /// After the others have worked on the frame of the last tick: they see it again, as paused. Nothing before
+  /// the first tick of a run.
+  void publish_paused() noexcept { publish_last_as(DriverState::kPaused); }
+
+  /// The same as ended: no tick follows. A fault stays reported as what it is.
+  void publish_ended() noexcept { publish_last_as(DriverState::kEnded); }
+
+  /// A simulated machine has these faults from the next tick on.
+  void inject(const InjectedFaults& faults) noexcept;
+
+  /// Wall clock: the next tick is due then. Whatever its stamp lies behind that, and has not slipped, was held.
+  void set_due(std::int64_t deadline_ns) noexcept;
+
+  /// Hardware whose node was late: the next tick is that many cycles further on.
+  void skip(std::uint64_t cycles) noexcept { cycle_ += cycles; }
+
+  std::uint64_t run() const noexcept { return run_; }
+  std::uint64_t next_cycle() const noexcept { return cycle_; }
+  /// Wall clock, after the first tick: simulated over real time since the run began; time held is not counted.
+  double real_time_factor() const noexcept;
+  std::int64_t next_stamp_ns() const noexcept { return start_ns_ + static_cast<std::int64_t>(cycle_) * period_ns_; }
+  void count_overrun() noexcept { ++overruns_; }
+  void count_slip(std::int64_t slipped_ns) noexcept { slipped_ns_ += static_cast<std::uint64_t>(slipped_ns); }
+
+  const DriverTrace& trace() const noexcept { return trace_; }
+
+ private:
+  GateInput latch() noexcept;
+  void publish_last_as(DriverState state) noexcept;
+
+  Driver& driver_;
+  Channels channels_;
+  Gate gate_;
+  std::int64_t period_ns_;
+  Now now_;
+  std::uint64_t boot_ = 0;
+  std::uint64_t run_ = 0;
+  std::uint64_t cycle_ = 0;
+  std::int64_t start_ns_ = 0;
+  std::uint64_t overruns_ = 0;
+  std::uint64_t slipped_ns_ = 0;
+  std::uint64_t held_ns_ = 0;
+  InjectedFaults injected_{};
+  SensorFrame paused_;
+  CommandFrame command_;
+  Permit permit_;
+  DriverTrace trace_;
+};
+
+}  // namespace robot_control

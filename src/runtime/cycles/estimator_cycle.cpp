@@ -1,0 +1,48 @@
+#include "runtime/cycles/estimator_cycle.h"
+
+namespace robot_control {
+
+EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
+                               const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now)
+    : estimator_(parameters, robot, period),
+      clock_(now),
+      sensors_channel_(sensors),
+      state_channel_(state),
+      robot_hash_(robot.hash) {}
+
+void EstimatorCycle::enter_run() noexcept {
+  StateFrame last;
+  const FrameReader<StateFrame> own(state_channel_.memory());
+  first_cycle_ = sensors_.head.cycle;
+  estimator_.reset();
+  if (own.newest(last) == Lookup::kFrame && last.head.run == sensors_.head.run) estimator_.resume(last);
+}
+
+bool EstimatorCycle::step() noexcept {
+  const std::int64_t woke_ns = clock_.now();
+  const Lookup found = sensors_channel_.newest(sensors_);
+  if (found == Lookup::kMissing || found == Lookup::kCorrupt) return false;
+  if (!current(sensors_channel_, sensors_.head, robot_hash_)) return false;
+  const Arrival arrival = clock_.judge(sensors_.head);
+  if (arrival == Arrival::kOld) return false;
+  if (arrival == Arrival::kNewRun) enter_run();
+  clock_.accept(sensors_.head);
+  if (found == Lookup::kToken) {
+    publish_token(state_channel_, sensors_.head);
+    return false;
+  }
+
+  PoseRequest request;
+  if (inbox_.load(request) && request.count != received_) {
+    received_ = request.count;
+    estimator_.set_pose(request.pose);
+  }
+  estimator_.step(sensors_, trace_.state);
+  trace_.state.first_cycle = first_cycle_;
+  const FrameHead head{.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
+  if (!out_.publish(state_channel_, head, sensors_.injected, trace_.state)) return false;
+  trace_.timing = clock_.timing(woke_ns, sensors_);
+  return true;
+}
+
+}  // namespace robot_control

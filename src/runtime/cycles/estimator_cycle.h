@@ -1,0 +1,55 @@
+#pragma once
+/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on. Told to fail, it does
+/// (faulty_writer.h).
+
+#include <cstdint>
+
+#include "estimation/estimator.h"
+#include "rt/latest_frames.h"
+#include "rt/latest_value.h"
+#include "runtime/cycles/cycle_clock.h"
+#include "runtime/faulty_writer.h"
+#include "signals/trace.h"
+
+namespace robot_control {
+
+class EstimatorCycle {
+  struct PoseRequest {
+    std::uint64_t count = 0;
+    Vector3 pose{};
+  };
+
+ public:
+  EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
+                 const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
+
+  /// True when there was a new sensor frame of the driver's current run, and a state was published.
+  bool step() noexcept;
+
+  /// One thread: the pose is (x [m], y [m], yaw [rad]) from the next cycle on.
+  void request_pose(const Vector3& pose) noexcept {
+    ++requested_.count;
+    requested_.pose = pose;
+    inbox_.store(requested_);
+  }
+
+  const EstimatorTrace& trace() const noexcept { return trace_; }
+
+ private:
+  void enter_run() noexcept;
+
+  Estimator estimator_;
+  CycleClock clock_;
+  const FrameReader<SensorFrame>& sensors_channel_;
+  FrameWriter<StateFrame> state_channel_;
+  FaultyWriter<StateFrame> out_{FaultComponent::kEstimator};
+  std::uint64_t robot_hash_;
+  PoseRequest requested_;  ///< the requesting thread's
+  LatestValue<PoseRequest> inbox_;
+  std::uint64_t received_ = 0;     ///< requests that were carried out
+  std::uint64_t first_cycle_ = 0;  ///< StateFrame::first_cycle
+  SensorFrame sensors_;
+  EstimatorTrace trace_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,34 @@
+#pragma once
+/// diff_drive_controller without ROS: woken by state, writes command.
+
+#include <string>
+#include <vector>
+
+#include "runtime/cycles/controller_cycle.h"
+#include "runtime/processes/consumer_process.h"
+#include "runtime/retuning.h"
+
+namespace robot_control {
+
+class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerTrace> {
+ public:
+  /// Throws BusError; ParameterError for a script that cannot be read, or gains that this robot makes unstable.
+  ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ~ControllerProcess() override { stop(); }
+
+  std::vector<std::string> missing() const override;
+  ControllerCycle& cycle() noexcept { return cycle_; }
+  Retuning& retuning() noexcept { return retuning_; }
+
+ private:
+  void poll_channels() override;
+  bool ready() override;
+  void loop() noexcept override;
+
+  Input<StateFrame> state_;
+  Input<Permit> permit_;
+  ControllerCycle cycle_;
+  Retuning retuning_;
+};
+
+}  // namespace robot_control

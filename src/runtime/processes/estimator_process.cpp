@@ -1,0 +1,19 @@
+#include "runtime/processes/estimator_process.h"
+
+namespace robot_control {
+
+EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+    : ConsumerProcess(parameters, robot, bus,
+                      {LoopPriority::kEstimator, "state_estimator", ChannelNames::kState, TraceRing::kEstimator}),
+      cycle_(parameters.estimator, robot_, parameters.loop.period(), sensors_.reader, output_.writer,
+             clock_of(parameters.loop)) {}
+
+std::vector<std::string> EstimatorProcess::missing() const {
+  return missing_anywhere();
+}
+
+void EstimatorProcess::loop() noexcept {
+  consume(cycle_, sensors_.reader, kStopCheck, [] {});
+}
+
+}  // namespace robot_control

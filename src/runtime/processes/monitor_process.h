@@ -1,0 +1,43 @@
+#pragma once
+/// safety_monitor without ROS: woken by sensors, writes permit.
+
+#include <string>
+#include <vector>
+
+#include "runtime/cycles/monitor_cycle.h"
+#include "runtime/latch_file.h"
+#include "runtime/processes/consumer_process.h"
+
+namespace robot_control {
+
+class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
+ public:
+  /// Throws BusError; ParameterError for a script that cannot be read.
+  MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ~MonitorProcess() override;
+
+  std::vector<std::string> missing() const override;
+  MonitorCycle& cycle() noexcept { return cycle_; }
+
+  /// What was latched when this process started, since when and how to release it, in one line; empty: nothing.
+  const std::string& restored() const noexcept { return restored_; }
+
+  /// Why latch_file does not hold what is latched; empty: it does, or there is none. Only for the thread that polls.
+  const std::string& latch_file_problem() const noexcept { return latch_file_.problem(); }
+
+ private:
+  template <class Keep>
+  void with_latched(Keep keep) const;
+  void poll_channels() override;
+  bool ready() override;
+  void loop() noexcept override;
+
+  Input<StateFrame> state_;
+  Input<CommandFrame> command_;
+  LatchFile latch_file_;
+  MonitorCycle cycle_;
+  std::string restored_;
+  std::int64_t loss_ns_;
+};
+
+}  // namespace robot_control

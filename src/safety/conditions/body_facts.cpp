@@ -1,0 +1,136 @@
+#include "safety/conditions/body_facts.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "robot/gravity.h"
+
+namespace robot_control {
+namespace {
+
+using Vector = Eigen::Map<const Eigen::Vector3d>;
+
+Eigen::Matrix3d rotation(const Quaternion& q) {
+  return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
+}
+
+Eigen::Vector3d imu_from_axles(const RobotModel& robot) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const WheelModel& wheel : robot.wheels) middle += Vector(wheel.centre_base.data());
+  if (!robot.wheels.empty()) middle /= static_cast<double>(robot.wheels.size());
+  return Vector(robot.imu_in_base.position.data()) - middle;
+}
+
+}  // namespace
+
+BodyFacts::BodyFacts(const SafetyParameters& parameters, const RobotModel& robot, double period)
+    : period_(period),
+      weight_(robot.mass * kGravity),
+      persistence_(parameters.imu_stuck.persistence),
+      tip_tilt_(parameters.tilt.limit.value_or(0) / 2),
+      contacts_(std::min(robot.wheels.size() + robot.casters.size(), kMaxContacts)),
+      to_base_(rotation(robot.imu_in_base.orientation)),
+      imu_(imu_from_axles(robot)),
+      wheel_count_(std::min(robot.wheels.size(), kMaxWheels)),
+      tilt_(kCauseTilt, parameters.tilt, period),
+      tip_over_(kCauseTipOver, parameters.tip_over, period),
+      free_fall_(kCauseFreeFall, parameters.free_fall, period),
+      lift_(kCauseLift, parameters.lift, period),
+      impact_(kCauseImpact, parameters.impact, period),
+      gyro_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
+      accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
+      window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMostSamples)) {
+  across_.fill(Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < wheel_count_; ++i) {
+    const WheelModel& wheel = robot.wheels[i];
+    wheels_[i] = {.joint = wheel.joint, .rim_per_joint = wheel.sign * wheel.radius};
+  }
+}
+
+void BodyFacts::enter_run() noexcept {
+  for (ConditionWatch* watch : {&tilt_, &tip_over_, &free_fall_, &lift_, &impact_}) watch->reset();
+  for (Repetition* device : {&gyro_, &accelerometer_}) {
+    device->watch.reset();
+    device->seen = false;
+    device->cycles = 0;
+  }
+  attitude_.reset();
+  force_.setZero();
+  across_.fill(Eigen::Vector3d::Zero());
+  shock_ = 0;
+  carried_ = 1;
+}
+
+bool BodyFacts::sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
+                       Eigen::Vector3d& base) const noexcept {
+  if ((sensors.valid & validity) == 0 || !finite(axes)) return false;
+  base = to_base_ * Vector(axes.data());
+  return true;
+}
+
+void BodyFacts::repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool wheels_turn,
+                       ActiveCauses& out) const noexcept {
+  const auto bits = std::bit_cast<std::array<std::uint64_t, 3>>(axes);
+  const bool same = good && device.seen && device.bits == bits && wheels_turn;
+  device.cycles = same ? device.cycles + elapsed : 0;
+  device.bits = bits;
+  device.seen = good;
+  const double repeated_s = static_cast<double>(device.cycles) * period_;
+  device.watch.step({.beyond = same, .value = repeated_s, .limit = persistence_}, elapsed);
+  out.add(device.watch);
+}
+
+double BodyFacts::forward_speed(const SensorFrame& sensors) const noexcept {
+  if ((sensors.valid & kValidJoints) == 0 || wheel_count_ == 0) return 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < wheel_count_; ++i) {
+    sum += wheels_[i].rim_per_joint * sensors.joints[wheels_[i].joint].velocity;
+  }
+  return std::isfinite(sum) ? sum / static_cast<double>(wheel_count_) : 0;
+}
+
+void BodyFacts::weigh(const SensorFrame& sensors) noexcept {
+  carried_ = 1;
+  if ((sensors.valid & kValidContacts) == 0) return;
+  double sum = 0;
+  for (std::size_t i = 0; i < contacts_; ++i) sum += attitude_.up().dot(Vector(sensors.contact_forces[i].data()));
+  if (std::isfinite(sum)) carried_ = sum / weight_;
+}
+
+void BodyFacts::shake(bool felt) noexcept {
+  const Eigen::Vector3d& up = attitude_.up();
+  across_[next_] = felt ? Eigen::Vector3d(force_ - force_.dot(up) * up) : Eigen::Vector3d::Zero();
+  next_ = next_ + 1 == window_ ? 0 : next_ + 1;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < window_; ++i) sum += across_[i];
+  shock_ = sum.norm() / static_cast<double>(window_);
+}
+
+void BodyFacts::step(const SensorFrame& sensors, std::uint64_t elapsed, bool wheels_turn, ActiveCauses& out) noexcept {
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  const bool turned = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
+  const bool felt = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, force_);
+
+  const Eigen::Vector3d velocity = forward_speed(sensors) * Eigen::Vector3d::UnitX() + rate.cross(imu_);
+  const Eigen::Vector3d gravity = force_ - rate.cross(velocity);
+  attitude_.step(turned ? &rate : nullptr, felt ? &gravity : nullptr, static_cast<double>(elapsed) * period_);
+  const double tilt = attitude_.tilt();
+  const double tilt_rate = attitude_.tilt_rate();
+  shake(felt);
+  weigh(sensors);
+
+  const auto judge = [&](ConditionWatch& watch, bool beyond, double value) {
+    watch.step({.beyond = beyond, .value = value, .limit = watch.limit()}, elapsed);
+    out.add(watch);
+  };
+  judge(tilt_, attitude_.known() && tilt > tilt_.limit(), tilt);
+  judge(tip_over_, attitude_.known() && tilt > tip_tilt_ && tilt_rate > tip_over_.limit(), tilt_rate);
+  judge(free_fall_, felt && force() < free_fall_.limit(), force());
+  judge(lift_, carried_ < lift_.limit(), carried_);
+  judge(impact_, shock_ > impact_.limit(), shock_);
+  repeat(gyro_, turned, sensors.imu.angular_velocity, elapsed, wheels_turn, out);
+  repeat(accelerometer_, felt, sensors.imu.linear_acceleration, elapsed, wheels_turn, out);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,27 @@
+#include "safety/conditions/frame_facts.h"
+
+#include "safety/measurements/finite.h"
+
+namespace robot_control {
+namespace {
+
+void judge(StopCause cause, std::uint64_t cycles, std::uint64_t joint, ActiveCauses& out) noexcept {
+  if (cycles < FrameFacts::kPersistence) return;
+  out.add(cause, Reaction::kBrake,
+          {.beyond = true,
+           .value = static_cast<double>(cycles),
+           .limit = static_cast<double>(FrameFacts::kPersistence),
+           .joint = joint});
+}
+
+}  // namespace
+
+void FrameFacts::step(const MonitorInput& input, ActiveCauses& out) noexcept {
+  corrupt_ = input.corrupt ? corrupt_ + 1 : 0;
+  const bool numbers_finite = finite(*input.sensors) && (input.command == nullptr || finite(*input.command));
+  not_finite_ = numbers_finite ? 0 : not_finite_ + 1;
+  judge(kCauseCorruptFrame, corrupt_, kMaxJoints, out);
+  judge(kCauseNotFinite, not_finite_, not_finite_joint(*input.sensors), out);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,40 @@
+#pragma once
+/// What the machine says of itself.
+///
+///   driver fault   driver_state kFault or faults ≠ 0; category 0, waits for a repair
+///   overruns       growth of SensorFrame::overruns over the last second, in tenths of it; what the driver counted
+///                  before the first look does not count
+///   battery        voltage below its limit, where a battery is reported
+
+#include <array>
+#include <cstdint>
+
+#include "safety/latch/active_causes.h"
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+class MachineFacts {
+ public:
+  /// `period` s.
+  MachineFacts(const SafetyParameters& parameters, double period) noexcept;
+
+  void enter_run() noexcept;
+  void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
+
+ private:
+  static constexpr std::size_t kMarks = 10;
+
+  std::uint64_t overruns_of_the_last_second(std::uint64_t overruns, std::uint64_t elapsed) noexcept;
+
+  ConditionWatch overruns_;
+  ConditionWatch battery_low_;
+  ConditionWatch battery_empty_;
+  std::uint64_t mark_cycles_;  ///< between two marks
+  std::uint64_t since_mark_ = 0;
+  bool marked_ = false;
+  std::size_t oldest_ = 0;
+  std::array<std::uint64_t, kMarks> marks_{};  ///< the counter, a tenth of a second apart
+};
+
+}  // namespace robot_control

@@ -1,0 +1,49 @@
+#pragma once
+/// What the operator says, and whether he is still there.
+///
+///   e-stop topic    level true, or its trigger counter changed      | service  its counter changed
+///   e-stop input    kInputEmergencyStop
+///   heartbeat lost  k − k_beat > timeout, in cycles. Counting begins at the first beat of this run, or at the first
+///                   cycle of motion without one (state DRIVE): a robot that was never asked to move needs no
+///                   operator, and one that moves needs one within the timeout.
+///
+/// An emergency stop is never dropped: one that arrived between two runs is active in the first cycle of the new one.
+
+#include <cstdint>
+
+#include "safety/latch/active_causes.h"
+#include "safety/monitor_input.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+class OperatorFacts {
+ public:
+  /// `heartbeat_timeout`, `period` s.
+  OperatorFacts(double heartbeat_timeout, double period) noexcept;
+
+  /// A new run. Heartbeats received before it are not beats of this run.
+  void enter_run(const OperatorInput& operator_input) noexcept;
+
+  /// After a restart of the monitor: the topic e_stop counts as true until its next message.
+  void hold_e_stop() noexcept { e_stop_held_ = true; }
+
+  /// `driving`: the state before this cycle is DRIVE.
+  void step(const MonitorInput& input, bool driving, ActiveCauses& out) noexcept;
+
+  /// StopCause bits of the topic and the service, each event told once. For times in which no cycle passes.
+  std::uint64_t emergency_stops(const OperatorInput& operator_input) noexcept;
+
+ private:
+  bool heartbeat_lost(std::uint64_t heartbeats, std::uint64_t cycle, bool driving) noexcept;
+
+  double period_;
+  double heartbeat_timeout_;
+  std::uint64_t heartbeat_cycles_;  ///< 0 = off
+  bool e_stop_held_ = false;
+  bool heartbeat_counts_ = false;
+  std::uint64_t beat_cycle_ = 0;
+  OperatorInput seen_;  ///< the counters as last looked at
+};
+
+}  // namespace robot_control

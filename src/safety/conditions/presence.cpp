@@ -1,0 +1,31 @@
+#include "safety/conditions/presence.h"
+
+namespace robot_control {
+
+void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  const std::uint64_t cycle = input.sensors->head.cycle;
+  const CommandFrame* command = input.command;
+  missing_ &= ~static_cast<std::uint64_t>(kMissingSensors);
+  if (input.state_seen) missing_ &= ~static_cast<std::uint64_t>(kMissingState);
+  if (command != nullptr) missing_ &= ~static_cast<std::uint64_t>(kMissingCommand);
+
+  const bool command_awaited = (missing_ & kMissingCommand) == 0;
+  const bool state_awaited = (missing_ & kMissingState) == 0;
+  if (input.state_seen || !state_awaited) state_seen_ = cycle;
+  if (command != nullptr || !command_awaited || !input.state_seen) command_seen_ = cycle;
+  if (command != nullptr && input.state_seen) {
+    stale_ = command->state_cycle == command->head.cycle ? 0 : stale_ + elapsed;
+  }
+  judge(kCauseControllerLost, cycle - command_seen_, out);
+  judge(kCauseEstimatorLost, cycle - state_seen_, out);
+  judge(kCauseCommandStale, stale_, out);
+  if (elapsed > loss_cycles_) judge(kCauseMonitorLate, elapsed, out);
+}
+
+void Presence::judge(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept {
+  if (cycles < loss_cycles_) return;
+  out.add(cause, Reaction::kBrake,
+          {.beyond = true, .value = static_cast<double>(cycles), .limit = static_cast<double>(loss_cycles_)});
+}
+
+}  // namespace robot_control

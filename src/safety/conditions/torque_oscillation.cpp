@@ -1,0 +1,105 @@
+#include "safety/conditions/torque_oscillation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace robot_control {
+namespace {
+
+bool latches(const Condition& condition) noexcept {
+  return condition.reaction == Reaction::kRamp || condition.reaction == Reaction::kBrake;
+}
+
+Condition announced(const Condition& condition) noexcept {
+  return {.limit = condition.limit,
+          .persistence = TorqueOscillation::kWarned * condition.persistence,
+          .reaction = latches(condition) ? Reaction::kWarn : Reaction::kOff};
+}
+
+double loaded_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept {
+  const auto beside = static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side));
+  const double square = wheel.radius * wheel.radius / beside;
+  const double straight = 0.5 * robot.mass * square;
+  const double turning = 2 * robot.yaw_inertia * square / (robot.wheel_base * robot.effective_wheel_base());
+  return wheel.inertia + std::max(straight, turning);
+}
+
+}  // namespace
+
+void TorqueOscillation::Ripple::step(double value, double forgets_slow, double forgets) noexcept {
+  slow += forgets_slow * (value - slow);
+  const double fast = value - slow;
+  square += forgets * (fast * fast - square);
+}
+
+double TorqueOscillation::Ripple::rms() const noexcept {
+  return std::sqrt(square);
+}
+
+TorqueOscillation::TorqueOscillation(const SafetyParameters& parameters, const RobotModel& robot,
+                                     double period) noexcept
+    : period_(period),
+      warning_(kCauseTorqueOscillation, announced(parameters.torque_oscillation), period),
+      watch_(kCauseTorqueOscillation, parameters.torque_oscillation, period),
+      count_(std::min(robot.wheels.size(), kMaxWheels)),
+      count_ripple_(parameters.count_ripple) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    effort_limit_[i] = robot.joints[robot.wheels[i].joint].effort_limit;
+    inertia_[i] = loaded_inertia(robot, robot.wheels[i]);
+  }
+}
+
+void TorqueOscillation::enter_run() noexcept {
+  wheels_ = {};
+  commanded_ = {};
+  warning_.reset();
+  watch_.reset();
+}
+
+void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targets, const WheelMotion& motion,
+                             std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  Finding finding = kNothingFound;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double measured = input.sensors->joints[i].effort;
+    if (input.command != nullptr) commanded_[i] = input.command->joints[i].effort;
+    if (!motion.sampled() || !targets.has(i) || !std::isfinite(measured) || !std::isfinite(commanded_[i])) {
+      wheels_[i] = {};
+      continue;
+    }
+    follow(i, measured, commanded_[i], targets[i], elapsed);
+    finding = worse(finding, judge(i, motion));
+  }
+  out.judge(watch_, finding, elapsed);
+  warning_.step(finding, elapsed);
+  if (!watch_.active()) out.add(warning_);
+}
+
+void TorqueOscillation::follow(std::size_t wheel, double measured, double commanded, double target,
+                               std::uint64_t elapsed) noexcept {
+  const double dt = static_cast<double>(elapsed) * period_;
+  const double forgets_slow = -std::expm1(-2 * std::numbers::pi * kSlow * dt);
+  const double forgets = -std::expm1(-dt / kWindow);
+  Wheel& of = wheels_[wheel];
+  if (!of.driven) {
+    of.measured.slow = measured;
+    of.commanded.slow = commanded;
+  } else {
+    of.measured.step(measured, forgets_slow, forgets);
+    of.commanded.step(commanded, forgets_slow, forgets);
+    of.planned.step(inertia_[wheel] * (target - of.target) / dt, forgets_slow, forgets);
+  }
+  of.driven = true;
+  of.target = target;
+}
+
+Finding TorqueOscillation::judge(std::size_t wheel, const WheelMotion& motion) const noexcept {
+  const Wheel& of = wheels_[wheel];
+  const double most = effort_limit_[wheel];
+  if (most <= 0) return kNothingFound;
+  const double explained = 2 * of.planned.rms() + count_ripple_[wheel] * motion.quantum(wheel);
+  const double ripple = std::min(of.measured.rms(), of.commanded.rms());
+  return beyond(wheel, ripple / most, watch_.limit() + explained / most);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,123 @@
+#include "safety/conditions/wheel_following.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+/// In the direction of the target.
+double along(double target, double speed) noexcept {
+  return target < 0 ? -speed : speed;
+}
+
+}  // namespace
+
+WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const RobotModel& robot, double period)
+    : period_(period),
+      stall_(kCauseStall, parameters.stall, period),
+      not_stopping_(kCauseNotStopping, parameters.not_stopping, period),
+      runaway_(robot.wheels.size(), {.watch = ConditionWatch(kCauseRunaway, parameters.runaway, period)}),
+      wrong_direction_(robot.wheels.size(),
+                       {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}) {
+  for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
+    const JointModel& joint = robot.joints[robot.wheels[i].joint];
+    pushes_[i] = kPushedPart * joint.effort_limit;
+    if (joint.velocity_limit > 0) fastest_[i] = joint.velocity_limit;
+  }
+}
+
+void WheelFollowing::enter_run() noexcept {
+  stall_.reset();
+  not_stopping_.reset();
+  for (Excess& excess : runaway_) excess.reset();
+  for (Excess& excess : wrong_direction_) excess.reset();
+  stalls_ = {};
+  moved_ = rested_ = 0;
+}
+
+void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
+                          const JointStandstill& standstill, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  const bool known = motion.speed_known();
+  for (std::size_t i = 0; i < runaway_.size(); ++i) {
+    if (!known || !targets.has(i)) {
+      runaway_[i].reset();
+      wrong_direction_[i].reset();
+      continue;
+    }
+    judge_runaway(targets, motion, i, elapsed, out);
+    judge_direction(targets, motion, i, elapsed, out);
+  }
+  const double dt = static_cast<double>(elapsed) * period_;
+  out.judge(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingFound, elapsed);
+  out.judge(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingFound, elapsed);
+}
+
+void WheelFollowing::Excess::reset() noexcept {
+  watch.reset();
+  mark = 0;
+}
+
+void WheelFollowing::Excess::step(Finding finding, double speed, double progress, std::uint64_t elapsed,
+                                  ActiveCauses& out) noexcept {
+  if (!finding.beyond) {
+    mark = 0;
+  } else if (mark == 0) {
+    mark = speed;
+  } else if (speed < mark - progress && finding.value <= kFarBeyond * finding.limit) {
+    mark = speed;
+    finding.beyond = false;
+  }
+  out.judge(watch, finding, elapsed);
+}
+
+void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                                   std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  Excess& excess = runaway_[wheel];
+  const double target = targets[wheel];
+  const double speed = target == 0 ? std::abs(motion.speed(wheel)) : along(target, motion.speed(wheel));
+  const double tolerance = motion.speed_tolerance(wheel);
+  const Finding finding = beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance);
+  excess.step(finding, speed, kProgress + tolerance, weighed(finding, elapsed), out);
+}
+
+void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                                     std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  Excess& excess = wrong_direction_[wheel];
+  const double target = targets[wheel];
+  const double speed = target == 0 ? 0 : -along(target, motion.speed(wheel));
+  const double tolerance = motion.speed_tolerance(wheel);
+  excess.step(beyond(wheel, speed, excess.watch.limit() + tolerance), speed, kProgress + tolerance, elapsed, out);
+}
+
+Finding WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
+                                double dt) noexcept {
+  Finding finding = kNothingFound;
+  for (std::size_t i = 0; i < motion.wheels(); ++i) {
+    Stall& stall = stalls_[i];
+    const double wanted = targets.has(i) ? std::min(std::abs(targets[i]), fastest_[i]) : 0;
+    const double speed = along(targets[i], motion.speed(i));
+    const bool turns = std::abs(speed) >= kTurns * wanted;
+    if (turns || speed > stall.mark + kProgress + motion.speed_tolerance(i)) {
+      stall = {.missed = 0, .mark = speed};
+    } else {
+      const double pushed = std::abs(sensors.joints[i].effort) > pushes_[i] ? kPushed : 0;
+      stall.missed += std::max(wanted, pushed) * dt;
+    }
+    finding = worse(finding, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));
+  }
+  return finding;
+}
+
+Finding WheelFollowing::not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
+                                    std::uint64_t elapsed) noexcept {
+  rested_ = standstill.moving() ? 0 : rested_ + elapsed;
+  if (!targets.told_to_stand() || static_cast<double>(rested_) * period_ >= kRest) {
+    moved_ = 0;
+  } else if (standstill.moving()) {
+    moved_ += elapsed;
+  }
+  return beyond(kMaxJoints, static_cast<double>(moved_) * period_, not_stopping_.limit());
+}
+
+}  // namespace robot_control

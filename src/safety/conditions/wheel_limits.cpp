@@ -1,0 +1,95 @@
+#include "safety/conditions/wheel_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+SpeedLimitInForce::SpeedLimitInForce(double ramp_time, double period) noexcept
+    : cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(ramp_time / period)))) {}
+
+void SpeedLimitInForce::enter_run() noexcept {
+  since_ = 0;
+  last_ = now_ = kNoSpeedLimit;
+}
+
+double SpeedLimitInForce::step(double speed_limit, std::uint64_t elapsed) noexcept {
+  now_ = std::max(now_, speed_limit);
+  since_ += elapsed;
+  if (since_ >= cycles_) {
+    since_ = 0;
+    last_ = now_;
+    now_ = speed_limit;
+  }
+  return std::max(last_, now_);
+}
+
+WheelLimits::WheelLimits(const SafetyParameters& parameters, const RobotModel& robot, double period) noexcept
+    : speed_(kCauseWheelSpeed, parameters.wheel_speed, period),
+      acceleration_(kCauseWheelAcceleration, parameters.wheel_acceleration, period),
+      effort_(kCauseWheelEffort, parameters.wheel_effort, period),
+      power_(kCausePower, parameters.power, period),
+      in_force_(parameters.ramp_time, period) {
+  for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
+    radius_[i] = robot.wheels[i].radius;
+    effort_limit_[i] = robot.joints[i].effort_limit;
+  }
+}
+
+void WheelLimits::enter_run() noexcept {
+  speed_.reset();
+  acceleration_.reset();
+  effort_.reset();
+  power_.reset();
+  in_force_.enter_run();
+}
+
+void WheelLimits::step(const SensorFrame& sensors, const WheelMotion& motion, bool passed, double speed_limit,
+                       std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  const double in_force = in_force_.step(speed_limit, elapsed);
+  const bool known = motion.speed_known();
+  const Finding speed = known ? fastest(motion, in_force) : kNothingFound;
+  out.judge(speed_, speed, weighed(speed, elapsed));
+  out.judge(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingFound, elapsed);
+  out.judge(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingFound, elapsed);
+  out.judge(power_, known ? drawn(sensors, motion) : kNothingFound, elapsed);
+}
+
+Finding WheelLimits::fastest(const WheelMotion& motion, double speed_limit) const noexcept {
+  Finding finding = kNothingFound;
+  for (std::size_t i = 0; i < motion.wheels(); ++i) {
+    const double slowed = (kSlack * speed_limit + kSlackSpeed) / radius_[i];
+    const double limit = std::min(speed_.limit(), slowed) + motion.speed_tolerance(i);
+    finding = worse(finding, beyond(i, std::abs(motion.speed(i)), limit));
+  }
+  return finding;
+}
+
+Finding WheelLimits::most_jerked(const WheelMotion& motion) const noexcept {
+  Finding finding = kNothingFound;
+  for (std::size_t i = 0; i < motion.wheels(); ++i) {
+    const double limit = acceleration_.limit() + motion.acceleration_tolerance(i);
+    finding = worse(finding, beyond(i, std::abs(motion.acceleration(i)), limit));
+  }
+  return finding;
+}
+
+Finding WheelLimits::strongest(const SensorFrame& sensors) const noexcept {
+  Finding finding = kNothingFound;
+  for (std::size_t i = 0; i < effort_limit_.size() && effort_limit_[i] > 0; ++i) {
+    finding = worse(finding, beyond(i, std::abs(sensors.joints[i].effort) / effort_limit_[i], effort_.limit()));
+  }
+  return finding;
+}
+
+Finding WheelLimits::drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept {
+  double power = 0;
+  double limit = power_.limit();
+  for (std::size_t i = 0; i < motion.wheels(); ++i) {
+    const double effort = sensors.joints[i].effort;
+    power += std::max(0.0, effort * motion.speed(i));
+    limit += std::abs(effort) * motion.speed_tolerance(i);
+  }
+  return beyond(kMaxJoints, power, limit);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,49 @@
+#include "safety/conditions/yaw_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+/// Third row of the rotation matrix of q, which turns IMU axes into base axes.
+Vector3 up_in_imu(const Quaternion& q) noexcept {
+  const auto [x, y, z, w] = q;
+  return {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)};
+}
+
+}  // namespace
+
+YawAgreement::YawAgreement(const Condition& condition, const RobotModel& robot, double period) noexcept
+    : watch_(kCauseYawRate, condition, period), up_imu_(up_in_imu(robot.imu_in_base.orientation)) {
+  std::array<double, 2> count{};
+  for (const WheelModel& wheel : robot.wheels) count[wheel.side == Side::kRight ? 1 : 0] += 1;
+  scrub_ = count[0] > 1 || count[1] > 1 ? kScrub : 0;
+  for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
+    const WheelModel& wheel = robot.wheels[i];
+    const bool right = wheel.side == Side::kRight;
+    const double share = wheel.sign * wheel.radius / (count[right ? 1 : 0] * robot.effective_wheel_base());
+    yaw_per_speed_[i] = right ? share : -share;
+  }
+}
+
+void YawAgreement::step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed,
+                        ActiveCauses& out) noexcept {
+  const bool known = motion.speed_known() && (sensors.valid & kValidGyro) != 0;
+  out.judge(watch_, known ? compare(sensors.imu.angular_velocity, motion) : kNothingFound, elapsed);
+}
+
+Finding YawAgreement::compare(const Vector3& gyro, const WheelMotion& motion) const noexcept {
+  double wheels = 0;
+  double tolerance = 0;
+  for (std::size_t i = 0; i < motion.wheels(); ++i) {
+    wheels += yaw_per_speed_[i] * motion.speed(i);
+    tolerance += std::abs(yaw_per_speed_[i]) * motion.speed_tolerance(i);
+  }
+  const double inertial = gyro[0] * up_imu_[0] + gyro[1] * up_imu_[1] + gyro[2] * up_imu_[2];
+  const double difference = std::abs(inertial - wheels);
+  const double limit = watch_.limit() + scrub_ * std::abs(wheels) + tolerance;
+  return {.beyond = difference > limit, .value = difference, .limit = limit};
+}
+
+}  // namespace robot_control

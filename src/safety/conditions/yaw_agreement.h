@@ -1,0 +1,40 @@
+#pragma once
+/// Do gyro and wheels agree on how fast the robot turns?
+///
+///   |ω_gyro·z − ω| > limit + kScrub·|ω| + δ,   ω = (v_right − v_left)/b
+///
+/// z the base's z axis in the IMU's axes (RobotModel::imu_in_base), v the mean rim speed of a side, b the effective
+/// wheel base, δ = 2·(quantum/T)·radius/b the encoders' tolerance (wheel_motion.h), summed over the wheels.
+/// kScrub for several wheels a side, which scrub in a turn: how far depends on the ground (RobotModel), by up to half
+/// of ω; with one wheel a side nothing scrubs.
+
+#include <array>
+#include <cstdint>
+
+#include "robot/robot_model.h"
+#include "safety/latch/active_causes.h"
+#include "safety/measurements/wheel_motion.h"
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+class YawAgreement {
+ public:
+  static constexpr double kScrub = 0.5;
+
+  /// `period` s.
+  YawAgreement(const Condition& condition, const RobotModel& robot, double period) noexcept;
+
+  void enter_run() noexcept { watch_.reset(); }
+  void step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed, ActiveCauses& out) noexcept;
+
+ private:
+  Finding compare(const Vector3& gyro, const WheelMotion& motion) const noexcept;
+
+  ConditionWatch watch_;
+  Vector3 up_imu_;  ///< the base's z axis in the IMU's axes
+  double scrub_;
+  std::array<double, kMaxWheels> yaw_per_speed_{};  ///< yaw rate per wheel speed, signed
+};
+
+}  // namespace robot_control

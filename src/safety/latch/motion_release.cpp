@@ -1,0 +1,49 @@
+#include "safety/latch/motion_release.h"
+
+#include <algorithm>
+
+namespace robot_control {
+
+bool MotionRelease::Count::grown(const CommandFrame& command) noexcept {
+  if (!before) before = command.first_cycle >= after ? 0 : command.zero_requests;
+  return command.zero_requests > *before;
+}
+
+void MotionRelease::start(std::uint64_t cycle) noexcept {
+  released_ = false;
+  since_start_.restart(std::max(since_start_.after, cycle));
+  since_gap_.restart(std::max(since_gap_.after, since_start_.after));
+}
+
+void MotionRelease::note_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept {
+  if (known == first_cycle) return;
+  known = first_cycle;
+  start(first_cycle);
+}
+
+void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexcept {
+  const std::uint64_t cycle = input.sensors->head.cycle;
+  const CommandFrame* command = input.command;
+  if (input.state_seen) note_start(state_first_, input.state_first_cycle);
+  if (command != nullptr) note_start(command_first_, command->first_cycle);
+  if (elapsed > 1) since_gap_.restart(cycle - 1);
+  no_motion_requested_ = false;
+  if (command != nullptr && input.state_seen && command->state_cycle == command->head.cycle) {
+    judge(*command);
+  } else {
+    since_gap_.restart(cycle);
+  }
+}
+
+void MotionRelease::judge(const CommandFrame& command) noexcept {
+  const bool zero_after_start = since_start_.grown(command);
+  const bool zero_after_gap = since_gap_.grown(command);
+  const bool in_force = !zero(command.twist_requested);
+  const std::uint64_t current_cycles = command.head.cycle - std::min(command.head.cycle, since_gap_.after);
+  const bool silent = !in_force && std::min(command.silent_cycles, current_cycles) >=
+                                       std::max<std::uint64_t>(command.silence_needed, 1);
+  released_ = released_ || zero_after_start || silent;
+  no_motion_requested_ = silent || (!in_force && command.zero_requested != 0 && zero_after_gap);
+}
+
+}  // namespace robot_control

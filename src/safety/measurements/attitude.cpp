@@ -1,0 +1,45 @@
+#include "safety/measurements/attitude.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "robot/gravity.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kUpright = 1e-9;  // rad; below it no direction of tilting is known
+
+}  // namespace
+
+void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept {
+  unpulled_ = std::min(unpulled_ + dt, 2 * kTrust);
+  if (rate != nullptr) carry(*rate, dt);
+  if (force != nullptr) pull(*force, dt);
+  const double horizontal = std::hypot(up_.x(), up_.y());
+  const bool leaning = rate != nullptr && horizontal > kUpright;
+  tilt_rate_ = leaning ? (rate->x() * up_.y() - rate->y() * up_.x()) / horizontal : 0;
+}
+
+void Attitude::carry(const Eigen::Vector3d& rate, double dt) noexcept {
+  const double angle = rate.norm() * dt;
+  if (angle > 0 && std::isfinite(angle)) up_ = Eigen::AngleAxisd(-angle, rate.normalized()) * up_;
+}
+
+void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {
+  const double size = force.norm();
+  if (!(std::abs(size - kGravity) < kBand)) return;
+  const Eigen::Vector3d measured = force / size;
+  const double weight = known() ? std::min(1.0, dt / kTimeConstant) : 1;
+  const Eigen::Vector3d pulled = up_ + weight * (measured - up_);
+  unpulled_ = 0;
+  const double length = pulled.norm();
+  up_ = length > 0.5 ? Eigen::Vector3d(pulled / length) : measured;
+}
+
+double Attitude::tilt() const noexcept {
+  return std::atan2(std::hypot(up_.x(), up_.y()), up_.z());
+}
+
+}  // namespace robot_control

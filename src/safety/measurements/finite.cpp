@@ -1,0 +1,45 @@
+#include "safety/measurements/finite.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+bool finite(const JointSample& joint) noexcept {
+  return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.effort);
+}
+
+}  // namespace
+
+std::uint64_t not_finite_joint(const SensorFrame& sensors) noexcept {
+  if ((sensors.valid & kValidJoints) == 0) return kMaxJoints;
+  const std::uint64_t count = std::min<std::uint64_t>(sensors.joint_count, kMaxJoints);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (!finite(sensors.joints[i])) return i;
+  }
+  return kMaxJoints;
+}
+
+bool finite(const SensorFrame& sensors) noexcept {
+  if (not_finite_joint(sensors) < kMaxJoints) return false;
+  if ((sensors.valid & kValidGyro) != 0 && !finite(sensors.imu.angular_velocity)) return false;
+  if ((sensors.valid & kValidAccelerometer) != 0 && !finite(sensors.imu.linear_acceleration)) return false;
+  if ((sensors.valid & kValidContacts) != 0) {
+    for (const Vector3& force : sensors.contact_forces) {
+      if (!finite(force)) return false;
+    }
+  }
+  return (sensors.valid & kValidBattery) == 0 ||
+         (std::isfinite(sensors.battery_voltage) && std::isfinite(sensors.battery_current));
+}
+
+bool finite(const CommandFrame& command) noexcept {
+  const std::size_t count = std::min<std::size_t>(command.joint_count, kMaxJoints);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!finite(command.joints[i])) return false;
+  }
+  return finite(command.twist_requested) && finite(command.twist_limited);
+}
+
+}  // namespace robot_control

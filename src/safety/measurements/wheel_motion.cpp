@@ -1,0 +1,77 @@
+#include "safety/measurements/wheel_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+
+WheelMotion::WheelMotion(std::size_t wheels, double period) noexcept
+    : wheels_(std::min(wheels, kMaxWheels)),
+      period_(period),
+      window_cycles_(std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::ceil(kSpeedWindow / period - 1e-9)), 2,
+                                               kMaxWindow)),
+      window_(static_cast<double>(window_cycles_) * period) {}
+
+void WheelMotion::enter_run() noexcept {
+  sampled_ = speed_known_ = acceleration_known_ = stepped_ = false;
+  newest_ = kNever;
+  angle_ = last_step_ = speed_ = acceleration_ = quantum_ = {};
+  for (Sample& sample : samples_) sample.cycle = kNever;
+}
+
+void WheelMotion::step(const SensorFrame& sensors) noexcept {
+  speed_known_ = acceleration_known_ = false;
+  sampled_ = take(sensors);
+  if (!sampled_) return;
+  const Sample* const middle = before(newest_);
+  if (middle == nullptr) return;
+  const double recent = static_cast<double>(newest_ - middle->cycle) * period_;
+  for (std::size_t i = 0; i < wheels_; ++i) speed_[i] = (angle_[i] - middle->angle[i]) / recent;
+  speed_known_ = true;
+  const Sample* const oldest = before(middle->cycle);
+  if (oldest == nullptr) return;
+  const double earlier = static_cast<double>(middle->cycle - oldest->cycle) * period_;
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    acceleration_[i] = (speed_[i] - (middle->angle[i] - oldest->angle[i]) / earlier) / recent;
+  }
+  acceleration_known_ = true;
+}
+
+bool WheelMotion::take(const SensorFrame& sensors) noexcept {
+  if ((sensors.valid & kValidJoints) == 0 || sensors.joint_count < wheels_) return false;
+  Values angle{};
+  bool all_finite = true;
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    angle[i] = sensors.joints[i].position;
+    all_finite = all_finite && std::isfinite(angle[i]);
+  }
+  if (!all_finite) return false;
+  if (newest_ != kNever) refine_quantum(angle);
+  newest_ = sensors.head.cycle;
+  angle_ = angle;
+  samples_[newest_ % kSlots] = {newest_, angle};
+  return true;
+}
+
+void WheelMotion::refine_quantum(const Values& angle) noexcept {
+  const auto refine = [](double& quantum, double candidate) {
+    if (candidate > kLeastQuantum && (quantum == 0 || candidate < quantum)) quantum = candidate;
+  };
+  for (std::size_t i = 0; i < wheels_; ++i) {
+    const double step = angle[i] - angle_[i];
+    refine(quantum_[i], std::abs(step));
+    if (stepped_) refine(quantum_[i], std::abs(step - last_step_[i]));
+    last_step_[i] = step;
+  }
+  stepped_ = true;
+}
+
+const WheelMotion::Sample* WheelMotion::before(std::uint64_t cycle) const noexcept {
+  for (std::uint64_t age = window_cycles_; age <= 2 * window_cycles_ && age <= cycle; ++age) {
+    const Sample& sample = samples_[(cycle - age) % kSlots];
+    if (sample.cycle == cycle - age) return &sample;
+  }
+  return nullptr;
+}
+
+}  // namespace robot_control

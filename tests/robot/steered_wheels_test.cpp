@@ -1,0 +1,208 @@
+/// Machines that are no differential drive: omni wheels, rollers, steered wheels, a drive that the file names.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robot/bodies/rigid_bodies.h"
+#include "robot/random_text.h"
+#include "robot/urdf_text.h"
+
+namespace robot_control {
+namespace {
+
+using testing::AllOf;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string four_wheels() {
+  return two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0");
+}
+
+std::string plugin(const std::string& file) {
+  return "<gazebo><plugin name=\"p\" filename=\"" + file + "\"><commandTopic>cmd_vel</commandTopic></plugin></gazebo>";
+}
+
+TEST(HolonomicDrive, PluginsThatMoveARobotSidewaysAreNoted) {
+  for (const std::string file : {"libgazebo_ros_planar_move.so", "libgazebo_ros_mecanum_drive.so", "libomni_drive.so",
+                                 "libgazebo_ros_force_based_move.so", "libholonomic_move.so", "libswerve_drive.so"}) {
+    for (const std::string& wheels : {two_wheels(), four_wheels()}) {
+      const RobotModel robot = read_robot(robot_of(wheels + plugin(file)), {});
+      EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), AllOf(HasSubstr(file), HasSubstr("sideways"))) << file;
+    }
+  }
+  const RobotModel plain = read_robot(robot_of(two_wheels() + plugin("libgazebo_ros_diff_drive.so")), {});
+  EXPECT_THAT(notes_of(plain, RobotNote::Kind::kSuspicious), Not(HasSubstr("sideways")));
+}
+
+/// n rollers about a hub of 0.08 m, each turned by `slant` from the rolling direction, as joints or as shapes of it.
+std::string roller_wheel(const std::string& name, const std::string& place, int n, double slant, bool joints) {
+  std::string shapes = tyre("0.08"), more;
+  for (int i = 0; i < n; ++i) {
+    const double phi = 2 * M_PI * i / n;
+    // Tangent of the rim at φ, then turned by the slant about the radius.
+    const std::string at = xyz(0.09 * std::sin(phi), 0, 0.09 * std::cos(phi));
+    const std::string rpy = xyz(0, phi + M_PI / 2, 0);
+    const std::string each = "<cylinder radius=\"0.01\" length=\"0.03\"/>";
+    const std::string roller = name + "_roller_" + std::to_string(i);
+    if (joints) {
+      const std::string axis = "<axis xyz=\"" + xyz(0, std::sin(slant), std::cos(slant)) + "\"/>";
+      more += link(roller, inertial("0.01") + collision(each)) + joint({.name = roller + "_joint",
+                                                                        .child = roller,
+                                                                        .xyz = at,
+                                                                        .axis = axis,
+                                                                        .parent = name + "_link",
+                                                                        .rpy = rpy});
+    } else {
+      shapes += collision(each, "xyz=\"" + at + "\" rpy=\"" + xyz(slant, phi + M_PI / 2, 0) + "\"");
+    }
+  }
+  return link(name + "_link", inertial("1") + shapes) + joint({.name = name, .child = name + "_link", .xyz = place}) +
+         more;
+}
+
+TEST(HolonomicDrive, RollersOnTheWheelsAreRefusedWithTheReason) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const int n = 5 + static_cast<int>(below(random, 3));
+    const double slant = toss(random) ? 0 : (toss(random) ? 1 : -1) * M_PI / 4;
+    const bool joints = toss(random);
+    std::string text = base() + roller_wheel("fl", "0.2 0.25 0", n, slant, joints) +
+                       roller_wheel("fr", "0.2 -0.25 0", n, -slant, joints);
+    if (!joints && toss(random)) {
+      text +=
+          roller_wheel("rl", "-0.2 0.25 0", n, -slant, joints) + roller_wheel("rr", "-0.2 -0.25 0", n, slant, joints);
+    }
+    EXPECT_THAT(refusal_of(robot_of(text)),
+                AllOf(HasSubstr("rollers"), AnyOf(HasSubstr("omni"), HasSubstr("mecanum"))));
+  }
+}
+
+TEST(HolonomicDrive, WheelsThatRollAcrossAreRefusedWithTheReason) {
+  const auto across = [](const std::string& name, double x, double y, double yaw) {
+    return link(name + "_link", inertial("1") + tyre("0.1")) +
+           joint({.name = name, .child = name + "_link", .xyz = xyz(x, y, 0), .rpy = xyz(0, 0, yaw)});
+  };
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    const double yaw = M_PI / 2 + between(random, -0.6, 0.6);
+    const std::string plus =
+        two_wheels() + across("front", 0.3, 0, yaw) + (toss(random) ? across("back", -0.3, 0, -yaw) : "");
+    EXPECT_THAT(refusal_of(robot_of(plus)), AllOf(HasSubstr("front"), HasSubstr("° off"), HasSubstr("floor"))) << seed;
+  }
+}
+
+/// A wheel below a steering joint, `offset` m outwards of it.
+std::string steered(const std::string& name, double x, double y, double offset, const std::string& type,
+                    const std::string& limit) {
+  return link(name + "_knuckle", inertial("0.3")) +
+         joint({.name = name + "_steer",
+                .child = name + "_knuckle",
+                .xyz = xyz(x, y, 0),
+                .type = type,
+                .axis = "<axis xyz=\"0 0 1\"/>",
+                .rest = limit}) +
+         link(name + "_link", inertial("1") + tyre("0.1")) +
+         joint({.name = name, .child = name + "_link", .xyz = xyz(0, offset, 0), .parent = name + "_knuckle"});
+}
+
+const std::string kSteering = "<limit lower=\"-0.6\" upper=\"0.6\" effort=\"5\" velocity=\"2\"/>";
+
+TEST(SteeredWheels, AreRefusedWithTheReason) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const double x = between(random, 0.2, 0.6) * (toss(random) ? 1 : -1);
+    const double offset = toss(random) ? 0 : between(random, 0, 0.05);
+    const bool limited = toss(random);
+    const std::string type = limited ? "revolute" : "continuous";
+    std::string text = two_wheels() + steered("sl", x, 0.25, offset, type, limited ? kSteering : "") +
+                       steered("sr", x, -0.25, -offset, type, limited ? kSteering : "");
+    const std::size_t named = limited ? below(random, 4) : 1 + below(random, 3);
+    if (named == 1) text += transmission("sl") + transmission("sr");              // only those that are steered drive
+    if (named == 2) text += transmission("sl_steer") + transmission("sr_steer");  // only the steering
+    if (named == 3)
+      text += transmission("left") + transmission("right") + transmission("sl_steer") + transmission("sr_steer");
+    EXPECT_THAT(refusal_of(robot_of(text)),
+                AllOf(HasSubstr("sl"), HasSubstr("steer"), HasSubstr("robot/left_wheel_joints")));
+  }
+}
+
+TEST(SteeredWheels, BesideWheelsThatAreNamedAreNoted) {
+  RobotParameters named;
+  named.left_wheel_joints = {"left"};
+  named.right_wheel_joints = {"right"};
+  const std::string text = two_wheels() + steered("sl", 0.4, 0.25, 0, "revolute", kSteering) +
+                           steered("sr", 0.4, -0.25, 0, "revolute", kSteering);
+  EXPECT_THAT(notes_of(read_robot(robot_of(text), named), RobotNote::Kind::kSuspicious),
+              AllOf(HasSubstr("sl"), HasSubstr("steered")));
+}
+
+TEST(SteeredWheels, AllOfThemAreRefusedWithTheReason) {
+  const std::string text =
+      base() + steered("fl", 0.3, 0.25, 0, "continuous", "") + steered("fr", 0.3, -0.25, 0, "continuous", "") +
+      steered("rl", -0.3, 0.25, 0, "continuous", "") + steered("rr", -0.3, -0.25, 0, "continuous", "");
+  EXPECT_THAT(refusal_of(robot_of(text)), AllOf(HasSubstr("fl"), HasSubstr("swivel")));
+}
+
+TEST(SteeredWheels, ADrivenCasterIsNoted) {
+  const std::string caster =
+      link("fork", inertial("0.2")) +
+      joint({.name = "swivel", .child = "fork", .xyz = "-0.3 0.1 0", .axis = "<axis xyz=\"0 0 1\"/>"}) +
+      link("roller", inertial("0.2") + tyre("0.1")) +
+      joint({.name = "caster", .child = "roller", .xyz = "-0.03 0 0", .parent = "fork"});
+  EXPECT_THAT(
+      notes_of(read_robot(robot_of(two_wheels() + caster + transmission("caster")), {}), RobotNote::Kind::kSuspicious),
+      AllOf(HasSubstr("caster"), HasSubstr("driven")));
+}
+
+// A tricycle's front wheel, driven.
+TEST(NamedDrive, AWheelOnTheMiddleLineThatTheFileDrivesIsRefused) {
+  EXPECT_THAT(refusal_of(robot_of(two_wheels() + wheel("front", "0.4 0 0") + transmission("front"))),
+              AllOf(HasSubstr("front"), HasSubstr("middle line"), HasSubstr("driven")));
+}
+
+TEST(NamedDrive, TransmissionsBind) {
+  for (unsigned seed = 0; seed < 16; ++seed) {
+    const std::vector<std::string> names{"left", "right", "rear_left", "rear_right"};
+    std::string text = four_wheels();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if ((seed >> i & 1U) == 0) continue;
+      text += transmission(names[i]);
+      ++count;
+    }
+    const std::string refusal = refusal_of(robot_of(text));
+    const bool pairs = count == 0 || count == 4 || seed == 3 || seed == 12;
+    if (pairs) {
+      EXPECT_EQ(refusal, "accepted") << seed;
+      EXPECT_EQ(read_robot(robot_of(text), {}).wheels.size(), count == 0 ? 4 : count) << seed;
+    } else {
+      EXPECT_THAT(refusal, AllOf(HasSubstr("the file says"), HasSubstr("driven"))) << seed;
+    }
+  }
+}
+
+TEST(NamedDrive, WheelsThatFollowOthersByMimicAreDrivenWithANote) {
+  for (const std::string leader : {"left", "right"}) {
+    for (const bool said : {false, true}) {
+      std::string text = two_wheels() + wheel("rear_left", "-0.3 0.25 0", "0.1", "<mimic joint=\"left\"/>") +
+                         wheel("rear_right", "-0.3 -0.25 0", "0.1", "<mimic joint=\"" + leader + "\"/>");
+      if (said) text += transmission("left") + transmission("right");
+      const RobotModel robot = read_robot(robot_of(text), {});
+      EXPECT_EQ(robot.wheels.size(), 4u);
+      EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious),
+                  AllOf(HasSubstr("rear_left"), HasSubstr("<mimic joint")));
+      EXPECT_EQ(robot.bodies->moved_by("rear_right")->joint.mimicked, "");
+    }
+  }
+  const std::string pair =
+      base() + wheel("left", "0 0.25 0") + wheel("right", "0 -0.25 0", "0.1", "<mimic joint=\"left\"/>");
+  EXPECT_THAT(notes_of(read_robot(robot_of(pair), {}), RobotNote::Kind::kSuspicious), HasSubstr("<mimic joint"));
+}
+
+}  // namespace
+}  // namespace robot_control
