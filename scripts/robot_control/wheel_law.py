@@ -2,8 +2,8 @@
 
 Torque τ and angle q of a wheel, forward positive; v, ω the robot's speeds by its wheels, r the wheel's radius,
 side −1 left, +1 right, h wheels a side, b the wheel base, b' the effective one (the law of
-src/control/wheel_loops/feed_forward.h). Wheels behind each other are fitted as one, their mean: the ground carries torque from one to the other, and who of them
-bears how much is chance.
+src/control/wheel_loops/feed_forward.h). Wheels behind each other are fitted as one, their mean: the ground carries
+torque from one to the other, and how much each of them bears is chance.
 
     τ = J_straight·v̇/r + J_turning·side·ω̇·b'/(2r) + d·q̇ + f·sign(q̇) + side·(s·sign(ω) + e·ω)
         + p·r/h·(side·v·ω/b − ω²/2) + c

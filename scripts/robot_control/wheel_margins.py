@@ -1,5 +1,4 @@
-"""How much a wheel loop bears: more gain, more delay, by the eigenvalues of
-src/control/wheel_loops/wheel_loop_stability.h."""
+"""How much more gain and delay a wheel loop bears: eigenvalues as in src/control/wheel_loops/wheel_loop_stability.h."""
 
 from __future__ import annotations
 
