@@ -1,5 +1,6 @@
 #pragma once
-/// The wall to the machine. A simulator, a CAN bus and an EtherCAT master stand behind the same four calls.
+/// The interface to the machine. A simulator, a CAN bus and an EtherCAT master stand behind the same four calls.
+/// tests/hal/driver_contract.h holds any driver to it.
 
 #include <span>
 #include <stdexcept>
@@ -27,10 +28,11 @@ class Driver {
   /// Sensors of x(t_k): everything of the frame but head, boot, gate and counters. Never blocks.
   virtual void read(SensorFrame& sensors) noexcept = 0;
 
-  /// Applies the commands, one per joint in frame order, over [t_k, t_k+1). A simulated machine advances.
+  /// Applies the commands, one per joint in frame order, over [t_k, t_k+1). An unknown mode, or a number that is not
+  /// finite, brakes its joint. Never blocks. A simulated machine advances.
   virtual void write(std::span<const JointCommand> commands) noexcept = 0;
 
-  /// Brakes, now and for good.
+  /// Brakes, at once and until the next `start`.
   virtual void stop() noexcept = 0;
 
   /// A simulated machine waits when its node is late: time slips, cycles stay consecutive. Hardware does not:
