@@ -3,6 +3,7 @@
 import re
 import subprocess
 
+import parameters_page
 import pytest
 from pages import PAGES, README, ROOT, anchors, inline_code, links, prose
 
@@ -121,3 +122,7 @@ def test_the_glossary_is_short_and_says_each_term_once():
 def test_every_name_in_the_glossary_is_one_of_the_program(words):
     named = (word for row in glossary() for code in re.findall(r"`([^`]+)`", row) for word in re.findall(r"\w+", code))
     assert [word for word in named if word not in words and word not in ("csv", "odom")] == []
+
+
+def test_the_page_of_parameters_is_that_of_schema_and_yaml():
+    assert parameters_page.PAGE.read_text() == parameters_page.written(), "run tests/docs/parameters_page.py"
