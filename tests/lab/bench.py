@@ -20,6 +20,7 @@ from typing import Any
 
 from robot_control.files import write_text
 
+from lab import markdown
 from lab.faults.fault_sequence import ALL_RUNS
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
@@ -138,6 +139,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
+    parser.add_argument("--markdown", action="store_true", help="write the tables of docs/measurements.md")
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)
@@ -164,6 +166,8 @@ def main() -> int:
         print(f"\n{to_table(result)}", flush=True)
     if given.json is not None:
         write_text(given.json, json.dumps(results, indent=2) + "\n")
+    if given.markdown:
+        markdown.write(results)
     return 1 if failed else 0
 
 

@@ -1,0 +1,55 @@
+import pytest
+from lab import markdown
+
+
+def row(name, value, reference=0.0, reference_name="none", unit="ns"):
+    ratio = value / reference if reference else 0.0
+    return {"name": name, "value": value, "unit": unit} | {
+        "reference": reference,
+        "reference_name": reference_name,
+        "ratio": ratio,
+    }
+
+
+def test_a_figure_stands_beside_its_ratio():
+    result = {"bench": "step", "rows": [row("gate", 88.0, 44.0, "kernel"), row("allocations", 0.0, unit="")]}
+    assert markdown.table(result).splitlines() == [
+        "| figure | value | ratio |",
+        "|---|---|---|",
+        "| gate | 88 ns | 2 of kernel |",
+        "| allocations | 0 |  |",
+    ]
+
+
+def test_robots_with_bounds_stand_side_by_side():
+    bounded = {"reference_name": markdown.ALLOWED, "unit": "%"}
+    rows = [row("diffbot overshoot", 0.1, 1.0, **bounded), row("boxer overshoot", 0.3, 1.0, **bounded)]
+    rows.append(row("diffbot tracking RMS", 0.5, 2.0, **bounded))
+    text = markdown.table({"bench": "drive", "rows": rows, "not_judged": ["kobuki"]})
+    assert text.splitlines() == [
+        "| figure | allowed | diffbot | boxer | worst, of what is allowed |",
+        "|---|---|---|---|---|",
+        "| overshoot [%] | 1 | 0.1 | 0.3 | 30 % |",
+        "| tracking RMS [%] | 2 | 0.5 | – | 25 % |",
+        "",
+        "Not measured, for want of their descriptions: kobuki.",
+    ]
+
+
+def test_only_the_place_of_the_benchmark_is_replaced():
+    page = "a\n<!-- scripts/bench step -->\nold\n<!-- end -->\nb\n<!-- scripts/bench plant -->\nkept\n<!-- end -->\n"
+    done = markdown.replaced(page, {"bench": "step", "rows": [row("gate", 1.0)]})
+    assert "old" not in done
+    assert done.startswith("a\n<!-- scripts/bench step -->\n\n| figure |")
+    assert done.endswith("<!-- end -->\nb\n<!-- scripts/bench plant -->\nkept\n<!-- end -->\n")
+
+
+def test_a_benchmark_without_a_place_is_refused_by_name():
+    with pytest.raises(ValueError, match="no place for frames"):
+        markdown.replaced("a\n", {"bench": "frames", "rows": [row("lost", 0.0)]})
+
+
+@pytest.mark.parametrize("name", ["step", "plant", "lockstep", "drive", "odometry"])
+def test_the_page_has_a_place_for_every_benchmark_that_is_quoted(name):
+    result = {"bench": name, "rows": [row("figure", 1.0)]}
+    assert "| figure | 1 ns |" in markdown.replaced(markdown.PAGE.read_text(), result)
