@@ -1,6 +1,9 @@
-"""Called by catkin alone: where the importable package lies."""
+"""Called by catkin alone: where the importable packages lie."""
 
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 
-setup(**generate_distutils_setup(packages=["robot_control"], package_dir={"": "scripts"}))
+PROGRAMS = ("calibrate", "demo", "drive", "estimate", "identify", "inspect", "record", "why")
+packages = ["robot_control", *(f"robot_control.{name}" for name in ("common", *PROGRAMS))]
+
+setup(**generate_distutils_setup(packages=packages, package_dir={"": "scripts"}))

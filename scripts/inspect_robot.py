@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Says what is understood of a robot description: inspect_robot.py FILE [--picture OUT.png] [--mjcf OUT.xml]."""
 
-from robot_control.inspect_robot import main
+from robot_control.inspect.main import main
 
 main()

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Records every topic of the interface table with rosbag: record.py FOLDER."""
 
-from robot_control.recording import main
+from robot_control.record.main import main
 
 main()

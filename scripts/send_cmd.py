@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Repeats one velocity command on cmd_vel: 0.5 m/s and 0.2 rad/s every 0.5 s; see --help."""
 
-from robot_control.velocity_sender_node import main
+from robot_control.drive.main import main
 
 if __name__ == "__main__":
     main()

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Answers "why does it not move?" in one screen, live; see --help."""
 
-from robot_control.why_node import main
+from robot_control.why.main import main
 
 if __name__ == "__main__":
     main()

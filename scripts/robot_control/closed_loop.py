@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_control._robot_control import ClosedLoop as _ClosedLoop
-from robot_control.share import share_file
+from robot_control.installed_files import share_file
 
 Log = dict[str, NDArray[np.float64]]
 Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import IO
 
-from robot_control.files import check_input
+from robot_control.common.files import check_input
 
 LARGEST_INCLUDED = 64 << 20  # bytes
 NOT_INSTALLED = 69  # EX_UNAVAILABLE of sysexits.h

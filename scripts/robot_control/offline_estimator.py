@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from robot_control._robot_control import OfflineEstimator, slip_reasons, state_flags, state_sensors
 from robot_control.closed_loop import leaves
-from robot_control.share import share_file
+from robot_control.installed_files import share_file
 
 FloatArray = NDArray[np.float64]
 Estimate = dict[str, NDArray[Any]]

@@ -8,7 +8,7 @@
 namespace robot_control {
 
 inline std::string installed_parameters() {
-  return pybind11::module_::import("robot_control.share")
+  return pybind11::module_::import("robot_control.installed_files")
       .attr("share_file")("config/robot_params.yaml")
       .cast<std::string>();
 }

@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from robot_control.files import write_text
+from robot_control.common.files import write_text
 
 from lab import markdown
 from lab.faults.fault_sequence import ALL_RUNS

@@ -10,7 +10,7 @@ import json
 import os
 from pathlib import Path
 
-from robot_control.share import share_file
+from robot_control.installed_files import share_file
 
 DIFFBOT = "diffbot"
 REFUSED = ("my_bot", "p3dx_amr")  # an empty template; wheels on fixed joints

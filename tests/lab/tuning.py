@@ -24,8 +24,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from robot_control._robot_control import ParameterError
-from robot_control.cause_bits import causes_in
 from robot_control.closed_loop import ClosedLoop, Log
+from robot_control.common.cause_names import causes_in
 
 from lab.robot_corpus import DIFFBOT, robot_names, urdf_of
 

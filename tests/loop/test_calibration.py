@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import yaml
 from robot_control import ClosedLoop
-from robot_control.calibrate import evaluate, wheels_of
-from robot_control.calibration_law import Square, Straight, Truth, largest_mean_return_error
-from robot_control.calibration_moves import Pilot, square, straight
-from robot_control.excitation_watch import Pose
+from robot_control.calibrate.evaluation import evaluate, wheels_of
+from robot_control.calibrate.law import Square, Straight, Truth, largest_mean_return_error
+from robot_control.calibrate.moves import Pilot, square, straight
+from robot_control.identify.excitation_watch import Pose
 
 LEFT, RIGHT, BASE = 0.012, 0.004, 0.02
 HIDDEN = {"left_radius_error": LEFT, "right_radius_error": RIGHT, "wheel_base_error": BASE}

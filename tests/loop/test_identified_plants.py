@@ -7,10 +7,11 @@ from corpus import ABSENT, FOLDER
 from lab.robot_corpus import DIFFBOT, urdf_of
 from robot_control import ClosedLoop
 from robot_control._robot_control import wheel_loops
-from robot_control.identification import identify
-from robot_control.identify import Options, Settings, evaluate, plan
-from robot_control.share import share_file
-from robot_control.tuning_proposal import base_of
+from robot_control.common.settings import Settings
+from robot_control.identify.evaluation import Options, evaluate, plan
+from robot_control.identify.fit import identify
+from robot_control.identify.tuning_proposal import base_of
+from robot_control.installed_files import share_file
 
 PARAMS = share_file("config/robot_params.yaml")
 TOLERANCE = 0.05  # what identification promises

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lab.tuning import bench, longest_excess, shaking
 from robot_control import ClosedLoop, ParameterError
-from robot_control.cause_bits import causes_in
+from robot_control.common.cause_names import causes_in
 
 RUNS = 50  # of the 10⁵ of scripts/bench tuning
 COUNTS = (64, 200, 512, 1000, 4096)  # of an encoder's turn

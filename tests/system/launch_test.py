@@ -14,7 +14,7 @@ import rosbag
 import rosgraph
 import rospy
 import rostest
-from robot_control.recording import TOPICS
+from robot_control.record.main import TOPICS
 from system_support import LIMIT, MONITOR, refusal, repository, wait_for
 
 SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "clearance", "tf_static", "/clock", "/rosout"}

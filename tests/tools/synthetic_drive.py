@@ -1,7 +1,7 @@
 """A drive that obeys the law of wheel_law.py to the letter, for tests that break one thing each."""
 
 import numpy as np
-from robot_control.wheel_law import Base, Wheel
+from robot_control.identify.wheel_law import Base, Wheel
 
 PERIOD = 0.001  # s
 RADIUS, WHEEL_BASE = 0.1, 0.5  # m

@@ -193,6 +193,33 @@ def test_nothing_that_is_installed_imports_the_laboratory():
     assert wrong == []
 
 
+def test_every_package_is_installed():
+    packages = re.search(r"PROGRAMS = \((.*?)\)", (ROOT / "setup.py").read_text(), re.DOTALL)
+    named = {"common", *re.findall(r'"(\w+)"', packages.group(1))}
+    assert named == {path.parent.name for path in (ROOT / "scripts/robot_control").glob("*/__init__.py")}
+
+
+def test_no_folder_of_python_holds_more_than_25_files():
+    folders = {path.parent for name in ("scripts", "tests/lab") for path in (ROOT / name).rglob("*.py")}
+    assert len(folders) > 10
+    counts = {str(folder.relative_to(ROOT)): sum(path.is_file() for path in folder.glob("*")) for folder in folders}
+    assert {name: count for name, count in counts.items() if count > 25} == {}
+
+
+def test_what_the_programs_share_knows_none_of_them():
+    """robot_control.common stands below the packages of the programs, and the top package below common."""
+    top = sorted((ROOT / "scripts/robot_control").glob("*.py"))
+    common = sorted((ROOT / "scripts/robot_control/common").glob("*.py"))
+    programs = {path.parent.name for path in (ROOT / "scripts/robot_control").glob("*/__init__.py")} - {"common"}
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in top + common
+        for name in imported_modules(path)
+        if name.startswith("robot_control.") and name.split(".")[1] in programs
+    ]
+    assert wrong == []
+
+
 def test_the_laboratory_is_not_installed():
     for name in ("setup.py", "cmake/ros.cmake"):
         installs = re.findall(r"(?:package_dir|packages|install)\b[^\n]*", (ROOT / name).read_text())

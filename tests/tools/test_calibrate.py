@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import yaml
 from robot_control import ClosedLoop
-from robot_control.calibrate import (
+from robot_control.calibrate.evaluation import (
     evaluate,
     implausible_distance,
     implausible_return,
@@ -13,7 +13,7 @@ from robot_control.calibrate import (
     space,
     wheels_of,
 )
-from robot_control.calibration_law import NotCalibratedError, Square, Straight, Truth, replay, square_path
+from robot_control.calibrate.law import NotCalibratedError, Square, Straight, Truth, replay, square_path
 
 TRUE = Truth(scale=1.008, ratio=1.004 / 1.012, base=1.02)
 

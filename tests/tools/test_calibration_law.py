@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from robot_control.calibration_law import (
+from robot_control.calibrate.law import (
     NotCalibratedError,
     Square,
     Straight,

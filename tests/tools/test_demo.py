@@ -3,7 +3,7 @@ import sys
 import time
 
 import pytest
-from robot_control import demo
+from robot_control.demo import main as demo
 
 
 def test_each_kind_of_refusal_is_said_once_with_its_remedy():

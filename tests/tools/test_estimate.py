@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from kinematic_drive import IMU, RADIUS, WHEEL_BASE, drive
 from robot_control import ClosedLoop, Estimator
-from robot_control.estimate import main
-from robot_control.estimate_samples import Stream, merged
-from robot_control.estimate_wheels import wheel_angles
+from robot_control.estimate.main import main
+from robot_control.estimate.samples import Stream, merged
+from robot_control.estimate.wheels import wheel_angles
 
 SCRIPT = Path(__file__).parents[2] / "scripts/estimate.py"
 ROBOT = [f"--wheel-radius={RADIUS}", f"--wheel-base={WHEEL_BASE}", f"--imu-position={','.join(map(str, IMU))}"]

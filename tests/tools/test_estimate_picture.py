@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from robot_control import Estimator, estimate_picture
-from robot_control.estimate_picture import Picture
+from robot_control import Estimator
+from robot_control.estimate import picture as estimate_picture
+from robot_control.estimate.picture import Picture
 
 SECONDS, STEP = 12.0, 0.01
 

@@ -3,8 +3,8 @@
 import math
 
 import pytest
-from robot_control.excitation import CRUISE, REACH, SLOWEST, AxisLimits, NoRoomError, plan_excitation
-from robot_control.excitation_watch import ANSWER, MARGIN, Look, Pose, hindrance, interruption
+from robot_control.identify.excitation import CRUISE, REACH, SLOWEST, AxisLimits, NoRoomError, plan_excitation
+from robot_control.identify.excitation_watch import ANSWER, MARGIN, Look, Pose, hindrance, interruption
 
 LINEAR = AxisLimits(speed=1.0, acceleration=1.0, deceleration=1.0, jerk=10.0)
 ANGULAR = AxisLimits(speed=2.0, acceleration=4.0, deceleration=4.0, jerk=40.0)

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from robot_control.file_errors import in_words
+from robot_control.common.file_errors import in_words
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 

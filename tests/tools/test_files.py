@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from robot_control.files import InputFileError, NewFiles, check_input, fit_for_message, printable, write_text
+from robot_control.common.files import InputFileError, NewFiles, check_input, fit_for_message, printable, write_text
 
 
 def test_only_regular_files_up_to_a_size_are_read(tmp_path):
@@ -93,7 +93,7 @@ def test_nothing_is_replaced_when_the_block_fails(tmp_path):
 
 def test_the_limit_on_file_sizes_is_a_full_disk(tmp_path):
     (tmp_path / "file").write_text("old")
-    program = "import pathlib, robot_control.files as files; files.write_text(pathlib.Path('file'), 'x' * 9999)"
+    program = "import pathlib, robot_control.common.files as files; files.write_text(pathlib.Path('file'), 'x' * 9999)"
     ended = subprocess.run(
         [sys.executable, "-c", program],
         cwd=tmp_path,

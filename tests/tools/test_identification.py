@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import synthetic_drive as drive
-from robot_control.identification import identify
-from robot_control.identification_rows import UnfitError
+from robot_control.identify.fit import identify
+from robot_control.identify.rows import UnfitError
 
 
 def values(found):

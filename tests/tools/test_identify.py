@@ -6,11 +6,12 @@ import sys
 import pytest
 import yaml
 from robot_control import ClosedLoop
-from robot_control.identification import Estimate
-from robot_control.identification_report import _measured
-from robot_control.identify import Settings, parse_options, plan
-from robot_control.identify_node import main
-from robot_control.share import share_file
+from robot_control.common.settings import Settings
+from robot_control.identify.evaluation import parse_options, plan
+from robot_control.identify.fit import Estimate
+from robot_control.identify.main import main
+from robot_control.identify.report import _measured
+from robot_control.installed_files import share_file
 
 PARAMS = share_file("config/robot_params.yaml")
 FRICTION = 0.1  # N·m

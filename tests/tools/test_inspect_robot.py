@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from robot_control.rendering import Part, View, Window, render
-from robot_control.robot_picture import draw_robot
-from robot_control.robot_report import WIDTH, report
-from robot_control.robot_shapes import ground_height, triangles_in_base
+from robot_control.inspect.picture import draw_robot
+from robot_control.inspect.rendering import Part, View, Window, render
+from robot_control.inspect.report import WIDTH, report
+from robot_control.inspect.shapes import ground_height, triangles_in_base
 
 ROOT = Path(__file__).parents[2]
 DIFFBOT = ROOT / "urdf/diffbot.urdf"

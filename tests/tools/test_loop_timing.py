@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from robot_control.loop_timing import ProcessorTime, distribution, loop_timing, parse_processor_time, stolen_share
+from robot_control.demo.loop_timing import ProcessorTime, distribution, loop_timing, parse_processor_time, stolen_share
 from synthetic_run import CYCLES, healthy_run
 
 

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from robot_control.recording import TOPICS, main, namespace_of, record_command
+from robot_control.record.main import TOPICS, main, namespace_of, record_command
 
 
 def topics(*arguments: str, **environment: str) -> list[str]:

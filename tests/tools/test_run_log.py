@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from robot_control.run_log import LogError, joint_names, last, read_log
+from robot_control.common.run_log import LogError, joint_names, last, read_log
 
 
 def write(tmp_path, text):

@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from robot_control import run_picture
-from robot_control.brakes import GATE_REASONS
-from robot_control.run_picture import draw_run
-from robot_control.run_summary import STOP_CAUSES, SUPERVISOR_STATES, summarize, to_json, to_table
+from robot_control.common.cause_names import STOP_CAUSES
+from robot_control.demo import run_picture
+from robot_control.demo.brakes import GATE_REASONS
+from robot_control.demo.run_picture import draw_run
+from robot_control.demo.run_summary import SUPERVISOR_STATES, summarize, to_json, to_table
 from synthetic_run import ANGULAR, BEGIN, END, LINEAR, SECONDS, brake_at, healthy_run
 
 ROOT = Path(__file__).parents[2]

@@ -3,8 +3,8 @@
 import threading
 import time
 
-from robot_control import topic_sender
-from robot_control.topic_sender import publish_last
+from robot_control.common import topic_sender
+from robot_control.common.topic_sender import publish_last
 
 LATE = 0.15  # s that a connection's thread sleeps before it writes
 

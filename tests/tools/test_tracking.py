@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from robot_control.tracking import EXCUSED_CYCLES, SETTLE, NotSteadyError, commanded_path, judge, steady_rows
+from robot_control.demo.tracking import EXCUSED_CYCLES, SETTLE, NotSteadyError, commanded_path, judge, steady_rows
 from synthetic_run import ANGULAR, BEGIN, END, LINEAR, PERIOD, RAMP, brake_at, healthy_run, with_truth
 
 MIDDLE = 4000  # a cycle in the steady part

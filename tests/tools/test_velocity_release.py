@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from robot_control.velocity_release import GONE, NO_MONITOR, PATIENCE, Phase, Release, Status
+from robot_control.drive.release import GONE, NO_MONITOR, PATIENCE, Phase, Release, Status
 
 READY, DRIVE, INIT = Status("READY"), Status("DRIVE"), Status("INIT", missing=("state_estimator",))
 STOPPED = Status(

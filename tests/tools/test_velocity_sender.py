@@ -1,7 +1,7 @@
 """What send_cmd.py sends, without ROS."""
 
 import pytest
-from robot_control.velocity_sender import SendPlan, parse_plan
+from robot_control.drive.send_plan import SendPlan, parse_plan
 
 
 def test_default_is_the_articles_command() -> None:

@@ -4,8 +4,20 @@ import re
 from dataclasses import replace
 
 import pytest
-from robot_control.why import CONTROLLER, ESTIMATOR, LOOP, MONITOR, PLANT, Cause, Facts, Report, Safety, Verdict, judge
-from robot_control.why_screen import Look, render
+from robot_control.why.diagnosis import (
+    CONTROLLER,
+    ESTIMATOR,
+    LOOP,
+    MONITOR,
+    PLANT,
+    Cause,
+    Facts,
+    Report,
+    Safety,
+    Verdict,
+    judge,
+)
+from robot_control.why.screen import Look, render
 
 E_STOP = Cause(
     "e_stop_topic",

@@ -1,6 +1,6 @@
 """How well a robot does what its limits promise, measured on the simulated machine.
 
-Each function drives robots of robots.py and gives `Figure`s: a value and the bound it must not exceed.
+Each function drives robots of robot_corpus.py and gives `Figure`s: a value and the bound it must not exceed.
 """
 
 from __future__ import annotations

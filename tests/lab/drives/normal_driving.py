@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from robot_control.cause_bits import causes_in
 from robot_control.closed_loop import ClosedLoop, Log
+from robot_control.common.cause_names import causes_in
 
 from lab.drives.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
 from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of

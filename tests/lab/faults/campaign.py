@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from robot_control.cause_bits import causes_in
 from robot_control.closed_loop import ClosedLoop
+from robot_control.common.cause_names import causes_in
 
 from lab.faults.fault_sequence import ALL_RUNS, ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
 from lab.faults.sequence_judge import RULES, judge

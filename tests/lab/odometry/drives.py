@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from robot_control.share import share_file
+from robot_control.installed_files import share_file
 
 from lab.odometry import slip as slip_trial
 from lab.odometry.program import RAMP, Program

@@ -1,0 +1,1 @@
+"""calibrate.py: wheel radii and track width from measured drives."""

@@ -1,0 +1,275 @@
+"""calibrate.py's ROS side: asks, drives, listens to the wheels, and stops whenever something is not as planned."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import rospy
+
+from robot_control import ParameterError, RobotError
+from robot_control._robot_control import describe as describe_robot
+from robot_control.calibrate.evaluation import (
+    Options,
+    evaluate,
+    implausible_distance,
+    implausible_return,
+    margin,
+    parse_options,
+    place,
+    space,
+    wheels_of,
+)
+from robot_control.calibrate.law import (
+    FloatArray,
+    NotCalibratedError,
+    Square,
+    Straight,
+    Truth,
+    Wheels,
+    of_axle,
+    replay,
+)
+from robot_control.calibrate.moves import Move, Pilot, square, straight
+from robot_control.calibrate.robot import CalibratedRobot
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
+from robot_control.common.settings import Settings
+from robot_control.common.terminal_dialog import NoAnswerError, Questions
+from robot_control.common.topic_sender import Signals, ended_by_signals
+from robot_control.identify.excitation_watch import Pose, hindrance, ignored, moves, unattended
+
+PERIOD = 0.05
+"""s between two commands: 25 are lost before the default cmd_vel_timeout"""
+SILENCE = 1.0
+"""s without wheel_odom, which comes 50 times a second"""
+JUMP = 0.3
+"""m between two messages of wheel_odom, at most one of a reset or another run: 15 m/s at its 50 Hz"""
+LEAST_WAY = 0.3
+"""m; half of the shortest drive, beyond what a robot creeps"""
+STANDSTILL = 0.5
+"""s of standing before a pose is read: the body has stopped rocking"""
+ESTIMATOR = "state_estimator"
+MARKS = (
+    "Mark on the floor where the middle between the wheels stands, and which way the robot points (a string along the "
+    "axle, and one ahead). Each run begins where the robot stands: set it back whenever the way is no longer free."
+)
+REFUSALS = (RefusedError, NotCalibratedError, NoAnswerError, ParameterError, RobotError, OSError, ValueError)
+
+
+@dataclass
+class Drive:
+    """One measurement: what happens, and where it may happen."""
+
+    what: str
+    moves: Sequence[Move]
+    ahead: float  # m beyond the start
+    left: float  # m
+    right: float  # m
+
+    def astray(self, start: Pose, here: Pose) -> str:
+        """Why the robot may not be there; empty: it may."""
+        ahead, left = here.seen_from(start)
+        beside = margin(self.ahead)
+        if -beside <= ahead <= self.ahead + beside and -self.right - beside <= left <= self.left + beside:
+            return ""
+        return f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, off its way"
+
+
+@dataclass
+class Wizard:
+    """One dialogue."""
+
+    robot: CalibratedRobot
+    options: Options
+    wheels: Wheels
+    signals: Signals
+    questions: Questions
+    senders: tuple[str, ...] = ()
+    lengths: list[float] = field(default_factory=list)
+    places: list[tuple[float, float]] = field(default_factory=list)
+
+    def run(self) -> tuple[list[Straight], list[Square]]:
+        """All measurements."""
+        options = self.options
+        self.lengths, self.places = list(options.measured), list(options.returned)
+        print(space(options), flush=True)
+        self._permission("Is the way free, and a hand at the emergency stop?")
+        straights: list[Straight] = []
+        squares: list[Square] = []
+        if options.distance > 0:
+            drive = Drive("straight drive", straight(options.distance), options.distance, 0.0, 0.0)
+            straights = [self._straight(drive, number) for number in range(options.repeats)]
+        if options.side > 0:
+            for clockwise in (True, False):
+                squares += [self._square(number, clockwise=clockwise) for number in range(options.runs)]
+        return straights, squares
+
+    def _straight(self, drive: Drive, number: int) -> Straight:
+        path, truth = self._driven(drive, f"straight drive {number + 1} of {self.options.repeats}")
+        by_wheels = float(np.linalg.norm(replay(path, self.wheels, Truth())[-1, :2]))
+        if self.options.truth:
+            measured = math.hypot(*truth)
+        elif self.lengths:
+            measured = self.lengths.pop(0)
+        else:
+            measured = self.questions.value(
+                f"m between the two marks, by tape (the wheels say {by_wheels:.3f}):",
+                float,
+                lambda value: implausible_distance(value, by_wheels),
+            )
+        self._refuse(implausible_distance(measured, by_wheels) if self.options.truth else "")
+        return Straight(path, measured)
+
+    def _square(self, number: int, *, clockwise: bool) -> Square:
+        side = self.options.side
+        left, right = (0.0, side) if clockwise else (side, 0.0)
+        way = "clockwise" if clockwise else "counter-clockwise"
+        drive = Drive("square", square(side, clockwise=clockwise), side, left, right)
+        path, truth = self._driven(drive, f"square {number + 1} of {self.options.runs}, {way}")
+        if self.options.truth:
+            measured = truth
+        elif self.places:
+            measured = self.places.pop(0)
+        else:
+            measured = self.questions.value(
+                "x,y: m of the second mark ahead of and to the left of the first:",
+                place,
+                lambda value: implausible_return(value, side),
+            )
+        self._refuse(implausible_return(measured, side) if self.options.truth else "")
+        return Square(path, measured, clockwise)
+
+    def _driven(self, drive: Drive, title: str) -> tuple[FloatArray, tuple[float, float]]:
+        """Path by wheel odometry, and where the middle of the wheels truly came to (simulation; else zero)."""
+        if not self.options.truth:
+            print(MARKS)
+        self._permission(f"{title}: ready?")
+        print(title, flush=True)
+        self._rest()
+        begin = self._truth()
+        self.robot.begin()
+        if self.options.manual:
+            self.questions.line("Drive it now, and back to rest; then press Enter.")
+        else:
+            self._follow(drive)
+        self._rest()
+        path = self.robot.path()
+        hops = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
+        if hops.sum() < LEAST_WAY:
+            raise RefusedError(f"{title}: the wheels have not turned")
+        if hops.max() > JUMP:
+            raise RefusedError(
+                f"{title}: wheel_odom jumped by {hops.max():.2f} m: was the odometry or the robot reset?"
+            )
+        if begin is None:
+            return path, (0.0, 0.0)
+        end = self._truth() or begin
+        poses = of_axle(np.array([[begin.x, begin.y, begin.yaw], [end.x, end.y, end.yaw]]), self.wheels.axle)
+        return path, Pose(*poses[1]).seen_from(Pose(*poses[0]))
+
+    def _truth(self) -> Pose | None:
+        if not self.options.truth:
+            return None
+        await_all(lambda: self.robot.truth is not None, self.signals)
+        if self.robot.truth is None:
+            raise RefusedError("--truth: nobody publishes ground_truth/odom; that is of a simulated robot")
+        return self.robot.truth
+
+    def _follow(self, drive: Drive) -> None:
+        """Drives it; whatever happens, a zero is the last thing sent."""
+        robot, pilot = self.robot, Pilot(drive.moves, self.options.speed, self.options.turn_speed)
+        start = robot.look().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
+        heard, heard_at = robot.heard, time.monotonic()
+        unanswered, last = 0.0, time.monotonic()
+        try:
+            while not pilot.done:
+                now, look = time.monotonic(), robot.look()
+                if robot.heard != heard:
+                    heard, heard_at = robot.heard, now
+                reason = "" if self.signals.going_on() else "interrupted"
+                reason = reason or unattended(look) or ignored(unanswered)
+                reason = reason or (drive.astray(start, look.pose) if look.pose else "")
+                if now - heard_at > SILENCE:
+                    reason = reason or f"no wheel_odom for {SILENCE:g} s: does {ESTIMATOR} run?"
+                self._refuse(reason)
+                linear, angular = pilot.command(robot.wheels or start, now)
+                robot.send(linear, angular)
+                asked = linear != 0 or angular != 0
+                unanswered = unanswered + now - last if asked and not moves(look) else 0.0
+                last = now
+                time.sleep(PERIOD)
+        finally:
+            robot.send(0, 0)
+
+    def _rest(self) -> None:
+        """Until it stands."""
+        end = time.monotonic() + 20 * STANDSTILL
+        since = time.monotonic()
+        while time.monotonic() - since < STANDSTILL:
+            self._refuse("" if self.signals.going_on() else "interrupted")
+            if moves(self.robot.look()):
+                since = time.monotonic()
+            if time.monotonic() > end:
+                raise RefusedError("the robot does not come to rest")
+            time.sleep(PERIOD)
+
+    def _permission(self, question: str) -> None:
+        if not self.options.yes and not self.questions.yes(question):
+            raise RefusedError("as you say. Nothing is written")
+        reason = "" if self.options.manual else hindrance(self.robot.look(self.senders))
+        if reason:
+            raise RefusedError(f"{reason}. Nothing is written")
+
+    @staticmethod
+    def _refuse(reason: str) -> None:
+        if reason:
+            raise RefusedError(f"{reason}. Nothing is written")
+
+
+def main() -> None:
+    """Entry point of scripts/calibrate.py: exit code 0 with a YAML written, else 1 with one message."""
+    options = parse_options(rospy.myargv(sys.argv)[1:])
+    try:
+        with running_settings("calibrate", ESTIMATOR, *OTHERWISE) as settings:
+            with ended_by_signals() as signals:
+                robot, straights, squares = _measured(settings, options, signals)
+            outcome = evaluate(robot, straights, squares, options.side)
+        print(outcome.table)
+        for sentence in outcome.warnings:
+            print(f"! {sentence}")
+        write_text(options.out, outcome.yaml)
+        print(f"wrote {options.out}: rosparam load it (in the robot's namespace), then start every node anew")
+    except REFUSALS as error:
+        sys.exit(f"calibrate.py: {fit_for_message(in_words(error))}")
+
+
+OTHERWISE = ("and let the robot stand where it may drive", "as a tape measure does")
+
+
+def _measured(
+    settings: Settings, options: Options, signals: Signals
+) -> tuple[dict[str, object], list[Straight], list[Square]]:
+    described = describe_robot(settings.path, settings.values)
+    robot = CalibratedRobot(speaks=not options.manual)
+    everybody: Callable[[], bool] = lambda: (  # noqa: E731
+        robot.heard > 0
+        and robot.look().pose is not None
+        and bool(robot.look().state)
+        and (options.manual or robot.listened_to())
+    )
+    await_all(everybody, signals)
+    senders = () if options.manual else other_senders(master_state())
+    if robot.heard == 0:
+        raise RefusedError(f"no wheel_odom: does {ESTIMATOR} run? Start the robot first")
+    if not options.manual and not robot.listened_to():
+        raise RefusedError(f"nobody listens on {rospy.resolve_name('cmd_vel')}: does diff_drive_controller run?")
+    questions = Questions(signals.going_on)
+    wizard = Wizard(robot, options, wheels_of(described), signals, questions, senders)
+    straights, squares = wizard.run()
+    return described, straights, squares

@@ -1,0 +1,59 @@
+"""calibrate.py's view of a running robot: what identify.py sees, the path of its wheels, in simulation truth."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import rospy
+from nav_msgs.msg import Odometry
+
+from robot_control.calibrate.law import FloatArray
+from robot_control.identify.excitation_watch import Pose
+from robot_control.identify.robot import RunningRobot
+
+
+class CalibratedRobot(RunningRobot):
+    """Listens on wheel_odom, too."""
+
+    def __init__(self, *, speaks: bool = True) -> None:
+        super().__init__(speaks=speaks)
+        self.heard = 0  # messages on wheel_odom
+        self._path: list[tuple[float, float, float]] = []
+        self._truth: Pose | None = None
+        self._subscribers += [
+            rospy.Subscriber("wheel_odom", Odometry, self._hear_wheels, queue_size=100, tcp_nodelay=True),
+            rospy.Subscriber("ground_truth/odom", Odometry, self._hear_truth, queue_size=1, tcp_nodelay=True),
+        ]
+
+    def begin(self) -> None:
+        """A path begins here."""
+        del self._path[:-1]
+
+    def path(self) -> FloatArray:
+        """(n, 3) m, m, rad: base by wheel odometry since `begin`."""
+        return np.array(self._path[:])
+
+    @property
+    def wheels(self) -> Pose | None:
+        """By wheel odometry, now."""
+        return Pose(*self._path[-1]) if self._path else None
+
+    @property
+    def truth(self) -> Pose | None:
+        """In simulation; None: nobody says it."""
+        return self._truth
+
+    def _hear_wheels(self, message: Odometry) -> None:
+        pose = _pose(message)
+        self._path.append((pose.x, pose.y, pose.yaw))
+        self.heard += 1
+
+    def _hear_truth(self, message: Odometry) -> None:
+        self._truth = _pose(message)
+
+
+def _pose(message: Odometry) -> Pose:
+    position, q = message.pose.pose.position, message.pose.pose.orientation
+    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+    return Pose(position.x, position.y, yaw)

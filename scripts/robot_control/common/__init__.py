@@ -1,0 +1,1 @@
+"""What several of the programs use: files, logs, topics and the terminal."""

@@ -1,0 +1,43 @@
+"""The ROS master, with a time limit for its answers, and what its list of publishers says."""
+
+import http.client
+import xmlrpc.client
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import rosgraph
+
+TIMEOUT = 1.0
+"""s for an answer of the master, which may hang"""
+COMMAND_TOPICS = ("cmd_vel", "cmd_vel_stamped")
+
+
+class _Transport(xmlrpc.client.Transport):
+    def make_connection(self, host: tuple[str, dict[str, str]] | str) -> http.client.HTTPConnection:
+        connection = super().make_connection(host)
+        connection.timeout = TIMEOUT
+        return connection
+
+
+class Master:
+    """The ROS master, asked with a time limit."""
+
+    def __init__(self, own: str) -> None:
+        self.uri = rosgraph.get_master_uri()
+        self._own = own
+        self._proxy = xmlrpc.client.ServerProxy(self.uri, transport=_Transport())
+
+    def state(self) -> Sequence[Any] | None:
+        """Publishers, subscribers and servers; None where nobody answers."""
+        try:
+            answer: Any = self._proxy.getSystemState(self._own)
+        except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):
+            return None
+        code, _, state = answer
+        return state if code == 1 else None
+
+
+def senders_of(published: Sequence[tuple[str, Sequence[str]]], topics: Iterable[str], own: str) -> tuple[str, ...]:
+    """Nodes but `own` that publish any of these topics (absolute), by the master's list."""
+    wanted = set(topics)
+    return tuple(sorted({node for topic, nodes in published if topic in wanted for node in nodes} - {own}))

@@ -1,0 +1,80 @@
+"""What a tool that drives a running robot asks first: whose parameters hold, who else sends, is everybody there."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import rosgraph
+import rospy
+
+from robot_control.closed_loop import leaves
+from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
+from robot_control.common.settings import Settings
+from robot_control.common.topic_sender import Signals
+from robot_control.installed_files import share_file
+
+PATIENCE = 5.0
+"""s to hear everybody; each node reports once per second"""
+
+State = Sequence[Sequence[tuple[str, Sequence[str]]]]
+
+
+class RefusedError(RuntimeError):
+    """It cannot be begun, or had to end; the message says why."""
+
+
+@contextmanager
+def running_settings(tool: str, node: str, without_master: str, in_simulated_time: str) -> Iterator[Settings]:
+    """Becomes the ROS node `tool`; the parameters of the running `node`: file, server, robot_description, as it reads
+    them. The last two are what else can be done where there is no master, or no wall clock.
+
+    Raises:
+        RefusedError: there is no robot that could be driven.
+    """
+    if not rosgraph.is_master_online():
+        raise RefusedError(
+            f"no ROS master at {rosgraph.get_master_uri()}: start the robot (roslaunch robot_control sim.launch), "
+            f"{without_master}"
+        )
+    rospy.init_node(tool, anonymous=True)
+    if rospy.get_param("/use_sim_time", default=False):
+        raise RefusedError(
+            "the robot runs in simulated time, where a wall-clock second is many: use clock wall, " + in_simulated_time
+        )
+    path = rospy.get_param(f"{node}/config", share_file("config/robot_params.yaml"))
+    own = {key: value for key, value in rospy.get_param(node, {}).items() if key not in ("config", "urdf")}
+    values = [*leaves({"robot": rospy.get_param("robot", {})}), *leaves({node: own})]
+    described = rospy.get_param("robot_description", "")
+    with tempfile.TemporaryDirectory(prefix=f"{tool}-") as folder:
+        if described and "robot.urdf" not in dict(values):
+            (Path(folder) / "robot.urdf").write_text(described)
+            values.append(("robot.urdf", str(Path(folder) / "robot.urdf")))
+        yield Settings(path, tuple(values))
+
+
+def await_all(condition: Callable[[], bool], signals: Signals) -> None:
+    """Until it holds, at most PATIENCE."""
+    end = time.monotonic() + PATIENCE
+    while not condition() and time.monotonic() < end and signals.going_on():
+        time.sleep(0.02)
+
+
+def master_state() -> State:
+    """What the master knows.
+
+    Raises:
+        RefusedError: it does not answer.
+    """
+    state: State | None = Master(rospy.get_name()).state()
+    if state is None:
+        raise RefusedError("the ROS master does not answer. Nothing was driven")
+    return state
+
+
+def other_senders(state: State) -> tuple[str, ...]:
+    """Nodes but this one that may send commands."""
+    return senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name())

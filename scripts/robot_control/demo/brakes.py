@@ -1,0 +1,80 @@
+"""When the gate braked although the robot was to drive; table and picture of a run both say it from here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robot_control.common.run_log import Log
+
+GATE_BRAKE = 0  # GateVerdict::kBrake
+GATE_REASONS = (
+    "first_tick",
+    "no_permit",
+    "permit_expired",
+    "permit_brake",
+    "ramp_over",
+    "no_command",
+    "command_held",
+    "not_finite",
+    "checksum",
+    "future",
+    "effort_clamped",
+    "wrong_joint_count",
+    "controller_brake",
+    "unknown_mode",
+    "ramp_too_long",
+    "rate_clamped",
+    "speed_clamped",
+    "position_clamped",
+    "bad_sensors",
+)
+"""In the order of the bits of GateReason."""
+
+
+@dataclass(frozen=True)
+class Brake:
+    """A stretch of consecutive rows."""
+
+    begin: float  # s
+    end: float  # s, of its last row
+    cycles: int
+    reasons: tuple[str, ...]  # of all its cycles
+
+    def describe(self, most: int = len(GATE_REASONS)) -> str:
+        """For a line of text, with at most so many reasons: 1 cycle, permit_expired."""
+        named = ", ".join(self.reasons[:most]) + (", ..." if len(self.reasons) > most else "")
+        return f"{self.cycles} cycle{'s' if self.cycles != 1 else ''}, {named or 'no reason given'}"
+
+
+def brakes_in_drive(log: Log) -> tuple[Brake, ...]:
+    """Stretches of the gate's brake that begin while a motion is asked for, after the first cycle that was let through.
+
+    A stretch lasts as long as the gate brakes without a break, also beyond the end of the request.
+    """
+    asked = np.flatnonzero(
+        (np.nan_to_num(log["requested_linear"]) != 0) | (np.nan_to_num(log["requested_angular"]) != 0)
+    )
+    verdict = log["gate_verdict"]
+    braked = verdict == GATE_BRAKE
+    passed = np.flatnonzero(~braked & ~np.isnan(verdict))
+    passed = passed[passed >= asked[0]] if asked.size else asked
+    if not passed.size:
+        return ()
+    edges = np.diff(np.concatenate([[0], braked.astype(int), [0]]))
+    found = []
+    for begin, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1, strict=True):
+        if passed[0] < begin <= asked[-1]:
+            bits = int(np.bitwise_or.reduce(np.nan_to_num(log["gate_reasons"][begin : end + 1]).astype(np.int64)))
+            time = log["time"]
+            found.append(Brake(float(time[begin]), float(time[end]), int(end - begin + 1), _names(bits)))
+    return tuple(found)
+
+
+def _names(bits: int) -> tuple[str, ...]:
+    return tuple(
+        GATE_REASONS[bit] if bit < len(GATE_REASONS) else f"reason {bit}"
+        for bit in range(bits.bit_length())
+        if bits >> bit & 1
+    )

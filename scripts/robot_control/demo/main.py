@@ -1,0 +1,256 @@
+"""Launches the closed loop in wall-clock time, drives it, ends it, and judges what it did."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from types import FrameType
+from typing import IO
+
+from robot_control.common.file_errors import in_words
+from robot_control.common.run_log import LogError, read_log
+from robot_control.demo.loop_timing import processor_time, stolen_share
+from robot_control.demo.run_picture import draw_run
+from robot_control.demo.run_summary import summarize, to_json, to_table
+
+LINEAR, ANGULAR = 0.5, 0.2
+"""m/s, rad/s: what send_cmd.py sends by default; the source article's command."""
+START_LIMIT = 60.0
+"""s for master, nodes and first rows, and again for the sender; 3 s and 1 s on an idle machine."""
+RAMP_TIME = 1.5
+"""s between the sender's zero and the end of the log: 0.5 s of ramp at 1 m/s², tripled."""
+END_LIMIT = 20.0
+"""s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
+BUS = f"demo_{os.getpid()}"
+"""Of this demo alone. It goes with it: an object of 12 MB that outlives its nodes would fill a small /dev/shm."""
+OUTPUTS = ("run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log")
+
+
+class DemoError(RuntimeError):
+    """Something did not start, or died; the message says where to look."""
+
+
+class Child:
+    """A program of ours in a process group of its own, its output in a file."""
+
+    def __init__(self, command: Sequence[str], output: Path) -> None:
+        self.output = output
+        self._file: IO[bytes] = output.open("wb")
+        # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
+        hearing = ("env", "--default-signal=INT", *command)
+        self._process = subprocess.Popen(
+            hearing, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
+        )
+
+    @property
+    def running(self) -> bool:
+        """Has it not ended?"""
+        return self._process.poll() is None
+
+    def end(self, limit: float = END_LIMIT) -> bool:
+        """SIGINT; after `limit` seconds SIGTERM, then SIGKILL to its group. True when SIGINT was enough."""
+        orderly = True
+        if self.running:
+            self._process.send_signal(signal.SIGINT)
+            orderly = self._wait(limit)
+        for harder in (signal.SIGTERM, signal.SIGKILL):
+            if self.running:
+                os.killpg(self._process.pid, harder)
+                self._wait(5.0)
+        self._file.close()
+        return orderly
+
+    def _wait(self, limit: float) -> bool:
+        try:
+            self._process.wait(limit)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+
+def run_demo(seconds: float, out: Path) -> int:
+    """Drives for `seconds` and writes everything to `out`; the exit code."""
+    out.mkdir(parents=True, exist_ok=True)
+    for name in OUTPUTS:
+        (out / name).unlink(missing_ok=True)
+    os.environ["ROS_HOME"] = str(out / "ros")
+    shutil.rmtree(out / "ros", ignore_errors=True)
+
+    before = processor_time()
+    driven = _drive(seconds, out)
+    stolen = stolen_share(before, processor_time())
+
+    _print_refusals((out / "launch.log").read_text(errors="replace"))
+    try:
+        log = read_log(out / "run.csv")
+    except (OSError, LogError) as error:
+        raise DemoError(f"no log of the run: {in_words(error)}; see {out / 'launch.log'}") from error
+    summary = summarize(log, LINEAR, ANGULAR, driven, stolen)
+    (out / "summary.json").write_text(to_json(summary))
+    verdict = "tracked" if summary.passed else "NOT TRACKED"
+    draw_run(log, summary, f"{LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png")
+    print(f"\n{to_table(summary)}\n\n{verdict}; see {out}/summary.json, run.csv, run.png")
+    return 0 if summary.passed else 1
+
+
+def refusals(launch_log: str) -> list[str]:
+    """What real-time privileges were not granted, each kind once although every node says it, with its remedy."""
+    found: dict[str, str] = {}
+    for match in re.finditer(r"(memory is|SCHED_FIFO priority|core) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
+        found.setdefault(match[1], match[0])
+    return list(found.values())
+
+
+def _drive(seconds: float, out: Path) -> float:
+    """Starts everything, drives, ends everything. Returns the seconds from the command's arrival to its end."""
+    log = out / "run.csv"
+    with _ended_at_the_end() as children:
+        print("starting roscore, mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry")
+        port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
+        launch = Child(
+            ["roslaunch", "-p", port, "robot_control", "sim.launch", "telemetry:=true", f"out:={out}", f"bus:={BUS}"],
+            out / "launch.log",
+        )
+        children.append(launch)
+        _wait_until(lambda: _last_row(log) is not None, "cycle", launch)
+        print(f"sending {LINEAR} m/s and {ANGULAR} rad/s for {seconds:g} s")
+        sender = Child(["rosrun", "robot_control", "send_cmd.py"], out / "send_cmd.log")
+        children.append(sender)
+        _wait_until(lambda: (_last_row(log) or {}).get("requested_linear") == str(LINEAR), "command", launch, sender)
+        start = time.monotonic()
+        while (driven := time.monotonic() - start) < seconds:
+            time.sleep(max(0.0, min(1.0, seconds - driven)))
+            _see_alive(launch, sender)
+            print(_progress(log, time.monotonic() - start))
+        print("stopping")
+        if not sender.end():
+            print(f"send_cmd.py had to be killed; see {sender.output}")
+        time.sleep(RAMP_TIME)
+        if not launch.end():
+            print(f"roslaunch had to be killed; see {launch.output}")
+    return driven
+
+
+@contextlib.contextmanager
+def _ended_at_the_end() -> Iterator[list[Child]]:
+    """Whatever happens, what was started is ended, the last one first, and its shared memory removed."""
+    children: list[Child] = []
+    try:
+        yield children
+    finally:
+        for child in reversed(children):
+            child.end()
+        for left in Path("/dev/shm").glob(f"robot_control.{os.geteuid()}.{BUS}.*"):
+            left.unlink(missing_ok=True)
+
+
+def _wait_until(condition: Callable[[], bool], what: str, *children: Child) -> None:
+    """Polls; raises when one of the children dies or START_LIMIT has passed without a `what`."""
+    deadline = time.monotonic() + START_LIMIT
+    while not condition():
+        _see_alive(*children)
+        if time.monotonic() > deadline:
+            raise DemoError(f"no {what} within {START_LIMIT:g} s:\n{_tail(children[0].output)}")
+        time.sleep(0.1)
+
+
+def _see_alive(*children: Child) -> None:
+    for child in children:
+        if not child.running:
+            raise DemoError(f"a part of the loop has died:\n{_tail(child.output)}")
+
+
+def _progress(log: Path, driven: float) -> str:
+    row = _last_row(log)
+    if row is None:
+        return f"{driven:5.1f} s"
+    values = {name: float(row.get(name) or "nan") for name in ("truth_x", "truth_y", "truth_linear", "truth_angular")}
+    return (
+        f"{driven:5.1f} s  true: {values['truth_linear']:6.3f} m/s {values['truth_angular']:6.3f} rad/s"
+        f" at ({values['truth_x']:.2f}, {values['truth_y']:.2f}) m"
+    )
+
+
+def _last_row(log: Path) -> dict[str, str] | None:
+    """The last complete row of a CSV that is being written."""
+    try:
+        with log.open("rb") as file:
+            header = file.readline().decode().rstrip("\n").split(",")
+            begin = file.tell()
+            file.seek(max(begin, log.stat().st_size - 8192))
+            lines = file.read().decode().split("\n")[:-1]
+    except OSError:
+        return None
+    cells = lines[-1].split(",") if lines else []
+    return dict(zip(header, cells, strict=True)) if len(cells) == len(header) > 1 else None
+
+
+def _print_refusals(launch_log: str) -> None:
+    said = refusals(launch_log)
+    for refusal in said:
+        print(f"real time: {refusal}")
+    if said:
+        print("real time: see docs/realtime.md")
+
+
+def _tail(path: Path, lines: int = 25) -> str:
+    return "\n".join(path.read_text(errors="replace").splitlines()[-lines:])
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 2 <= value <= 3600:
+        raise argparse.ArgumentTypeError(f"{text} is not 2 … 3600 s: ramp, settling and a steady part must fit")
+    return value
+
+
+def _folder(text: str) -> Path:
+    """Makes it and writes in it: a permission bit alone does not tell whether that succeeds (read-only, /proc)."""
+    folder = Path(text).resolve()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{folder} cannot be written to: {error.strerror}") from None
+    return folder
+
+
+def _interrupt(signal_number: int, _frame: FrameType | None) -> None:
+    raise KeyboardInterrupt(signal.Signals(signal_number).name)
+
+
+def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    """The command line of scripts/demo: `seconds` and `out`; ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
+    parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
+    parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
+    return parser.parse_args(arguments)
+
+
+def main() -> int:
+    """Entry point of scripts/demo."""
+    given = parse()
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        return run_demo(given.seconds, given.out)
+    except (DemoError, OSError) as error:
+        print(f"scripts/demo: {in_words(error)}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("scripts/demo: interrupted", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,131 @@
+"""send_cmd.py's ROS side."""
+
+import math
+import sys
+import time
+from collections import deque
+
+import rospy
+from geometry_msgs.msg import Twist
+
+from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
+from robot_control.drive.release import Line, Phase, Release, Status
+from robot_control.drive.send_plan import SendPlan, parse_plan
+from robot_control.msg import SafetyStatus
+
+PATIENCE = 10.0
+"""s to wait for somebody who listens; then it is sent all the same"""
+PATIENCE_UNTOLD = 2.0
+"""s of these in which nothing is said about it"""
+LOOK = 0.02
+"""s between two looks"""
+
+
+def _twist(linear: float, angular: float) -> Twist:
+    message = Twist()
+    message.linear.x = linear
+    message.angular.z = angular
+    return message
+
+
+def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
+    """So that the first send is not lost."""
+    begin = time.monotonic()
+    told = False
+    while publisher.get_num_connections() == 0 and signals.going_on() and time.monotonic() < begin + PATIENCE:
+        if not told and time.monotonic() > begin + PATIENCE_UNTOLD:
+            told = True
+            rospy.logwarn(f"nobody listens on {publisher.resolved_name} yet: waiting for {PATIENCE:g} s at most")
+        time.sleep(LOOK)
+
+
+def _say_last(missed: int) -> None:
+    """On stdout: rospy's logging may be closed already."""
+    print("cmd_vel: zero" + (f", which {missed} of those who listen did not take" if missed else ""), flush=True)
+
+
+class SafetyWatch:
+    """What safety_status says, every message of it: a stop that was followed by a release at once is none the less."""
+
+    def __init__(self) -> None:
+        self._heard: deque[tuple[Status, float]] = deque()
+        self._last: tuple[Status, float] | None = None
+        self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._hear, tcp_nodelay=True)
+
+    def look(self, release: Release) -> list[Line]:
+        """Gives `release` what has come since the last look, or how long nothing has."""
+        lines = []
+        while self._heard:
+            self._last = self._heard.popleft()
+            lines += release.look(self._last[1], self._last[0])
+        now = time.monotonic()
+        if self._last is None:
+            return release.look(now, None)
+        connected = self._subscriber.get_num_connections() > 0
+        return lines + release.look(now, self._last[0], now - self._last[1], connected=connected)
+
+    def _hear(self, message: SafetyStatus) -> None:
+        self._heard.append((status_of(message), time.monotonic()))
+
+
+def status_of(message: SafetyStatus) -> Status:
+    """Of the causes the one that came first."""
+    first = message.causes.index(message.first_cause) if message.first_cause in message.causes else 0
+    sentence, detail, remedy = (
+        texts[first] if first < len(texts) else "" for texts in (message.sentences, message.details, message.remedies)
+    )
+    return Status(
+        state=message.state_name,
+        sentence=sentence,
+        detail=detail,
+        remedy=remedy,
+        causes=len(message.causes),
+        missing=tuple(message.missing),
+        awaiting_zero=message.awaiting_zero_request,
+        speed_limit=message.speed_limit,
+    )
+
+
+def send(plan: SendPlan, signals: Signals) -> int:
+    """Sends until the plan ends or the node shall; the last message is always a zero.
+
+    The pace is wall-clock time: with simulated time a sleeping sender would depend on who publishes /clock.
+
+    Returns:
+        The exit code: 1 when a stop ended the command.
+    """
+    publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+    sender = Sender(publisher, Twist(), _say_last)
+    watch = SafetyWatch()
+    _wait_for_subscriber(publisher, signals)
+    release = Release(time.monotonic())
+    phase = Phase.WAITING
+    sent, end = 0, math.inf
+    deadline = time.monotonic()
+    while plan.sends_left(sent) and signals.going_on() and phase is not Phase.RELEASED and time.monotonic() < end:
+        for line in watch.look(release):
+            (rospy.logwarn if line.warning else rospy.loginfo)(line.text)
+        if release.phase is not phase:
+            phase, deadline = release.phase, time.monotonic()  # the other message goes out at once
+            if phase is Phase.STOPPED and plan.count is not None:
+                end = deadline + (plan.count - sent) * plan.period
+        if time.monotonic() < deadline:
+            time.sleep(min(LOOK, max(0.0, deadline - time.monotonic())))
+        elif phase is Phase.SENDING:
+            sender.send(_twist(plan.linear, plan.angular))
+            sent += 1
+            rospy.loginfo(plan.describe(sent))
+            deadline += plan.period
+        else:
+            sender.send(Twist())
+            deadline += plan.zero_period
+    return 0 if phase in {Phase.WAITING, Phase.SENDING} else 1
+
+
+def main() -> None:
+    """Entry point of scripts/send_cmd.py."""
+    plan = parse_plan(rospy.myargv(sys.argv)[1:])
+    rospy.init_node("send_cmd")
+    with ended_by_signals() as signals:
+        code = send(plan, signals)
+    sys.exit(code)

@@ -1,0 +1,218 @@
+"""Samples out of a CSV file: anybody's, by the names of its columns, or the run.csv of this package's telemetry."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from robot_control.common.files import LARGEST_TABLE, check_input, listed
+from robot_control.estimate.samples import FloatArray, InputError, IntArray, Robot, Samples, wheel_joints
+
+AXES = ("x", "y", "z")
+GYRO = tuple(f"gyro_{axis}" for axis in AXES)
+ACCEL = tuple(f"accel_{axis}" for axis in AXES)
+NAMES = ("time", "left", "right", *GYRO, *ACCEL)
+LONGEST_LINE = 100_000
+"""characters; below the field limit of Python's csv, and a row of a log has some 3000"""
+TIME_UNITS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}  # in ns
+GYRO_UNITS = {"rad/s": 1.0, "deg/s": math.pi / 180}
+ACCEL_UNITS = {"m/s2": 1.0, "g": 9.80665}
+
+
+@dataclass(frozen=True)
+class CsvForm:
+    """How a CSV file is to be understood."""
+
+    columns: Mapping[str, str] = field(default_factory=dict)  # our name → the file's
+    counts_per_turn: float = 2 * math.pi  # of the wheel columns; 2π: they are in rad
+    time_unit: str = "s"
+    gyro_unit: str = "rad/s"
+    accel_unit: str = "m/s2"
+
+
+def read_csv(path: Path, robot: Robot, form: CsvForm) -> Samples:
+    """Reads a file with one header line.
+
+    Raises:
+        InputError: no header, a column that is not there, a cell that is no number, time that does not increase; with
+            the line.
+        OSError: it cannot be opened.
+    """
+    check_input(path, LARGEST_TABLE)
+    with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
+        table = _Table(path, _lines(path, file))
+        if {"run", "cycle", "time"} <= set(table.header) and not form.columns:
+            return _read_log(table, robot)
+        return _read_table(table, form)
+
+
+def _lines(path: Path, file: TextIO) -> Iterator[str]:
+    """The lines of a text; a file without any is not read to its end."""
+    number = 0
+    while line := file.readline(LONGEST_LINE + 1):
+        number += 1
+        if len(line) > LONGEST_LINE:
+            raise InputError(f"{path}, line {number}: longer than {LONGEST_LINE} characters; is it a CSV?")
+        if "\0" in line:
+            raise InputError(f"{path}, line {number}: holds a NUL character; is it a CSV?")
+        yield line
+
+
+def _read_table(table: _Table, form: CsvForm) -> Samples:
+    columns = _columns_of(table, form)
+    time_ns, values, _ = table.read(columns["time"], form.time_unit, [columns[name] for name in columns])
+    cells = dict(zip(columns, values.T, strict=True))
+    to_radians = 2 * math.pi / form.counts_per_turn
+    accel = None
+    if ACCEL[0] in cells:
+        accel = np.column_stack([cells[name] for name in ACCEL]) * ACCEL_UNITS[form.accel_unit]
+    gyro = _gyro(cells, GYRO_UNITS[form.gyro_unit])
+    return Samples(time_ns, cells["left"] * to_radians, cells["right"] * to_radians, gyro, accel, table.notes)
+
+
+def _gyro(cells: Mapping[str, FloatArray], scale: float) -> FloatArray | None:
+    """Of a gyro with one axis the others are zero."""
+    if "gyro_z" not in cells:
+        return None
+    absent = np.where(np.isnan(cells["gyro_z"]), np.nan, 0.0)
+    return np.column_stack([cells.get(name, absent) for name in GYRO]) * scale
+
+
+def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
+    """Our name → the file's, of all columns to be read."""
+    unknown = sorted(set(form.columns) - set(NAMES))
+    if unknown:
+        raise InputError(f"--columns names {', '.join(unknown)}; there are {', '.join(NAMES)}")
+    missing = [name for name in form.columns.values() if name not in table.header]
+    columns = {name: form.columns.get(name, name) for name in NAMES}
+    missing += [columns[name] for name in ("time", "left", "right") if columns[name] not in table.header]
+    if missing:
+        raise InputError(
+            f"{table.path}: no column {', '.join(dict.fromkeys(missing))}; its header is {listed(table.header)}. "
+            "Say which ones are meant: --columns time=…,left=…,right=…,gyro_z=…"
+        )
+    found = {name: column for name, column in columns.items() if column in table.header}
+    for group, needed in ((GYRO, ("gyro_z",)), (ACCEL, ACCEL)):
+        there = [name for name in group if name in found]
+        absent = [columns[name] for name in needed if name not in found]
+        if there and absent:
+            raise InputError(f"{table.path}: there is {found[there[0]]}, but no {', '.join(absent)}")
+    return found
+
+
+def _read_log(table: _Table, robot: Robot) -> Samples:
+    """The last run in a log of this package's telemetry, or of ClosedLoop."""
+    joints = {side: wheel_joints(robot, side) for side in ("left", "right")}
+    wanted = [f"{joint}_position" for side in joints.values() for joint in side]
+    missing = [name for name in wanted if name not in table.header]
+    if missing:
+        there = [name for name in table.header if name.endswith("_position")]
+        raise InputError(
+            f"{table.path} is a log of another robot: no column {', '.join(missing)}; it has {listed(there)}. Give "
+            "the --urdf or --params that it was recorded with, or --columns time=time,left=…,right=…"
+        )
+    names = [*wanted, *GYRO, *ACCEL]
+    absent = [name for name in names if name not in table.header]
+    if absent:
+        raise InputError(f"{table.path}: its header is that of a log, but there is no {', '.join(absent)}")
+    time_ns, values, runs = table.read("time", "s", names, run="run")
+    if runs > 1:
+        table.notes.append(f"{runs} runs in the file; this is the last one")
+    split = [len(joints["left"]), len(wanted), len(wanted) + 3]
+    left, right, gyro, accel = np.split(values, split, axis=1)
+    return Samples(time_ns, left, right, gyro, accel, table.notes, own_log=True)
+
+
+class _Table:
+    """The rows of a file, from the one below its header on."""
+
+    def __init__(self, path: Path, file: Iterator[str]) -> None:
+        self.path = path
+        self.notes: list[str] = []
+        first = next(file, "")
+        self._delimiter = max(",;\t", key=first.count)
+        self.header = [name.strip() for name in next(csv.reader([first], delimiter=self._delimiter), [])]
+        self.header[:1] = [name.lstrip("# ") for name in self.header[:1]]
+        if not any(self.header):
+            raise InputError(f"{path}: empty; the first line must name the columns")
+        twice = sorted({name for name in self.header if self.header.count(name) > 1})
+        if twice:
+            raise InputError(f"{path}: two columns are named {listed(twice)}")
+        self._file = file
+
+    def read(self, time: str, unit: str, names: list[str], run: str | None = None) -> tuple[IntArray, FloatArray, int]:
+        """Time in ns, the named columns, and how many values `run` had: only the rows of its last one come out."""
+        at = self.header.index(time)
+        cells = [self.header.index(name) for name in names]
+        of_run = None if run is None else self.header.index(run)
+        stamps: list[int] = []
+        rows: list[list[float]] = []
+        runs = 0
+        present: str | None = None
+        for line, row in self._rows():
+            if of_run is not None and row[of_run] != present:
+                present = row[of_run]
+                runs += 1
+                stamps.clear()
+                rows.clear()
+            stamp = self._stamp(line, row[at], TIME_UNITS[unit])
+            if stamps and stamp <= stamps[-1]:
+                raise InputError(
+                    f"{self.path}, line {line}: {time} is {row[at]}, not after the row before; time must strictly "
+                    "increase: sort the file, and give one row to each time"
+                )
+            stamps.append(stamp)
+            rows.append([self._number(line, name, row[cell]) for name, cell in zip(names, cells, strict=True)])
+        if not rows:
+            raise InputError(f"{self.path}: no rows below the header")
+        return np.array(stamps, dtype=np.int64), np.array(rows, dtype=np.float64), runs
+
+    def _rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Number and cells of each line that is not empty. A last line that was cut short is left out."""
+        width = len(self.header)
+        reader = csv.reader(self._file, delimiter=self._delimiter)
+        short: tuple[int, int] | None = None
+        for row in reader:
+            if short is not None:
+                raise InputError(f"{self.path}, line {short[0]}: {short[1]} cells, the header has {width}")
+            if not any(cell.strip() for cell in row):
+                continue
+            if len(row) > width:
+                raise InputError(f"{self.path}, line {reader.line_num + 1}: {len(row)} cells, the header has {width}")
+            if len(row) < width:
+                short = (reader.line_num + 1, len(row))
+                continue
+            yield reader.line_num + 1, row
+        if short is not None:
+            self.notes.append(f"line {short[0]}, the last one, was cut short and is left out")
+
+    def _stamp(self, line: int, cell: str, unit_ns: int) -> int:
+        try:
+            stamp = Decimal(cell.strip()) * unit_ns
+            if not stamp.is_finite():
+                raise InvalidOperation
+        except InvalidOperation:
+            raise InputError(
+                f"{self.path}, line {line}: the time is {cell.strip()!r}; every row needs a finite number"
+            ) from None
+        if abs(stamp) >= 2**63:
+            raise InputError(
+                f"{self.path}, line {line}: the time is {cell.strip()}, beyond 292 years; look at --time-unit"
+            )
+        return round(stamp)
+
+    def _number(self, line: int, name: str, cell: str) -> float:
+        try:
+            return float(cell) if cell.strip() else math.nan
+        except ValueError:
+            raise InputError(
+                f"{self.path}, line {line}, column {name}: {cell.strip()!r} is no number; leave the cell of an absent "
+                "sample empty"
+            ) from None

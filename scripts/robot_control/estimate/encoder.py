@@ -1,0 +1,38 @@
+"""How fine the wheel angles of a recording are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robot_control.estimate.samples import FloatArray, Samples
+
+FINE = 4096 / 1.5
+"""counts a turn; those of the default encoder_noise, and what makes little difference to it"""
+FEW, MOST = 20, 20  # steps to judge by, and of how many counts they may be
+KINDS = 2
+"""different steps at least; where all are one, it may be a steady speed"""
+
+
+def counts_per_turn(samples: Samples) -> float | None:
+    """Of an encoder that is coarser than the default; None: it is not, or cannot be told."""
+    steps = [_step(np.diff(column[~np.isnan(column)])) for column in _columns(samples)]
+    known = [step for step in steps if step is not None]
+    counts = 2 * np.pi / max(known) if known else np.inf
+    return float(counts) if counts < FINE else None
+
+
+def _columns(samples: Samples) -> list[FloatArray]:
+    return [column for table in (samples.left, samples.right) for column in np.atleast_2d(table.T)]
+
+
+def _step(differences: FloatArray) -> float | None:
+    """The unit [rad] that all small differences are multiples of."""
+    sizes = np.abs(differences[differences != 0])
+    if sizes.size < FEW:
+        return None
+    unit = float(sizes[sizes < 1.5 * sizes.min()].mean())
+    multiples = sizes[sizes < (MOST + 0.5) * unit] / unit
+    whole = np.round(multiples)
+    if multiples.size < FEW or np.mean(np.abs(multiples - whole) < 0.05) < 0.98 or np.unique(whole).size < KINDS:
+        return None
+    return unit

@@ -1,0 +1,288 @@
+"""estimate.py: where a robot was, from a recording of its wheels and its IMU."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from robot_control._robot_control import ParameterError, RobotError
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import NewFiles, fit_for_message
+from robot_control.estimate.bag_input import BagTopics, read_bag
+from robot_control.estimate.csv_input import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
+from robot_control.estimate.encoder import counts_per_turn
+from robot_control.estimate.output import BagSink, CsvSink, Sink
+from robot_control.estimate.report import Summary
+from robot_control.estimate.samples import InputError, IntArray, Samples
+from robot_control.offline_estimator import Estimate, Estimator
+
+if TYPE_CHECKING:
+    from robot_control.estimate.picture import Picture
+
+BLOCK = 20000
+"""rows that are in memory with their covariances"""
+BAG_RATE = 50.0
+"""Hz, of the node's odom by default"""
+EPILOG = """
+A CSV has one header line and strictly increasing times; a cell is empty where a sample is absent, so that wheels and
+IMU may have rates of their own. Its columns, under these names or by --columns:
+  time                      s
+  left, right               rad, angles of the wheels, as their joints report them
+  gyro_x, gyro_y, gyro_z    rad/s, in the IMU's own axes; gyro_z alone will do; may be absent
+  accel_x, accel_y, accel_z m/s², likewise, +9.81 upwards at rest; may be absent
+A run.csv of this package (telemetry, the demo) is known by its columns: the last run in it is estimated anew.
+A bag is read by the stamps of its messages, needs no running ROS, and its topics are found where only one can be meant.
+
+The robot is --urdf, or --wheel-radius with --wheel-base (base_link mid-axle), or what --params says.
+"""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Estimates, writes, prints; exits with 1 and one message when something is refused."""
+    options = _parser().parse_args(arguments)
+    try:
+        print(estimate(options))
+    except (InputError, ParameterError, RobotError, ValueError, RuntimeError, OSError) as error:
+        sys.exit(f"estimate.py: {fit_for_message(in_words(error))}")
+    except MemoryError:
+        sys.exit("estimate.py: the recording needs more memory than there is; cut it into pieces")
+    for path in _outputs(options):
+        print(f"wrote {path}", file=sys.stderr)
+
+
+def estimate(options: argparse.Namespace) -> str:
+    """The report; the files are there.
+
+    Raises:
+        ValueError, OSError: one message.
+    """
+    _check_options(options)
+    _check_paths(options)
+    estimator = _estimator(options, options.encoder_counts)
+    samples = _read(options, estimator)
+    note = samples.gap_note()
+    samples.notes += [] if note is None else [note]
+    counts = None if samples.own_log or options.encoder_counts is not None else counts_per_turn(samples)
+    if counts is not None and options.params is None:
+        samples.notes.append(f"the wheel angles come in steps of 1/{counts:.4g} turn; --encoder-counts says otherwise")
+        estimator = _estimator(options, counts)
+    elif counts is not None:
+        samples.notes.append(
+            f"the wheel angles come in steps of 1/{counts:.4g} turn: look at encoder_noise in --params"
+        )
+
+    summary = Summary()
+    with NewFiles() as files:
+        sinks: list[tuple[Sink, float | None]] = [(summary, None)]
+        if options.csv is not None:
+            sinks.append((CsvSink(files.name(options.csv)), options.rate))
+        if options.bag is not None:
+            bag = BagSink(files.name(options.bag), estimator.robot["base_link"])
+            sinks.append((bag, options.rate or BAG_RATE))
+        picture = _picture(options, samples)
+        if picture is not None:
+            sinks.append((picture, None))
+        try:
+            for time_ns, rows in _blocks(estimator, samples):
+                for sink, rate in sinks:
+                    sink.add(*_thinned(time_ns, rows, rate, samples.time_ns))
+        finally:
+            for sink, _ in sinks:
+                if isinstance(sink, CsvSink | BagSink):
+                    sink.close()
+        if picture is not None:
+            picture.draw(files.name(options.plot), f"{options.input.name}: {summary.last['distance']:.1f} m")
+        if options.calibration is not None:
+            estimator.save_calibration(files.name(options.calibration))
+    return summary.report(samples, estimator.robot)
+
+
+def _estimator(options: argparse.Namespace, encoder_counts: float | None) -> Estimator:
+    return Estimator(
+        options.params,
+        options.urdf,
+        wheel_radius=options.wheel_radius,
+        wheel_base=options.wheel_base,
+        imu_position=options.imu_position,
+        imu_orientation=options.imu_orientation,
+        encoder_counts=encoder_counts,
+        period=options.period,
+    )
+
+
+def _blocks(estimator: Estimator, samples: Samples) -> Iterator[tuple[IntArray, Estimate]]:
+    """A few rows at a time: the covariances of all of them may not fit into memory."""
+    seconds = samples.seconds
+    for first in range(0, seconds.size, BLOCK):
+        some = slice(first, first + BLOCK)
+        rows = estimator.process(
+            seconds[some],
+            samples.left[some],
+            samples.right[some],
+            None if samples.gyro is None else samples.gyro[some],
+            None if samples.accel is None else samples.accel[some],
+        )
+        yield samples.time_ns[some], rows
+
+
+def _thinned(time_ns: IntArray, rows: Estimate, rate: float | None, all_ns: IntArray) -> tuple[IntArray, Estimate]:
+    """The first row of every 1/rate seconds, and the very last one."""
+    if rate is None:
+        return time_ns, rows
+    step = 1e9 / rate
+    at = int(np.searchsorted(all_ns, time_ns[0]))
+    before = all_ns[at - 1] if at > 0 else all_ns[0] - math.ceil(step)
+    ticks = np.floor((np.concatenate([[before], time_ns]) - all_ns[0]) / step)
+    chosen = (np.diff(ticks) > 0) | (time_ns == all_ns[-1])
+    return time_ns[chosen], {name: values[chosen] for name, values in rows.items()}
+
+
+def _read(options: argparse.Namespace, estimator: Estimator) -> Samples:
+    if options.input.suffix == ".bag":
+        return read_bag(
+            options.input,
+            estimator.robot,
+            BagTopics(options.wheels, options.imu, _joints(options.joints), options.odometry),
+        )
+    form = CsvForm(
+        dict(options.columns or {}),
+        options.counts_per_turn or 2 * math.pi,
+        options.time_unit or "s",
+        options.gyro_unit or "rad/s",
+        options.accel_unit or "m/s2",
+    )
+    return read_csv(options.input, estimator.robot, form)
+
+
+def _picture(options: argparse.Namespace, samples: Samples) -> Picture | None:
+    if options.plot is None:
+        return None
+    from robot_control.estimate.picture import Picture
+
+    return Picture(samples.time_ns.size)
+
+
+def _outputs(options: argparse.Namespace) -> list[Path]:
+    return [path for path in (options.csv, options.bag, options.plot, options.calibration) if path is not None]
+
+
+OF_CSV = ("columns", "counts_per_turn", "time_unit", "gyro_unit", "accel_unit")
+OF_BAG = ("wheels", "imu", "joints", "odometry")
+
+
+def _check_options(options: argparse.Namespace) -> None:
+    is_bag = options.input.suffix == ".bag"
+    for name in OF_CSV if is_bag else OF_BAG:
+        if getattr(options, name) is not None:
+            kind, other = ("bag", "CSV") if is_bag else ("CSV", "bag")
+            raise InputError(f"--{name.replace('_', '-')} is for a {other}; {options.input} is read as a {kind}")
+
+
+def _check_paths(options: argparse.Namespace) -> None:
+    """Before minutes of work."""
+    outputs = _outputs(options)
+    for path in outputs:
+        if not path.parent.is_dir():
+            raise InputError(f"{path} cannot be written: there is no folder {path.parent}")
+        if path.is_dir():
+            raise InputError(f"{path} cannot be written: it is a folder")
+        if path.is_file() and options.input.exists() and path.samefile(options.input):
+            raise InputError(f"{path} is the recording itself; give the estimate another name")
+    if len({path.resolve() for path in outputs}) < len(outputs):
+        raise InputError("two outputs have one name")
+    if options.input.suffix in {".db3", ".mcap"}:
+        raise InputError(f"{options.input} is a ROS 2 bag; make a ROS 1 bag of it (rosbags-convert), or a CSV")
+
+
+def _joints(given: dict[str, str] | None) -> tuple[str, str] | None:
+    if given is None:
+        return None
+    if set(given) != {"left", "right"}:
+        raise InputError("--joints names one joint of each side: left=NAME,right=NAME")
+    return given["left"], given["right"]
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="estimate.py",
+        description="Estimates where a robot was from a recording of its wheels and its IMU, with the node's own "
+        "filter; prints a summary, and writes what is asked for.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("input", type=Path, help="CSV, or rosbag (.bag)")
+    parser.add_argument("--csv", type=Path, metavar="OUT.csv", help="write the estimate, a row per row of the input")
+    parser.add_argument("--bag", type=Path, metavar="OUT.bag", help="write nav_msgs/Odometry on /odom, and /tf")
+    parser.add_argument("--plot", type=Path, metavar="OUT.png", help="draw path, yaw, speeds, gyro bias, slip")
+    parser.add_argument(
+        "--calibration", type=Path, metavar="OUT.yaml", help="write what was learned, as the node's calibration_file"
+    )
+    parser.add_argument("--rate", type=_positive, metavar="HZ", help=f"rows a second; bag: {BAG_RATE:g} unless given")
+
+    robot = parser.add_argument_group("the robot")
+    robot.add_argument("--urdf", type=Path, metavar="FILE", help="robot description, .xacro too")
+    robot.add_argument("--params", type=Path, metavar="YAML", help="parameter file; installed: robot_params.yaml")
+    robot.add_argument("--wheel-radius", type=_positive, metavar="M", help="every wheel")
+    robot.add_argument("--wheel-base", type=_positive, metavar="M", help="between the left and the right wheels")
+    robot.add_argument("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link; =X,… where X < 0")
+    robot.add_argument(
+        "--imu-orientation", type=_numbers, metavar="R,P,Y", help="rad, as in a URDF, or a quaternion x,y,z,w"
+    )
+    robot.add_argument(
+        "--encoder-counts", type=_positive, metavar="N", help="a turn, gear included; else found, or 4096"
+    )
+    robot.add_argument("--period", type=_positive, metavar="S", help="between samples; else their median")
+
+    table = parser.add_argument_group("a CSV")
+    table.add_argument("--columns", type=_pairs, metavar="time=t,left=…", help="the file's names of our columns")
+    table.add_argument(
+        "--counts-per-turn", type=_positive, metavar="N", help="unit of left and right: 360 for degrees, 1 for turns"
+    )
+    table.add_argument(
+        "--time-unit",
+        choices=TIME_UNITS,
+    )
+    table.add_argument("--gyro-unit", choices=GYRO_UNITS)
+    table.add_argument("--accel-unit", choices=ACCEL_UNITS)
+
+    bag = parser.add_argument_group("a bag")
+    bag.add_argument("--wheels", metavar="TOPIC", help="of sensor_msgs/JointState or nav_msgs/Odometry")
+    bag.add_argument("--imu", metavar="TOPIC", help="of sensor_msgs/Imu; none: wheels alone")
+    bag.add_argument("--joints", type=_pairs, metavar="left=NAME,right=NAME", help="else those of the robot")
+    bag.add_argument(
+        "--odometry", choices=("pose", "twist"), help="what wheel odometry is read by; else its pose, where it moves"
+    )
+    return parser
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0):
+        raise argparse.ArgumentTypeError(f"{text} is no number above 0")
+    return value
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text} is no list of numbers, such as 0.05,0,0.06") from None
+
+
+def _pairs(text: str) -> dict[str, str]:
+    pairs = [part.partition("=") for part in text.split(",")]
+    names = [name.strip() for name, _, _ in pairs]
+    if any(not equals or not name.strip() or not value.strip() for name, equals, value in pairs):
+        raise argparse.ArgumentTypeError(f"{text} is no list of name=name; names: {', '.join(NAMES)}")
+    if len(set(names)) < len(names):
+        raise argparse.ArgumentTypeError(f"{text} gives a name twice")
+    return {name.strip(): value.strip() for name, _, value in pairs}

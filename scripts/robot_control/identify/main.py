@@ -1,0 +1,133 @@
+"""identify.py's ROS side: reads the robot's parameters, drives the plan, stops whenever something is not as planned."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import rospy
+
+from robot_control import ParameterError, RobotError
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.run_log import FloatArray, LogError, read_log
+from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
+from robot_control.common.settings import Settings
+from robot_control.common.topic_sender import Signals, ended_by_signals
+from robot_control.identify.evaluation import Options, evaluate, parse_options, plan
+from robot_control.identify.excitation import Excitation, NoRoomError
+from robot_control.identify.excitation_watch import Pose, hindrance, interruption, moves
+from robot_control.identify.recorded_log import RecordingError, recording
+from robot_control.identify.robot import RunningRobot
+from robot_control.identify.rows import UnfitError
+from robot_control.identify.tuning_proposal import NoGainsError
+from robot_control.installed_files import share_file
+from robot_control.why.facts import nodes_of
+
+PERIOD = 0.05
+"""s between two commands: 25 are lost before the default cmd_vel_timeout"""
+CONTROLLER = "diff_drive_controller"
+NO_MASTER = "or fit a log with --log"
+SIMULATED_TIME = "or fit the log of a command_script with --log"
+
+
+REFUSALS = (
+    RefusedError,
+    NoRoomError,
+    UnfitError,
+    NoGainsError,
+    RecordingError,
+    LogError,
+    ParameterError,
+    RobotError,
+    OSError,
+    ValueError,
+)
+
+
+def main() -> None:
+    """Entry point of scripts/identify.py: exit code 0 with a YAML written, else 1 with one message."""
+    options = parse_options(rospy.myargv(sys.argv)[1:])
+    try:
+        if options.log is not None:
+            _fit(dict(read_log(options.log)), _settings_of_files(options), options, f"log {options.log.name}")
+        else:
+            with running_settings("identify", CONTROLLER, NO_MASTER, SIMULATED_TIME) as settings:
+                with ended_by_signals() as signals:
+                    log = _drive(settings, options, signals)
+                _fit(log, settings, options, "driven")
+    except REFUSALS as error:
+        sys.exit(f"identify.py: {fit_for_message(in_words(error))}")
+
+
+def _fit(log: dict[str, FloatArray], settings: Settings, options: Options, source: str) -> None:
+    outcome = evaluate(log, settings, options.mass, source)
+    print(outcome.table)
+    for sentence in outcome.warnings:
+        print(f"! {sentence}")
+    write_text(options.output, outcome.yaml)
+    print(
+        f"wrote {options.output}: rosparam load it (in the robot's namespace), start {CONTROLLER} again, then "
+        "rosservice call e_stop_reset: a restart beside the running robot is a stop"
+    )
+
+
+def _settings_of_files(options: Options) -> Settings:
+    path = str(options.params or share_file("config/robot_params.yaml"))
+    return Settings(path, () if options.urdf is None else (("robot.urdf", str(options.urdf.absolute())),))
+
+
+def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, FloatArray]:
+    excitation = plan(settings, options)
+    robot = RunningRobot()
+    senders, telemetry = _others(robot, signals)
+    look = robot.look(senders)
+    reason = hindrance(look)
+    if reason:
+        raise RefusedError(f"{reason}. Nothing was driven")
+    running = ""
+    if telemetry:
+        await_all(lambda: any(name in robot.logs for name in telemetry), signals)
+        running = next((robot.logs[name] for name in telemetry if name in robot.logs), "")
+        if not running:
+            raise RefusedError(f"{telemetry[0]} runs, but does not say where it writes; end it. Nothing was driven")
+    with recording(running, settings.path, signals.going_on) as log:
+        print(
+            f"driving {excitation.seconds:.0f} s: up to {excitation.linear:.2f} m/s, {excitation.reach:.2f} m ahead "
+            f"and back, then turns on the spot, up to {excitation.angular:.2f} rad/s. Ctrl-C stops",
+            flush=True,
+        )
+        _follow(robot, excitation, signals)
+        return log.read()
+
+
+def _others(robot: RunningRobot, signals: Signals) -> tuple[tuple[str, ...], list[str]]:
+    """Who else may send commands, and which telemetry runs; waits until the robot was heard."""
+    await_all(lambda: robot.listened_to() and robot.look().pose is not None and bool(robot.look().state), signals)
+    state = master_state()
+    if not robot.listened_to():
+        raise RefusedError(f"nobody listens on {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
+    return other_senders(state), sorted(nodes_of(state) & {rospy.resolve_name("telemetry")})
+
+
+def _follow(robot: RunningRobot, excitation: Excitation, signals: Signals) -> None:
+    """Sends the plan; whatever happens, a zero is the last thing sent."""
+    start = robot.look().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
+    unanswered = 0.0  # s
+    try:
+        for move in excitation.moves:
+            begin = now = time.monotonic()
+            while now - begin < move.seconds:
+                look = robot.look()
+                unanswered = 0.0 if moves(look) else unanswered
+                reason = (
+                    interruption(look, start, excitation.reach, unanswered) if signals.going_on() else "interrupted"
+                )
+                if reason:
+                    raise RefusedError(f"{reason}. A zero was sent, nothing is written")
+                robot.send(move.linear, move.angular)
+                time.sleep(min(PERIOD, begin + move.seconds - now))
+                last, now = now, time.monotonic()
+                unanswered += now - last if move.linear != 0 or move.angular != 0 else 0.0
+    finally:
+        robot.send(0, 0)

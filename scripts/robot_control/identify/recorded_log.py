@@ -1,0 +1,108 @@
+"""The log of every cycle of a running robot: that of its telemetry, else one of our own."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import rospy
+
+from robot_control.common.run_log import FloatArray, read_log
+
+NODE = "identify_telemetry"
+START_LIMIT = 20.0
+"""s until the first row is in the file; 1 s on an idle machine"""
+END_LIMIT = 10.0
+"""s for an orderly end after SIGINT"""
+SETTLE = 1.0
+"""s after the last command; telemetry hands its rows on at 10 Hz"""
+
+
+class RecordingError(RuntimeError):
+    """There is no log; the message says why."""
+
+
+class Recording:
+    """Rows of a file from a moment on."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._begin = path.stat().st_size
+
+    def read(self) -> dict[str, FloatArray]:
+        """What was written since.
+
+        Raises:
+            LogError: nothing.
+        """
+        time.sleep(SETTLE)
+        with tempfile.NamedTemporaryFile("wb", suffix=".csv") as part, self.path.open("rb") as file:
+            part.write(file.readline())
+            file.seek(max(self._begin, file.tell()))
+            if file.tell() > part.tell():
+                file.readline()  # perhaps the rest of a row
+            shutil.copyfileobj(file, part)
+            part.flush()
+            return read_log(Path(part.name))
+
+
+@contextlib.contextmanager
+def recording(running: str, config: str, going_on: Callable[[], bool]) -> Iterator[Recording]:
+    """Rows of `running`, the log of a telemetry that runs already; empty: starts one with the parameter file `config`.
+
+    Raises:
+        RecordingError: no rows come.
+    """
+    if running:
+        path = Path(running)
+        if not path.is_file():
+            raise RecordingError(f"telemetry writes {path}, which is not on this machine: run identify.py there")
+        yield Recording(path)
+        return
+    folder = Path(tempfile.mkdtemp(prefix="identify-"))
+    with (folder / "telemetry.txt").open("wb") as output:
+        process = subprocess.Popen(_command(folder, config), stdin=subprocess.DEVNULL, stdout=output, stderr=output)
+        try:
+            path = _first_rows(folder, process, going_on)
+            yield Recording(path)
+        finally:
+            _end(process)
+            with contextlib.suppress(KeyError, rospy.ROSException, OSError):  # private parameters outlive their node
+                rospy.delete_param(NODE)
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _command(folder: Path, config: str) -> list[str]:
+    telemetry = ["rosrun", "robot_control", "telemetry", f"__name:={NODE}", f"__ns:={rospy.get_namespace()}"]
+    # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
+    return ["env", "--default-signal=INT", *telemetry, f"_directory:={folder}", f"_config:={config}"]
+
+
+def _first_rows(folder: Path, process: subprocess.Popen[bytes], going_on: Callable[[], bool]) -> Path:
+    deadline = time.monotonic() + START_LIMIT
+    while time.monotonic() < deadline and process.poll() is None and going_on():
+        # A namespace has a folder of its own in it.
+        for path in folder.rglob("run.csv"):
+            with path.open("rb") as file:
+                if file.readline() and file.readline():
+                    return path
+        time.sleep(0.1)
+    said = (folder / "telemetry.txt").read_text(errors="replace").strip().splitlines()
+    raise RecordingError("telemetry gives no rows: " + (said[-1] if said else f"nothing within {START_LIMIT:g} s"))
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+        try:
+            process.wait(END_LIMIT)
+        except subprocess.TimeoutExpired:
+            os.kill(process.pid, signal.SIGKILL)
+            process.wait()

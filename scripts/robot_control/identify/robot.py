@@ -1,0 +1,83 @@
+"""identify.py's view of a running robot: what it says, what it is told."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+
+from robot_control.common.topic_sender import Sender
+from robot_control.identify.excitation_watch import Look, Pose
+from robot_control.msg import SafetyStatus
+
+NEVER = -math.inf
+
+
+class RunningRobot:
+    """Listens to one robot; speaks to it on cmd_vel, a zero when the node is shut down."""
+
+    def __init__(self, *, speaks: bool = True) -> None:
+        """False: it only listens, and is no sender on cmd_vel."""
+        self.logs: dict[str, str] = {}  # telemetry node → path of its log
+        self._odometry: Odometry | None = None
+        self._odometry_at = NEVER
+        self._status: SafetyStatus | None = None
+        self._status_at = NEVER
+        self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if speaks else None
+        self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
+        self._subscribers = [
+            rospy.Subscriber("odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
+            rospy.Subscriber("safety_status", SafetyStatus, self._hear_status),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._hear_diagnostics),
+        ]
+
+    def send(self, linear: float, angular: float) -> None:
+        """m/s, rad/s."""
+        if self._sender is None:
+            return
+        message = Twist()
+        message.linear.x, message.angular.z = linear, angular
+        self._sender.send(message)
+
+    def listened_to(self) -> bool:
+        """A controller is there for what is sent."""
+        return self._publisher is not None and int(self._publisher.get_num_connections()) > 0
+
+    def look(self, senders: tuple[str, ...] = ()) -> Look:
+        """As of now; `senders`: others on cmd_vel."""
+        now = time.monotonic()
+        odometry, status = self._odometry, self._status
+        pose = None
+        linear = angular = 0.0
+        if odometry is not None:
+            position, q = odometry.pose.pose.position, odometry.pose.pose.orientation
+            pose = Pose(position.x, position.y, 2 * math.atan2(q.z, q.w))  # planar: x and y of the rotation are 0
+            linear, angular = odometry.twist.twist.linear.x, odometry.twist.twist.angular.z
+        return Look(
+            pose=pose,
+            linear=linear,
+            angular=angular,
+            pose_age=now - self._odometry_at,
+            state="" if status is None else status.state_name,
+            status_age=now - self._status_at,
+            sentences=() if status is None else tuple(status.sentences),
+            missing=() if status is None else tuple(status.missing),
+            speed_limit=math.inf if status is None else status.speed_limit,
+            senders=senders,
+        )
+
+    def _hear_odometry(self, message: Odometry) -> None:
+        self._odometry, self._odometry_at = message, time.monotonic()
+
+    def _hear_status(self, message: SafetyStatus) -> None:
+        self._status, self._status_at = message, time.monotonic()
+
+    def _hear_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            for pair in status.values:
+                if pair.key == "log":
+                    self.logs["/" + status.name.lstrip("/")] = pair.value

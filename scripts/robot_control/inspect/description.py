@@ -1,0 +1,51 @@
+"""A robot as the C++ reader understood it: plain values, SI units, base axes (x forward, y left, z up)."""
+
+from __future__ import annotations
+
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+from robot_control import _robot_control
+from robot_control.installed_files import share_file
+
+Description = dict[str, Any]  # keys: src/python/describe.h
+
+
+def describe(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> Description:
+    """Reads a URDF or .xacro file with the `robot:` block of a YAML file laid over it.
+
+    Raises:
+        RobotError: it cannot be driven, and why.
+        ParameterError: the YAML file is wrong.
+    """
+    description: Description = _robot_control.describe(*_arguments(urdf, params))
+    return description
+
+
+def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> str:
+    """The MJCF text of robot and scene, as `mujoco-simulate` opens it.
+
+    Raises:
+        RobotError, ParameterError: as `describe`.
+        DriverError: the scene does not compile.
+    """
+    text: str = _robot_control.mjcf(*_arguments(urdf, params))
+    return text
+
+
+def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> dict[str, Any]:
+    """How the robot stands in the scene, brakes on: `lean` [rad]; `carried`, the part of its weight that the drive
+    wheels carry; `unloaded`, the wheels that carry nothing and the links that touch the ground instead, "" if none.
+
+    Raises:
+        RobotError, ParameterError: as `describe`.
+        DriverError: it falls over, does not come to rest, or its wheels do not reach the ground.
+    """
+    standing: dict[str, Any] = _robot_control.stand(*_arguments(urdf, params))
+    return standing
+
+
+def _arguments(urdf: str | PathLike[str], params: str | PathLike[str] | None) -> tuple[str, list[tuple[str, str]]]:
+    path = share_file("config/robot_params.yaml") if params is None else fspath(params)
+    return path, [("robot.urdf", str(Path(urdf).absolute()))]

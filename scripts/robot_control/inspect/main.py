@@ -1,0 +1,65 @@
+"""inspect_robot.py: what is understood of a robot description."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from robot_control._robot_control import DriverError, ParameterError, RobotError
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import fit_for_message, write_text
+from robot_control.inspect.description import Description, describe, mjcf, stand
+from robot_control.inspect.report import report
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Prints the report; exits with 1 and one message when the robot is refused, or does not stand."""
+    options = _parser().parse_args(arguments)
+
+    fallen = None
+    try:
+        robot = describe(options.file, options.params)
+        if options.mjcf is not None:
+            write_text(options.mjcf, mjcf(options.file, options.params))
+        if options.picture is not None:
+            from robot_control.inspect.picture import draw_robot
+
+            draw_robot(robot, options.picture)
+        try:
+            robot["standing"] = stand(options.file, options.params)
+        except DriverError as error:
+            fallen = error
+    except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:  # a format unknown to matplotlib
+        sys.exit(f"inspect_robot.py: {fit_for_message(in_words(error))}")
+    print(_json(robot) if options.json else report(robot))
+    for written in (options.mjcf, options.picture):
+        if written is not None:
+            print(f"wrote {written}", file=sys.stderr)
+    if fallen is not None:
+        sys.exit(f"inspect_robot.py: understood, but it does not stand: {fallen}")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="inspect_robot.py",
+        description="Says what is understood of a robot description: wheels, sides, sizes, masses, and what was "
+        "assumed, repaired or ignored.",
+    )
+    parser.add_argument("file", type=Path, help="URDF, or .xacro")
+    parser.add_argument(
+        "--params", type=Path, metavar="YAML", help="parameter file; its robot: block lies over the URDF"
+    )
+    parser.add_argument("--json", action="store_true", help="the same as JSON")
+    parser.add_argument("--mjcf", type=Path, metavar="OUT.xml", help="write the model that MuJoCo simulates")
+    parser.add_argument("--picture", type=Path, metavar="OUT.png", help="draw the robot")
+    return parser
+
+
+def _json(robot: Description) -> str:
+    """Without the corners of meshes."""
+    shapes = [
+        {key: value for key, value in shape.items() if key not in ("points", "triangles")} for shape in robot["shapes"]
+    ]
+    return json.dumps(robot | {"shapes": shapes}, indent=2, ensure_ascii=False)

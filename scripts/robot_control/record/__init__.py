@@ -1,0 +1,1 @@
+"""record.py: records the topics of a robot into a bag."""

@@ -1,0 +1,1 @@
+"""why.py: the reason why a robot does not move."""

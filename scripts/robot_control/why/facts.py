@@ -1,0 +1,43 @@
+"""Messages of ROS → what why.py judges; pure but for the message types."""
+
+from collections.abc import Iterable, Sequence
+
+from robot_control.msg import SafetyStatus
+from robot_control.why.diagnosis import LOOP, Cause, Safety
+
+
+def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:
+    """What a message says; `held` s in its state, `age` s since it was heard."""
+    causes = zip(status.causes, status.sentences, status.remedies, status.actors, status.details, strict=True)
+    return Safety(
+        state=status.state_name,
+        permit=status.permit_name,
+        held=held,
+        age=age,
+        causes=tuple(
+            Cause(name, sentence, remedy, actor, detail, name == status.first_cause, name in status.active)
+            for name, sentence, remedy, actor, detail in causes
+        ),
+        warnings=tuple(status.warning_sentences),
+        speed_limit=status.speed_limit,
+        missing=tuple(status.missing),
+        refusal=tuple(status.reset_refusal),
+        awaiting_zero=status.awaiting_zero_request,
+    )
+
+
+def below(namespace: str, name: str) -> str:
+    """The last word: "/robot2/x" below "/robot2" → "x"; empty where it lies elsewhere, or deeper."""
+    rest = name.removeprefix(namespace.rstrip("/") + "/") if name.startswith(namespace.rstrip("/") + "/") else ""
+    return "" if "/" in rest else rest
+
+
+def other_robots(namespace: str, names: Iterable[str]) -> tuple[str, ...]:
+    """Namespaces beside this one in which a node of the loop speaks; `names` absolute."""
+    found = {name.rpartition("/")[0] or "/" for name in names if name.rpartition("/")[2] in LOOP}
+    return tuple(sorted(found - {namespace.rstrip("/") or "/"}))
+
+
+def nodes_of(state: Sequence[Sequence[tuple[str, Sequence[str]]]]) -> set[str]:
+    """Every node that the master knows: publishers, subscribers, servers."""
+    return {node for part in state for _, nodes in part for node in nodes}

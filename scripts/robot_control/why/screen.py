@@ -1,0 +1,176 @@
+"""The answer of why.py as lines of text, as wide as the screen; no ROS in here."""
+
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from robot_control.why.diagnosis import (
+    CONTROLLER,
+    ESTIMATOR,
+    LOOP,
+    PLANT,
+    Answer,
+    Facts,
+    Safety,
+    Verdict,
+    bare,
+    judge,
+    missing_nodes,
+    senders_in_words,
+    speeds,
+)
+
+LABEL = 11
+"""columns for the word before each line"""
+NARROWEST = 40
+"""columns; below that words no longer fit beside their label"""
+
+COLOURS = {Verdict.STOPPED: "31;1", Verdict.IDLE: "33;1", Verdict.MOVING: "32;1"}
+"""SGR of ECMA-48: red, yellow, green; bold."""
+DIM = "2"
+BOLD = "1"
+
+
+@dataclass(frozen=True)
+class Look:
+    """How the answer is shown."""
+
+    width: int = 80  # columns; no line is longer
+    colour: bool = False  # with escape sequences, for a terminal
+    times: bool = True  # with what changes by itself, speeds and seconds; without, only another answer looks different
+
+    def paint(self, text: str, style: str) -> str:
+        """The text in SGR `style`."""
+        return f"\x1b[{style}m{text}\x1b[0m" if self.colour and style and text.strip() else text
+
+
+PLAIN = Look()
+
+
+def render(facts: Facts, look: Look = PLAIN) -> list[str]:
+    """One screen, a line each."""
+    answer = judge(facts)
+    width = max(look.width, NARROWEST)
+    lines = [look.paint(line, COLOURS[answer.verdict]) for line in textwrap.wrap(_headline(answer, look), width)]
+    lines.append("")
+    for label, text, style in _rows(facts, answer, look):
+        for number, line in enumerate(_wrap(text, width - LABEL)):
+            head = (label if number == 0 else "").ljust(LABEL)
+            lines.append((look.paint(head, DIM) + look.paint(line, style)).rstrip())
+    return lines
+
+
+def _headline(answer: Answer, look: Look) -> str:
+    return "It moves." if answer.verdict is Verdict.MOVING and not look.times else answer.headline
+
+
+def _wrap(text: str, width: int) -> list[str]:
+    return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False) or [""]
+
+
+Rows = Iterator[tuple[str, str, str]]
+
+
+def _rows(facts: Facts, answer: Answer, look: Look) -> Rows:
+    yield from _to_do(answer)
+    safety = facts.heard()
+    if safety is not None:
+        yield from _safety(safety, look)
+    yield from _nodes(facts)
+    if any(facts.there(node) for node in LOOP):
+        yield from _command(facts, look)
+        yield from _gate(facts)
+    yield from _circumstances(facts)
+
+
+def _to_do(answer: Answer) -> Rows:
+    for number, (actor, text) in enumerate(answer.actions):
+        yield "to do" if number == 0 else "", f"{actor}: {text}" if actor else text, BOLD
+    for command in answer.commands:
+        yield "", f"$ {command}", ""
+    if answer.actions or answer.commands:
+        yield "", "", ""
+
+
+def _safety(safety: Safety, look: Look) -> Rows:
+    since = f" for {_duration(safety.held)}" if look.times else ""
+    yield "safety", f"{safety.state}{since}, permit: {safety.permit}", ""
+    for number, cause in enumerate(sorted(safety.causes, key=lambda cause: not cause.first)):
+        marks = [word for word, true in (("first", cause.first), ("still true", cause.active)) if true]
+        measured = f": {cause.detail}" if cause.detail else ""
+        mark = f" [{', '.join(marks)}]" if marks else ""
+        yield "causes" if number == 0 else "", f"{cause.name}: {cause.sentence}{measured}{mark}", ""
+    for number, warning in enumerate(safety.warnings):
+        yield "warnings" if number == 0 else "", warning, "33"
+    if safety.speed_limit < float("inf"):
+        whose = "a warning or clearance" if safety.warnings else "clearance"
+        yield "limit", f"no rim faster than {safety.speed_limit:.3g} m/s, by {whose}", ""
+    for number, refusal in enumerate(safety.refusal):
+        yield "last reset" if number == 0 else "", f"refused: {refusal}", ""
+
+
+def _nodes(facts: Facts) -> Rows:
+    absent = missing_nodes(facts)
+    words = []
+    for node in LOOP:
+        if node in absent or (not facts.there(node) and facts.heard() is None):
+            words.append(f"{node} MISSING")
+        elif not facts.there(node):
+            words.append(f"{node} silent")
+        else:
+            words.append(node)
+    yield "nodes", ", ".join(words), ""
+
+
+def _command(facts: Facts, look: Look) -> Rows:
+    yield "cmd_vel", f"published by {senders_in_words(facts)}", ""
+    asked = [facts.value(CONTROLLER, key) for key in ("requested_m_s", "requested_rad_s")]
+    parts = []
+    if look.times and all(asked):
+        parts.append(f"asked {speeds((float(asked[0]), float(asked[1])))}")
+    if look.times and facts.limited is not None:
+        parts.append(f"after limits {speeds(facts.limited)}")
+    if look.times and facts.measured is not None:
+        parts.append(f"measured {speeds(facts.measured)}")
+    if parts:
+        yield "", "; ".join(parts), ""
+    reasons = facts.reasons(CONTROLLER, "command").values()
+    if reasons:
+        yield "controller", "; ".join(bare(text) for text in reasons), ""
+
+
+def _gate(facts: Facts) -> Rows:
+    verdict = facts.value(PLANT, "gate_verdict")
+    if not verdict:
+        return
+    reasons = "; ".join(bare(text) for text in facts.reasons(PLANT, "gate").values())
+    yield "gate", f"{verdict}: {reasons}" if reasons else verdict, ""
+
+
+def _circumstances(facts: Facts) -> Rows:
+    faults = facts.value(PLANT, "injected")
+    if faults not in {"", "none"}:
+        yield "injected", faults, "33"
+    unloaded = facts.value(PLANT, "unloaded_wheels")
+    if unloaded:
+        yield "wheels", unloaded, "33"
+    slip = facts.reasons(ESTIMATOR, "slip").values()
+    if slip or "slip" in facts.value(ESTIMATOR, "flags").split():
+        yield "slip", "; ".join(map(bare, slip)) or "wheels and inertial sensors disagree", "33"
+    lost = facts.reasons(ESTIMATOR, "estimate").values()
+    if lost:
+        yield "odometry", "; ".join(map(bare, lost)), "33"
+    if not facts.master_answers and facts.heard() is not None:
+        yield (
+            "master",
+            f"{facts.master} does not answer: what is connected goes on, nothing new connects; start the nodes again",
+            "33",
+        )
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 60:
+        return f"{max(0.0, seconds):.0f} s"
+    if seconds < 3600:
+        return f"{seconds // 60:.0f} min {seconds % 60:.0f} s"
+    return f"{seconds // 3600:.0f} h {seconds % 3600 // 60:.0f} min"
