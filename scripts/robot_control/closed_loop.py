@@ -92,11 +92,11 @@ class ClosedLoop:
         self._loop = self._new_loop(seed)
 
     def reset(self, seed: int | None = None) -> None:
-        """Sets the robot down anew, without injected faults; the next cycle is 0.
+        """Puts the robot back to its start, without injected faults; the next cycle is 0.
 
         Args:
             seed: None: as `mujoco_plant/reset`, a new run with the same random numbers. The other nodes follow:
-                estimator, controller and counters begin anew, commands given before are dropped, a latched stop
+                estimator, controller and counters restart, commands given before are dropped, a latched stop
                 stays, and so does a pause. A number: everything is as after `ClosedLoop(seed=...)`.
         """
         self._refuse_inside_a_run("reset")
@@ -119,7 +119,7 @@ class ClosedLoop:
         Args:
             component: left_encoder right_encoder gyro accelerometer left_motor right_motor controller estimator
                 monitor battery e_stop_button
-            kind: ok (heals) off stuck garbage wrong slow delayed intermittent
+            kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent
 
         Raises:
             ValueError: an unknown word, with the list of those there are.

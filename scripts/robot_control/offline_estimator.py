@@ -53,7 +53,7 @@ class Estimator:
             URDF's.
         encoder_counts: of one turn of a wheel, gear included, all edges counted; sets
             `state_estimator.encoder_noise` to 2π / encoder_counts / √12 rad. None: that parameter holds, 4096 counts
-            unless set. An encoder that is coarser than the filter believes looks like slip.
+            unless set. An encoder that is coarser than its parameter looks like slip.
         period: s between two samples, from which the filter's time constants are set up. None: the median of the
             times of the first `process`.
 
@@ -245,7 +245,7 @@ class Estimator:
         return description
 
     def _median_period(self, stamps: FloatArray, rounding: float) -> float:
-        """The median step; where rounded stamps cannot be told from those of robot.rate, its exact period."""
+        """The median step; where rounded stamps cannot be distinguished from those of robot.rate, its exact period."""
         nominal = float(self._estimator.loop_period)
         if stamps.size < 2:
             return nominal
@@ -310,8 +310,8 @@ def _check_increasing(stamps: FloatArray, last: float | None) -> None:
         raise ValueError(f"time[{unknown[0]}] is {stamps[unknown[0]]}; every row needs a finite time: drop the row")
     if last is not None and stamps[0] <= last:
         raise ValueError(
-            f"time[0] is {stamps[0]!r} s, not after {last!r} s, where the last process() ended; call reset() to begin "
-            "anew"
+            f"time[0] is {stamps[0]!r} s, not after {last!r} s, where the last process() ended; call reset() to "
+            "start again"
         )
     back = np.flatnonzero(np.diff(stamps) <= 0)
     if back.size:

@@ -98,7 +98,7 @@ class SendCmdTest(unittest.TestCase):
     def test_waits_for_somebody_who_listens(self) -> None:
         self.subscriber.unregister()
         sender = self.started("--period=0.1", "--count=1")
-        wait_for("that nobody does", lambda: "nobody listens on /cmd_vel" in sender.output)
+        wait_for("the missing subscriber", lambda: "no node subscribes to /cmd_vel" in sender.output)
         self.assertNotIn("cmd_vel 1:", sender.output)
         self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.hear, tcp_nodelay=True)
         self.assertEqual(sender.wait(), 0, sender.output)

@@ -49,17 +49,17 @@ def test_writes_parameters_that_the_loop_takes_and_says_before_and_after(robot):
     assert overlay["state_estimator"]["wheel_base_deviation"] == pytest.approx(0.003)
     loop = ClosedLoop(overlay)
     assert loop.robot["wheels"][0]["radius"] == pytest.approx(0.1008)
-    for word in ("believed", "measured", "largest mean return error", "mm after", "E_d", "3.000 m by wheels before"):
+    for word in ("nominal", "measured", "largest mean return error", "mm after", "E_d", "3.000 m by wheels before"):
         assert word in outcome.table, word
     assert not outcome.warnings
 
 
 def test_a_second_calibration_starts_from_the_first(robot):
-    """What is relative to a believed radius comes out absolute."""
-    believed = ClosedLoop({"robot": {"wheel_radius": 0.1008, "wheel_base": 0.51}}).robot
-    wheels = wheels_of(believed)
+    """What is relative to a nominal radius comes out absolute."""
+    nominal = ClosedLoop({"robot": {"wheel_radius": 0.1008, "wheel_base": 0.51}}).robot
+    wheels = wheels_of(nominal)
     truth = Truth(ratio=TRUE.ratio)
-    overlay = yaml.safe_load(evaluate(believed, [line(wheels, truth)], squares(wheels, truth), 4.0).yaml)
+    overlay = yaml.safe_load(evaluate(nominal, [line(wheels, truth)], squares(wheels, truth), 4.0).yaml)
     assert overlay["robot"]["wheel_radius"] == pytest.approx(0.1008, rel=1e-6)
     assert overlay["robot"]["wheel_base"] == pytest.approx(0.51, rel=1e-6)
     assert overlay["state_estimator"]["radius_ratio"] == pytest.approx(TRUE.ratio, rel=1e-6)

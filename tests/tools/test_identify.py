@@ -52,7 +52,7 @@ def test_fits_a_log_and_writes_an_overlay_that_the_loop_takes(run_csv, tmp_path,
     output = tmp_path / "identified.yaml"
     identify(monkeypatch, f"--log={run_csv}", f"--output={output}", f"--params={PARAMS}")
     printed = capsys.readouterr().out
-    for word in ("believed", "measured", "proposed", "±", "gain margin", "delay margin", "spectral radius"):
+    for word in ("nominal", "measured", "proposed", "±", "gain margin", "delay margin", "spectral radius"):
         assert word in printed
     overlay = yaml.safe_load(output.read_text())
     assert list(overlay) == ["diff_drive_controller"]
@@ -77,7 +77,10 @@ def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("command", "missing"),
-    [((0.5, 0.0), "turning cannot be told from this log: it holds no turns"), ((0.0, 0.5), "straight cannot be told")],
+    [
+        ((0.5, 0.0), "turning cannot be determined from this log: it holds no turns"),
+        ((0.0, 0.5), "straight cannot be determined"),
+    ],
 )
 @pytest.mark.filterwarnings("error")
 def test_a_log_without_turns_or_ramps_is_refused_in_words_without_nan(command, missing, tmp_path, monkeypatch):
@@ -91,7 +94,7 @@ def test_a_log_without_turns_or_ramps_is_refused_in_words_without_nan(command, m
 def test_the_log_of_a_demo_is_refused_without_nan_or_a_warning(tmp_path, monkeypatch):
     log = ClosedLoop().run(10.0, lambda t: (0.5, 0.2) if 1 < t < 9 else (0.0, 0.0))
     message = refusal(monkeypatch, f"--log={written(log, tmp_path)}", f"--output={tmp_path}/x.yaml")
-    assert "the log holds too little of it; drive more" in message or "cannot be told" in message
+    assert "the log holds too little of it; drive more" in message or "cannot be determined" in message
     assert "nan" not in message
 
 

@@ -217,7 +217,10 @@ def test_nobody_who_commands_is_no_fault(driving):
     )
     answer = judge(replace(facts, senders=(), limited=(0.0, 0.0), measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.IDLE
-    assert answer.headline == "It may move, but nobody tells it to: nothing was received on cmd_vel in this run."
+    assert (
+        answer.headline
+        == "It may move, but no velocity command is being received: nothing was received on cmd_vel in this run."
+    )
     assert answer.commands == ("rosrun robot_control send_cmd.py",)
 
 
@@ -273,7 +276,7 @@ def test_one_stale_message_does_not_hide_that_it_moves(driving):
 def test_zero_on_cmd_vel_is_told_as_such(driving):
     facts = saying(driving, CONTROLLER, command__holding="standing with zero command: the brake holds the position")
     answer = judge(replace(facts, limited=(0.0, 0.0), measured=(0.0, 0.0)))
-    assert answer.headline == "It may move, but is told to stand: cmd_vel is zero."
+    assert answer.headline == "It may move, but the command is to stand: cmd_vel is zero."
 
 
 def test_several_senders_are_all_named(driving):

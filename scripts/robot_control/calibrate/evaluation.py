@@ -94,7 +94,7 @@ def parse_options(arguments: Sequence[str]) -> Options:
     add("--runs", type=number_of_sends, default=5, help="squares each way (default %(default)s)")
     add("--speed", type=positive, default=0.3, help="m/s at most (default %(default)s)")
     add("--turn-speed", type=positive, default=0.6, help="rad/s at most (default %(default)s)")
-    add("--manual", action="store_true", help="somebody else drives, or pushes: nothing is sent")
+    add("--manual", action="store_true", help="another sender drives the robot, or a person pushes it: nothing is sent")
     add("--truth", action="store_true", help="simulation: ground_truth/odom is the tape")
     add("--yes", action="store_true", help="asks for no permission: the way is free")
     add("--measured", type=positive, nargs="+", default=[], metavar="M", help="answers for the straight drives, m")
@@ -111,14 +111,14 @@ def parse_options(arguments: Sequence[str]) -> Options:
 
 
 def margin(length: float) -> float:
-    """m beside a way of `length` m: half a metre of robot, and what the wheels get wrong; FAR at a corner."""
+    """m beside a path of `length` m: half a metre of robot, and what the wheels get wrong; FAR at a corner."""
     return 0.5 + length / 8
 
 
 def space(options: Options) -> str:
     """What must be free, in words."""
     if options.manual:
-        return "Somebody else drives; nothing is sent."
+        return "Another sender or a person moves the robot; nothing is sent."
     needs = []
     if options.distance > 0:
         beside = margin(options.distance)
@@ -163,7 +163,7 @@ class Outcome:
 
 
 def wheels_of(robot: Mapping[str, Any]) -> Wheels:
-    """What wheel odometry believes of `ClosedLoop.robot`."""
+    """The nominal wheels of wheel odometry, from `ClosedLoop.robot`."""
     centres = np.array([wheel["centre"] for wheel in robot["wheels"]])
     x, y = centres[:, :2].mean(axis=0)
     return Wheels(robot["effective_wheel_base"], (float(x), float(y)))
@@ -186,10 +186,10 @@ def evaluate(
     ):
         if not low <= value <= high:
             raise NotCalibratedError(
-                f"the {name} would be {value:.4f} times what is believed, beyond {low:g} … {high:g}: look at the "
+                f"the {name} would be {value:.4f} times its nominal value, beyond {low:g} … {high:g}: look at the "
                 "measurements (m; x ahead, y left) and at the description (rosrun robot_control inspect_robot.py)"
             )
-    rows = [("", "believed", "measured", "factor")]
+    rows = [("", "nominal", "measured", "factor")]
     radius = _radius(robot)
     if straights:
         rows.append(
@@ -218,7 +218,7 @@ def evaluate(
     ]
     said = _warnings(straights, squares, wheels, truth)
     head = [
-        f"Measured on {robot['name']} by calibrate.py. Load it, then start every node anew: rosparam load FILE",
+        f"Measured on {robot['name']} by calibrate.py. Load it, then restart every node: rosparam load FILE",
         *lines,
         *(f"! {sentence}" for sentence in said),
     ]
@@ -262,17 +262,17 @@ def _square_lines(squares: Sequence[Square], wheels: Wheels, truth: Truth, side:
     return [
         f"UMBmark, {len(squares)} squares of {side:g} m: largest mean return error {1000 * before:.0f} mm before, "
         f"{1000 * after:.1f} mm after",
-        f"the authors' formulas for small errors: E_d {classic.ratio:.5f}, E_b {classic.base:.5f}, radius as believed",
+        f"the authors' formulas for small errors: E_d {classic.ratio:.5f}, E_b {classic.base:.5f}, nominal radius",
     ]
 
 
 def _warnings(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels, truth: Truth) -> list[str]:
     said = []
     if squares and not straights:
-        said.append("no straight drive: the common radius stays as believed, and the wheel base is right for it alone")
+        said.append("no straight drive: the common radius stays nominal, and the wheel base is right for it alone")
     if straights and not squares:
         said.append(
-            "no squares: ratio of the radii and wheel base stay as believed; the estimator learns them from its gyro"
+            "no squares: ratio of the radii and wheel base stay nominal; the estimator learns them from its gyro"
         )
     if squares:
         errors = return_errors(squares, wheels, truth)
@@ -290,8 +290,8 @@ def _warnings(straights: Sequence[Straight], squares: Sequence[Square], wheels: 
     return said
 
 
-def _with(believed: float, factor: float, deviation: float, unit: str = " m") -> str:
-    return f"{believed * factor:.6g} ± {believed * deviation:.1g}{unit}"
+def _with(nominal: float, factor: float, deviation: float, unit: str = " m") -> str:
+    return f"{nominal * factor:.6g} ± {nominal * deviation:.1g}{unit}"
 
 
 def _factor(factor: float) -> str:

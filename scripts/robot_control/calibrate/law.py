@@ -1,12 +1,12 @@
 """What driven distances and squares say of the wheels: common radius, ratio of the radii, wheel base. numpy alone.
 
-Wheel odometry believes radius R and wheel base b of both sides; truly left and right roll s·c_l·R and s·c_r·R over a
-base of E_b·b. With E_d = right over left radius and the mean radius in s (Borenstein & Feng, "Measurement and
+Wheel odometry uses the nominal radius R and wheel base b; truly left and right roll s·c_l·R and s·c_r·R over a base of
+E_b·b. With E_d = right over left radius and the mean radius in s (Borenstein & Feng, "Measurement and
 Correction of Systematic Odometry Errors in Mobile Robots", IEEE Trans. Robotics and Automation 12(6), 1996):
 
     c_l = 2/(E_d + 1)      c_r = 2/(1/E_d + 1)
 
-Each step of the path that wheel odometry believes, Δs and Δθ, is then truly
+Each step of the path of wheel odometry, Δs and Δθ, is then in truth
 
     left = Δs − Δθ·b/2     right = Δs + Δθ·b/2
     Δs'  = s·(c_l·left + c_r·right)/2      Δθ' = s·(c_r·right − c_l·left)/(E_b·b)
@@ -15,7 +15,7 @@ and integrating that says where the robot really is (`replay`). s, E_d and E_b a
 tape: the length of straight drives, the place to which squares driven both ways return. Least squares by Gauss-Newton
 on the exact arcs, so large errors, round corners and a square that did not close by odometry do no harm.
 
-Common radius and wheel base are told apart by the straight drives alone: squares see E_b/s. Without straight
+Only straight drives separate the common radius from the wheel base: squares see E_b/s. Without straight
 drives s is 1.
 
 The authors' own formulas for small errors are `umbmark`. On a square of side L, α is what every quarter turn lacks, β
@@ -55,7 +55,7 @@ class NotCalibratedError(ValueError):
 
 @dataclass(frozen=True)
 class Wheels:
-    """What wheel odometry believes."""
+    """The nominal geometry of wheel odometry."""
 
     wheel_base: float  # m, effective
     axle: tuple[float, float] = (0.0, 0.0)  # m, middle of the wheels in the axes of the frame that odometry is of
@@ -80,7 +80,7 @@ class Square:
 
 @dataclass(frozen=True)
 class Truth:
-    """What the wheels are, relative to what is believed; and standard deviations, 0: not measured, so held."""
+    """What the wheels are, relative to their nominal values; and standard deviations, 0: not measured, so held."""
 
     scale: float = 1.0  # mean radius
     ratio: float = 1.0  # E_d, right over left radius

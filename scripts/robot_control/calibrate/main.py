@@ -178,24 +178,24 @@ class Wizard:
             return None
         await_all(lambda: self.robot.truth is not None, self.signals)
         if self.robot.truth is None:
-            raise RefusedError("--truth: nobody publishes ground_truth/odom; that is of a simulated robot")
+            raise RefusedError("--truth: ground_truth/odom has no publisher; only a simulated robot has one")
         return self.robot.truth
 
     def _follow(self, drive: Drive) -> None:
         """Drives it; whatever happens, a zero is the last thing sent."""
         robot, pilot = self.robot, Pilot(drive.moves, self.options.speed, self.options.turn_speed)
         start = robot.look().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
-        heard, heard_at = robot.heard, time.monotonic()
+        received, received_at = robot.received, time.monotonic()
         unanswered, last = 0.0, time.monotonic()
         try:
             while not pilot.done:
                 now, look = time.monotonic(), robot.look()
-                if robot.heard != heard:
-                    heard, heard_at = robot.heard, now
+                if robot.received != received:
+                    received, received_at = robot.received, now
                 reason = "" if self.signals.going_on() else "interrupted"
                 reason = reason or unattended(look) or ignored(unanswered)
                 reason = reason or (drive.astray(start, look.pose) if look.pose else "")
-                if now - heard_at > SILENCE:
+                if now - received_at > SILENCE:
                     reason = reason or f"no wheel_odom for {SILENCE:g} s: does {ESTIMATOR} run?"
                 self._refuse(reason)
                 linear, angular = pilot.command(robot.wheels or start, now)
@@ -244,7 +244,7 @@ def main() -> None:
         for sentence in outcome.warnings:
             print(f"! {sentence}")
         write_text(options.out, outcome.yaml)
-        print(f"wrote {options.out}: rosparam load it (in the robot's namespace), then start every node anew")
+        print(f"wrote {options.out}: rosparam load it (in the robot's namespace), then restart every node")
     except REFUSALS as error:
         sys.exit(f"calibrate.py: {fit_for_message(in_words(error))}")
 
@@ -257,18 +257,18 @@ def _measured(
 ) -> tuple[dict[str, object], list[Straight], list[Square]]:
     described = describe_robot(settings.path, settings.values)
     robot = CalibratedRobot(speaks=not options.manual)
-    everybody: Callable[[], bool] = lambda: (  # noqa: E731
-        robot.heard > 0
+    all_running: Callable[[], bool] = lambda: (  # noqa: E731
+        robot.received > 0
         and robot.look().pose is not None
         and bool(robot.look().state)
         and (options.manual or robot.listened_to())
     )
-    await_all(everybody, signals)
+    await_all(all_running, signals)
     senders = () if options.manual else other_senders(master_state())
-    if robot.heard == 0:
+    if robot.received == 0:
         raise RefusedError(f"no wheel_odom: does {ESTIMATOR} run? Start the robot first")
     if not options.manual and not robot.listened_to():
-        raise RefusedError(f"nobody listens on {rospy.resolve_name('cmd_vel')}: does diff_drive_controller run?")
+        raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does diff_drive_controller run?")
     questions = Questions(signals.going_on)
     wizard = Wizard(robot, options, wheels_of(described), signals, questions, senders)
     straights, squares = wizard.run()

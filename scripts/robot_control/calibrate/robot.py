@@ -18,7 +18,7 @@ class CalibratedRobot(RunningRobot):
 
     def __init__(self, *, speaks: bool = True) -> None:
         super().__init__(speaks=speaks)
-        self.heard = 0  # messages on wheel_odom
+        self.received = 0  # messages on wheel_odom
         self._path: list[tuple[float, float, float]] = []
         self._truth: Pose | None = None
         self._subscribers += [
@@ -41,13 +41,13 @@ class CalibratedRobot(RunningRobot):
 
     @property
     def truth(self) -> Pose | None:
-        """In simulation; None: nobody says it."""
+        """Of the simulation; None: it is not published."""
         return self._truth
 
     def _hear_wheels(self, message: Odometry) -> None:
         pose = _pose(message)
         self._path.append((pose.x, pose.y, pose.yaw))
-        self.heard += 1
+        self.received += 1
 
     def _hear_truth(self, message: Odometry) -> None:
         self._truth = _pose(message)

@@ -28,7 +28,7 @@ class Master:
         self._proxy = xmlrpc.client.ServerProxy(self.uri, transport=_Transport())
 
     def state(self) -> Sequence[Any] | None:
-        """Publishers, subscribers and servers; None where nobody answers."""
+        """Publishers, subscribers and servers; None where it does not answer."""
         try:
             answer: Any = self._proxy.getSystemState(self._own)
         except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):

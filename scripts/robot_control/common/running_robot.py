@@ -1,4 +1,4 @@
-"""What a tool that drives a running robot asks first: whose parameters hold, who else sends, is everybody there."""
+"""What a tool that drives a running robot needs first: its parameters, other senders, whether all nodes run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from robot_control.common.topic_sender import Signals
 from robot_control.installed_files import share_file
 
 PATIENCE = 5.0
-"""s to hear everybody; each node reports once per second"""
+"""s to receive a report of every node; each reports once per second"""
 
 State = Sequence[Sequence[tuple[str, Sequence[str]]]]
 

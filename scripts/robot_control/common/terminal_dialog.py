@@ -14,7 +14,7 @@ LOOK = 0.1
 
 
 class NoAnswerError(RuntimeError):
-    """Nobody answers: the input has ended, or a signal came."""
+    """There is no answer: the input has ended, or a signal came."""
 
 
 class Questions:

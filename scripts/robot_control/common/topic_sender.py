@@ -35,21 +35,21 @@ class Publisher(Protocol):
     impl: Any
 
     def publish(self, message: object) -> None:
-        """Queues it for all who listen."""
+        """Queues it for all subscribers."""
 
 
 class Sender:
-    """Publishes until its last word, which comes when the node is shut down, whoever does that; nothing after it."""
+    """Publishes until the node is shut down, for whatever reason; `last` is the last message then."""
 
     def __init__(self, publisher: Publisher, last: object, said: Callable[[int], None] = lambda _: None) -> None:
-        """`said` is told after the last word how many of those who listened were not sent it."""
+        """`said` is called after the last message with the number of subscribers that were not sent it."""
         self._publisher, self._last, self._said = publisher, last, said
         self._lock = threading.Lock()
         self._over = False
         rospy.on_shutdown(self._end)  # the connections are still open there; in a `finally` they are not
 
     def send(self, message: object) -> None:
-        """Queues it for all who listen."""
+        """Queues it for all subscribers."""
         with self._lock:
             if not self._over:
                 self._publisher.publish(message)
@@ -74,7 +74,7 @@ class Signals:
         return self._came_at < math.inf
 
     def going_on(self) -> bool:
-        """None came, and nobody shuts the node down."""
+        """No signal came, and the node is not being shut down."""
         return not (self.came or rospy.core.is_shutdown_requested())
 
     def _note(self, number: int, _frame: FrameType | None) -> None:
@@ -103,7 +103,7 @@ def written(publisher: Publisher) -> dict[int, int]:
 
 
 def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) -> int:
-    """Publishes and waits until all who listen now were sent it; how many were not, within `limit` seconds.
+    """Publishes and waits until all present subscribers were sent it; how many were not, within `limit` seconds.
 
     Said twice: the first message written from now on may be one that a connection's thread had already taken from its
     queue, the second is this one.

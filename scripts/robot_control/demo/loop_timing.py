@@ -46,7 +46,7 @@ def loop_timing(log: Log) -> LoopTiming:
     log = while_all_ran(log)
     follows = np.diff(log["cycle"]) == 1
     woke = log["driver_woke_ns"]
-    # The wake-up is told relative to when the cycle was due: its stamp, later by what has slipped so far. The tick
+    # The wake-up is logged relative to when the cycle was due: its stamp, later by what has slipped so far. The tick
     # that slips begins its new grid itself; it was late by what slipped in it.
     slipped = np.diff(log["slipped_ns"])
     period = (np.diff(log["stamp_ns"]) + slipped + np.diff(woke))[follows]
@@ -64,7 +64,7 @@ def loop_timing(log: Log) -> LoopTiming:
 
 
 def while_all_ran(log: Log) -> Log:
-    """Without the tail in which the nodes end one after the other: nobody's deadline is missed there."""
+    """Without the tail in which the nodes end one after the other: no deadline is missed there."""
     together = ~np.isnan(log["command_published_ns"]) & ~np.isnan(log["permit_published_ns"])
     if not together.any():
         return log

@@ -1,4 +1,4 @@
-"""Did the robot do what it was told? Judged on the truth, never on the robot's own word.
+"""Did the robot follow its command? Judged on the truth, never on the robot's own estimate.
 
 The command is a constant twist (v, ω), sent from rest. With the log's rows k of one run:
 
@@ -78,7 +78,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Tracking:
-    """What the robot was told, did and believed."""
+    """The command, the true motion and the estimate."""
 
     begin: float
     """s, time of the first steady row."""

@@ -14,8 +14,8 @@ from robot_control.drive.send_plan import SendPlan, parse_plan
 from robot_control.msg import SafetyStatus
 
 PATIENCE = 10.0
-"""s to wait for somebody who listens; then it is sent all the same"""
-PATIENCE_UNTOLD = 2.0
+"""s to wait for a subscriber; then it is sent all the same"""
+SILENT_WAIT = 2.0
 """s of these in which nothing is said about it"""
 LOOK = 0.02
 """s between two looks"""
@@ -31,17 +31,17 @@ def _twist(linear: float, angular: float) -> Twist:
 def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
     """So that the first send is not lost."""
     begin = time.monotonic()
-    told = False
+    warned = False
     while publisher.get_num_connections() == 0 and signals.going_on() and time.monotonic() < begin + PATIENCE:
-        if not told and time.monotonic() > begin + PATIENCE_UNTOLD:
-            told = True
-            rospy.logwarn(f"nobody listens on {publisher.resolved_name} yet: waiting for {PATIENCE:g} s at most")
+        if not warned and time.monotonic() > begin + SILENT_WAIT:
+            warned = True
+            rospy.logwarn(f"no node subscribes to {publisher.resolved_name} yet: waiting for {PATIENCE:g} s at most")
         time.sleep(LOOK)
 
 
 def _say_last(missed: int) -> None:
     """On stdout: rospy's logging may be closed already."""
-    print("cmd_vel: zero" + (f", which {missed} of those who listen did not take" if missed else ""), flush=True)
+    print("cmd_vel: zero" + (f", which {missed} of the subscribers did not take" if missed else ""), flush=True)
 
 
 class SafetyWatch:

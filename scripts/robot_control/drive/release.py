@@ -74,10 +74,10 @@ class Release:
 
     def __init__(self, now: float) -> None:
         self._start = now
-        self._heard_at = now
+        self._received_at = now
         self._phase = Phase.WAITING
         self._provisional = False
-        self._unheard_told = False
+        self._silence_logged = False
         self._gone_since = math.inf
         self._waiting_for = ""
         self._say_at = math.inf
@@ -169,8 +169,8 @@ class Release:
                 "start send_cmd.py again"
             )
             return
-        if age > NO_MONITOR and not self._unheard_told:
-            self._unheard_told = True
+        if age > NO_MONITOR and not self._silence_logged:
+            self._silence_logged = True
             yield Line(f"no safety_status for {NO_MONITOR:g} s: safety_monitor may hang; then the robot brakes")
         no_speed = status.speed_limit < STANDING
         if no_speed and not self._no_speed:

@@ -14,7 +14,7 @@ KINDS = 2
 
 
 def counts_per_turn(samples: Samples) -> float | None:
-    """Of an encoder that is coarser than the default; None: it is not, or cannot be told."""
+    """Of an encoder that is coarser than the default; None: it is not, or the data do not show it."""
     steps = [_step(np.diff(column[~np.isnan(column)])) for column in _columns(samples)]
     known = [step for step in steps if step is not None]
     counts = 2 * np.pi / max(known) if known else np.inf

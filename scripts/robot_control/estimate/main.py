@@ -36,7 +36,7 @@ IMU may have rates of their own. Its columns, under these names or by --columns:
   left, right               rad, angles of the wheels, as their joints report them
   gyro_x, gyro_y, gyro_z    rad/s, in the IMU's own axes; gyro_z alone will do; may be absent
   accel_x, accel_y, accel_z m/s², likewise, +9.81 upwards at rest; may be absent
-A run.csv of this package (telemetry, the demo) is known by its columns: the last run in it is estimated anew.
+A run.csv of this package (telemetry, the demo) is known by its columns: the last run in it is estimated again.
 A bag is read by the stamps of its messages, needs no running ROS, and its topics are found where only one can be meant.
 
 The robot is --urdf, or --wheel-radius with --wheel-base (base_link mid-axle), or what --params says.

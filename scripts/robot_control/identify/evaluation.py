@@ -111,7 +111,7 @@ def evaluate(log: Log, settings: Settings, mass: float | None, source: str) -> O
     said = warnings(found, proposal)
     head = [
         f"Measured on {robot['name']} by identify.py, {found.seconds:.0f} s of motion, {source}.",
-        "Load it and start diff_drive_controller anew: rosparam load FILE",
+        "Load it and restart diff_drive_controller: rosparam load FILE",
         "",
         *table.splitlines(),
         *(f"! {sentence}" for sentence in said),

@@ -27,7 +27,7 @@ REACH = 0.9
 SLOWEST = 0.05
 """m/s at the wheels' rims: below, three levels are no three speeds for dry friction"""
 LONGEST_TURN = 2 * math.pi
-"""rad; who turns further winds up cables"""
+"""rad; a larger turn winds up cables"""
 
 
 class NoRoomError(ValueError):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 SILENCE = 1.0
-"""s without odometry or safety_status (each comes at least once per second); beyond, nobody looks after the robot"""
+"""s without odometry or safety_status (each comes at least once per second); beyond, the robot is not supervised"""
 MARGIN = 0.1
 """m around the plan's way: tracking, odometry and a late command"""
 ANSWER = 2.0
@@ -33,13 +33,13 @@ class Pose:
 
 @dataclass(frozen=True)
 class Look:
-    """What is known of the robot now; None: never heard."""
+    """What is known of the robot now; None: never received."""
 
     pose: Pose | None
     linear: float  # m/s
     angular: float  # rad/s
     pose_age: float  # s
-    state: str  # of SafetyStatus; empty: never heard
+    state: str  # of SafetyStatus; empty: never received
     status_age: float  # s
     sentences: Sequence[str]  # why it is stopped
     missing: Sequence[str]
@@ -96,7 +96,7 @@ def ignored(unanswered: float) -> str:
 
 def _unwatched(look: Look) -> str:
     if look.pose is None or look.pose_age > SILENCE:
-        return f"no odometry for {SILENCE:g} s: nobody knows where the robot is"
+        return f"no odometry for {SILENCE:g} s: the position of the robot is unknown"
     if look.status_age > SILENCE + 1.0:  # published once per second where nothing changes
         return f"no safety_status for {SILENCE + 1.0:g} s: safety_monitor or its link is gone"
     return ""
@@ -118,7 +118,7 @@ def _stopped(look: Look) -> str:
     if look.state in ("READY", "DRIVE"):
         return ""
     why = "; ".join(look.sentences) or (
-        f"waiting for {', '.join(look.missing)}" if look.missing else "no cause is told"
+        f"waiting for {', '.join(look.missing)}" if look.missing else "no cause is reported"
     )
     remedy = "start what is missing" if look.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
     return f"the robot is {look.state}: {why}; {remedy}"

@@ -32,7 +32,7 @@ from robot_control.identify.wheel_law import (
 
 BLOCK = 0.5
 """s; three times the filter"""
-CALM = 0.1
+SLOW_PACE = 0.1
 """Of the RMS acceleration: below, a wheel cruises, and its tyre's give and the angle's counts disturb least"""
 WEIGHINGS = 3
 """Rounds; the weights settle in two"""
@@ -163,20 +163,20 @@ def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
     there = scale > QUIET
     x, z = x[:, there] / scale[there], z[:, there] / scale[there]
     pace = np.hypot(z[:, 0], z[:, 1])
-    calm = pace < CALM * np.sqrt(np.mean(pace**2))
+    slow = pace < SLOW_PACE * np.sqrt(np.mean(pace**2))
     weight = np.ones(len(torque))
     for _ in range(WEIGHINGS):
         weighted = z * weight[:, None]
         inverse = np.linalg.pinv(weighted.T @ x)
         theta = inverse @ (weighted.T @ torque)
         residual = torque - x @ theta
-        for rows in (calm, ~calm):
+        for rows in (slow, ~slow):
             weight[rows] = 1 / max(float(np.mean(residual[rows] ** 2)), TINY) if rows.any() else 1.0
         weight /= weight.mean()
     scores = weighted * residual[:, None]
     sums = np.add.reduceat(scores, np.arange(0, len(scores), block), axis=0)
     variances = np.diag(inverse @ (sums.T @ sums) @ inverse.T)
-    errors = np.sqrt(np.where(variances >= 0, variances, np.nan))  # where the log tells nothing, rounding is left
+    errors = np.sqrt(np.where(variances >= 0, variances, np.nan))  # no information: rounding is left
     values, spread = np.full(len(TERMS), np.nan), np.full(len(TERMS), np.nan)
     values[there], spread[there] = theta / scale[there], errors / scale[there]
     return _Solution(values, spread, residual)
@@ -214,39 +214,39 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
         for name, value, error in zip(TERMS, solution.values, solution.errors, strict=True)
     }
     joints = tuple(wheel.joint for wheel in base.beside(SIDES[side]))
-    who = ", ".join(joints)
+    named = ", ".join(joints)
     left_over = float(np.sqrt(np.mean(solution.residual**2)))
     if left_over > LEFT_OVER * effort:
         raise UnfitError(
-            f"{who}: torque and motion do not fit: {left_over:.3g} N·m of {effort:.3g} N·m RMS are left over, "
+            f"{named}: torque and motion do not fit: {left_over:.3g} N·m of {effort:.3g} N·m RMS are left over, "
             f"{LEFT_OVER:.0%} are allowed; drive on even ground that carries, with nothing in the way, and slower"
         )
     for name, remedy in (("straight", "ramps forwards and back"), ("turning", "turns on the spot, both ways")):
         inertia = found[name]
         if not np.isfinite(inertia.value) or not np.isfinite(inertia.error):
             raise UnfitError(
-                f"{who}: the inertia {name} cannot be told from this log: it holds no {remedy}. identify.py without "
-                "--log drives them"
+                f"{named}: the inertia {name} cannot be determined from this log: it holds no {remedy}. identify.py "
+                "without --log drives them"
             )
         if not inertia.error < INERTIA_ERROR * abs(inertia.value):
             raise UnfitError(
-                f"{who}: the inertia {name} is {inertia:.3g} kg·m², its standard error must be below "
+                f"{named}: the inertia {name} is {inertia:.3g} kg·m², its standard error must be below "
                 f"{INERTIA_ERROR:.0%}: the log holds too little of it; drive more {remedy}, faster or longer"
             )
         if inertia.value <= 0:
             raise UnfitError(
-                f"{who}: the inertia {name} comes out as {inertia:.3g} kg·m², must be > 0: torque and motion "
+                f"{named}: the inertia {name} comes out as {inertia:.3g} kg·m², must be > 0: torque and motion "
                 "contradict each other; look whether the joint's effort has the sign of its motion"
             )
     friction = max(found["damping"].error * fastest, found["friction"].error)
     if not np.isfinite(friction):
         raise UnfitError(
-            f"{who}: the friction cannot be told from this log: drive at several speeds, both ways; identify.py "
-            "without --log does"
+            f"{named}: the friction cannot be determined from this log: drive at several speeds, both ways; "
+            "identify.py without --log does"
         )
     if not friction < max(FRICTION_ERROR * effort, 1e-9):
         raise UnfitError(
-            f"{who}: the friction is known to {friction:.2g} N·m, {FRICTION_ERROR:.0%} of the RMS torque "
+            f"{named}: the friction is known to {friction:.2g} N·m, {FRICTION_ERROR:.0%} of the RMS torque "
             f"{effort:.2g} N·m are needed: drive at several speeds, both ways, longer"
         )
     return SideFit(

@@ -102,11 +102,11 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
 
 
 def _others(robot: RunningRobot, signals: Signals) -> tuple[tuple[str, ...], list[str]]:
-    """Who else may send commands, and which telemetry runs; waits until the robot was heard."""
+    """Other nodes that may send commands, and the telemetry that runs; waits for the first report of the robot."""
     await_all(lambda: robot.listened_to() and robot.look().pose is not None and bool(robot.look().state), signals)
     state = master_state()
     if not robot.listened_to():
-        raise RefusedError(f"nobody listens on {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
+        raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
     return other_senders(state), sorted(nodes_of(state) & {rospy.resolve_name("telemetry")})
 
 

@@ -16,27 +16,27 @@ UNLIKE = 0.2
 def to_table(
     found: Identification, proposal: Proposal, robot: Mapping[str, Any], now: Sequence[Mapping[str, Any]]
 ) -> str:
-    """`robot` as ClosedLoop.robot, `now` as _robot_control.wheel_loops gives them: what is believed so far."""
-    believed = now[0]
+    """`robot` as ClosedLoop.robot, `now` as _robot_control.wheel_loops gives them: the nominal values."""
+    nominal = now[0]
     forward, after = proposal.feed_forward, proposal.after
     rows = [
-        ("", "believed", "measured", "proposed"),
-        ("inertia straight, kg·m²", _number(believed["straight"]), _measured(found.mean("straight")), ""),
-        ("inertia turning, kg·m²", _number(believed["turning"]), _measured(found.mean("turning")), ""),
+        ("", "nominal", "measured", "proposed"),
+        ("inertia straight, kg·m²", _number(nominal["straight"]), _measured(found.mean("straight")), ""),
+        ("inertia turning, kg·m²", _number(nominal["turning"]), _measured(found.mean("turning")), ""),
         ("scrub while turning, N·m", "", _measured(found.mean("scrub")), ""),
         ("delay beyond the bus, cycles", "0", _measured(found.delay), ""),
         ("feed_forward.mass, kg", _number(robot["mass"]), "", _number(forward["mass"])),
         ("feed_forward.yaw_inertia, kg·m²", _number(robot["yaw_inertia"]), "", _number(forward["yaw_inertia"])),
-        ("feed_forward.wheel_inertia, kg·m²", _number(believed["lifted"]), "", _number(forward["wheel_inertia"])),
+        ("feed_forward.wheel_inertia, kg·m²", _number(nominal["lifted"]), "", _number(forward["wheel_inertia"])),
         (
             "feed_forward.wheel_damping, N·m·s/rad",
-            _number(believed["damping"]),
+            _number(nominal["damping"]),
             _measured(found.mean("damping")),
             _number(forward["wheel_damping"]),
         ),
         (
             "feed_forward.wheel_friction, N·m",
-            _number(believed["friction"]),
+            _number(nominal["friction"]),
             _measured(found.mean("friction")),
             _number(forward["wheel_friction"]),
         ),

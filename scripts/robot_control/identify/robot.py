@@ -1,4 +1,4 @@
-"""identify.py's view of a running robot: what it says, what it is told."""
+"""identify.py's view of a running robot: its reports and its commands."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
         if np.ptp(effort) == 0:
             raise UnfitError(
                 f"{joint}: its measured effort is {effort[0]:g} N·m throughout: the driver does not measure it; "
-                "let it report at least the effort that it was told"
+                "let it report at least the commanded effort"
             )
     clamped = driven & (_bits(log, "gate_reasons", CLAMPED) | _bits(log, "command_reasons", SATURATED))
     _refuse(

@@ -6,7 +6,7 @@ inertia J is known (src/control/wheel_loops/feed_forward.h, with its symbols):
     mass = 2h·(J_straight − J)/r²      yaw_inertia = (J_turning − J)·h·b·b'/(2r²)
 
 J cannot be seen on the ground. A robot that was weighed gives it: J = J_straight − mass·r²/(2h). Otherwise J is
-what the controller believes; a rotor that nobody told it of then counts as mass, which drives all the same.
+its nominal value; a rotor that the parameters omit then counts as mass, with the same motion.
 
 Gains: those that wheel_loop_gains.h derives of that robot, if they bear the measured delay and one cycle more, lifted
 wheel included, with a gain margin of two. Else the largest kp·s, ki·s² that do: with s, the loop's pace falls as one.
@@ -32,7 +32,7 @@ STEP = 2**-0.25
 STEPS = 32
 """Down to 1/256 of kp: slower than any robot needs"""
 LIGHTEST = 0.9
-"""Of the smaller inertia on the ground: the most that a wheel itself is believed to have"""
+"""Of the smaller inertia on the ground: the largest share that is attributed to the wheel itself"""
 
 
 class NoGainsError(ValueError):
@@ -71,7 +71,7 @@ def base_of(robot: Mapping[str, Any]) -> Base:
 
 
 def feed_forward(found: Identification, base: Base, lifted: float, mass: float | None) -> dict[str, float]:
-    """`lifted`: kg·m², the wheel's inertia that the controller believes; `mass`: kg, weighed, or None.
+    """`lifted`: kg·m², the nominal inertia of the wheel; `mass`: kg, weighed, or None.
 
     Raises:
         ValueError: the weighed mass alone is more than the wheels feel.

@@ -29,7 +29,7 @@ WINDOW = 0.04
 FILTERS = 4
 """Moving averages on either side"""
 STANDING = 0.5
-"""rad/s below which nobody knows what dry friction does: five times ε of feed_forward.h"""
+"""rad/s below which dry friction is undefined: five times ε of feed_forward.h"""
 SPIN = 1e-6
 """rad/s; a plan below it is straight"""
 
@@ -130,11 +130,11 @@ def regression(signals: Signals, base: Base, period: float, width: int, shift: i
 
 
 def _direction(speed: FloatArray, width: int) -> FloatArray:
-    """−1, +1, or NaN where a wheel stands, nearly stands, or nobody can tell; (rows, sides)."""
+    """−1, +1, or NaN where a wheel stands, nearly stands, or the direction is unknown; (rows, sides)."""
     sign = np.full_like(speed, np.nan)
-    calm = averaged(speed, width, 1)
-    edge = (len(speed) - len(calm)) // 2
-    sign[edge : edge + len(calm)] = np.where(np.abs(calm) > STANDING, np.sign(calm), np.nan)
+    smooth = averaged(speed, width, 1)
+    edge = (len(speed) - len(smooth)) // 2
+    sign[edge : edge + len(smooth)] = np.where(np.abs(smooth) > STANDING, np.sign(smooth), np.nan)
     return sign
 
 

@@ -49,7 +49,7 @@ class Report:
 
     message: str = ""
     values: Mapping[str, str] = field(default_factory=dict)
-    age: float = 0.0  # s since it was heard
+    age: float = 0.0  # s since it was received
 
     def reasons(self, whose: str) -> dict[str, str]:
         """Name → sentence of the values "whose: name"."""
@@ -74,17 +74,17 @@ class Facts:
     measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
 
     def there(self, node: str) -> bool:
-        """Does it speak?"""
+        """Its last report is recent."""
         report = self.reports.get(node)
         return report is not None and report.age < SILENCE
 
-    def heard(self) -> Safety | None:
-        """The monitor's word, unless it is too old to count."""
+    def received(self) -> Safety | None:
+        """The last status of the monitor, unless it is too old to count."""
         fresh = self.safety is not None and self.safety.age < SILENCE
         return self.safety if fresh else None
 
     def value(self, node: str, key: str) -> str:
-        """Of a node that speaks; else empty."""
+        """Of a node that reports; else empty."""
         return self.reports[node].values.get(key, "") if self.there(node) else ""
 
     def reasons(self, node: str, whose: str) -> dict[str, str]:
@@ -92,9 +92,9 @@ class Facts:
         return self.reports[node].reasons(whose) if self.there(node) else {}
 
     def commanders(self) -> tuple[str, ...]:
-        """Who sends commands: by what the controller hears, where it speaks; else by registrations."""
-        heard = self.value(CONTROLLER, "senders")
-        return tuple(heard.split(", ")) if heard else self.senders
+        """Nodes that send commands: as the controller reports, where it runs; else by registrations."""
+        reported = self.value(CONTROLLER, "senders")
+        return tuple(reported.split(", ")) if reported else self.senders
 
     def path(self, name: str) -> str:
         """The absolute name of a topic or service."""
@@ -105,7 +105,7 @@ class Verdict(Enum):
     """Into how many words the answer fits."""
 
     STOPPED = "stopped"  # something stands against motion
-    IDLE = "idle"  # it may move, and nobody tells it to
+    IDLE = "idle"  # it may move, and no velocity command is being received
     MOVING = "moving"
 
 
@@ -115,7 +115,7 @@ class Answer:
 
     verdict: Verdict
     headline: str
-    actions: tuple[tuple[str, str], ...] = ()  # who has to act ("" where anybody may), what to do
+    actions: tuple[tuple[str, str], ...] = ()  # the role that has to act ("" where any may), what to do
     commands: tuple[str, ...] = ()  # lines for a shell
 
 
@@ -130,17 +130,17 @@ def judge(facts: Facts) -> Answer:
 
 def missing_nodes(facts: Facts) -> tuple[str, ...]:
     """Nodes of the loop that are not there; the monitor, which sees their locks, knows it sooner than reports do."""
-    safety = facts.heard()
+    safety = facts.received()
     if safety is None:
         return tuple(node for node in LOOP if not facts.there(node))
     return tuple(node for node in LOOP if node in safety.missing)
 
 
 def senders_in_words(facts: Facts) -> str:
-    """Who publishes on cmd_vel."""
+    """The publishers of cmd_vel."""
     senders = facts.commanders()
     if not senders:
-        return "nobody"
+        return "no node"
     if len(senders) == 1:
         return senders[0]
     refused = "many_senders" in facts.reasons(CONTROLLER, "command")
@@ -159,7 +159,7 @@ def _run(facts: Facts, node: str) -> str:
 
 
 def _nobody(facts: Facts) -> Answer | None:
-    safety = facts.heard()
+    safety = facts.received()
     if safety is None and not facts.master_answers:
         return Answer(
             Verdict.STOPPED,
@@ -197,7 +197,7 @@ def _paused(facts: Facts) -> Answer | None:
 
 
 def _stopped(facts: Facts) -> Answer | None:
-    safety = facts.heard()
+    safety = facts.received()
     if safety is None or safety.state in {"READY", "DRIVE"}:
         return None
     absent = missing_nodes(facts)
@@ -209,10 +209,10 @@ def _stopped(facts: Facts) -> Answer | None:
             (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),) if senders else (),
         )
     if safety.state == "INIT" or not safety.causes:
-        who = ", ".join(safety.missing) or "the first cycles"
+        awaited = ", ".join(safety.missing) or "the first cycles"
         return Answer(
             Verdict.STOPPED,
-            f"Not ready: the monitor waits for {who}.",
+            f"Not ready: the monitor waits for {awaited}.",
             tuple(("integrator", f"start {node}") for node in absent),
             tuple(_run(facts, node) for node in absent),
         )
@@ -230,16 +230,16 @@ def _stopped(facts: Facts) -> Answer | None:
 def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[tuple[str, str]]:
     for node in absent:
         yield "integrator", f"start {node}"
-    told = set()
+    named = set()
     for cause in causes:
         remedy = cause.remedy.removesuffix("then call e_stop_reset").rstrip(", ")
-        if remedy and remedy != "call e_stop_reset" and remedy not in told:
-            told.add(remedy)
+        if remedy and remedy != "call e_stop_reset" and remedy not in named:
+            named.add(remedy)
             yield cause.actor, remedy
     asked = _asked(facts)
     if asked and facts.senders:
         yield "operator", f"stop {', '.join(facts.senders)}: while a motion is asked for, a reset is refused"
-    yield "operator", "then call e_stop_reset" if told or absent or asked else "call e_stop_reset"
+    yield "operator", "then call e_stop_reset" if named or absent or asked else "call e_stop_reset"
 
 
 def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[str]:
@@ -251,7 +251,7 @@ def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Ite
 
 
 def _gate(facts: Facts) -> Answer | None:
-    # What follows from permit or command is told by those; a report is a second old, a permit is not.
+    # Permit and command report what follows from them; a report is a second old, a permit is not.
     theirs = {"permit_brake", "controller_brake", "first_tick", "command_held"}
     reasons = {name: text for name, text in facts.reasons(PLANT, "gate").items() if name not in theirs}
     if facts.value(PLANT, "gate_verdict") != "brake" or not reasons:
@@ -264,7 +264,7 @@ def _gate(facts: Facts) -> Answer | None:
 
 
 def _no_way(facts: Facts) -> Answer | None:
-    safety = facts.heard()
+    safety = facts.received()
     if safety is None or safety.speed_limit >= MOVING or not _asked(facts):
         return None
     remedy = "make the way free, and publish it on clearance in metres"
@@ -311,14 +311,14 @@ def _controller(facts: Facts) -> Answer | None:
             remedy = f"look at {', '.join(facts.senders)}: {remedy}"
         return Answer(
             Verdict.IDLE,
-            f"It may move, but nobody tells it to: {text}.",
+            f"It may move, but no velocity command is being received: {text}.",
             (("operator", remedy),),
             () if facts.senders else (f"rosrun robot_control send_cmd.py{_namespace(facts)}",),
         )
-    if "holding" in reasons and not _told(facts):
+    if "holding" in reasons and not _motion_commanded(facts):
         return Answer(
             Verdict.IDLE,
-            "It may move, but is told to stand: cmd_vel is zero.",
+            "It may move, but the command is to stand: cmd_vel is zero.",
             (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),),
         )
     return None
@@ -332,7 +332,7 @@ def _asked(facts: Facts) -> bool:
     return any(facts.value(CONTROLLER, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
 
 
-def _told(facts: Facts) -> bool:
+def _motion_commanded(facts: Facts) -> bool:
     return facts.limited is not None and max(map(abs, facts.limited)) > MOVING
 
 
@@ -342,10 +342,10 @@ def speeds(pair: tuple[float, float]) -> str:
 
 
 def _moving(facts: Facts) -> Answer:
-    safety = facts.heard()
+    safety = facts.received()
     slow = f", no faster than {safety.speed_limit:.2g} m/s" if safety and safety.speed_limit < float("inf") else ""
     unloaded = facts.value(PLANT, "unloaded_wheels")
-    if unloaded and _told(facts):
+    if unloaded and _motion_commanded(facts):
         return Answer(
             Verdict.MOVING,
             f"Its wheels turn and may not move it: {unloaded}.",
@@ -354,10 +354,10 @@ def _moving(facts: Facts) -> Answer:
         )
     if facts.measured is not None and max(map(abs, facts.measured)) > MOVING:
         return Answer(Verdict.MOVING, f"It moves: {speeds(facts.measured)}{slow}.")
-    if _told(facts) and facts.limited is not None:
+    if _motion_commanded(facts) and facts.limited is not None:
         return Answer(
             Verdict.MOVING,
-            f"It is told to move ({speeds(facts.limited)}) and has not begun to{slow}.",
+            f"It is commanded to move ({speeds(facts.limited)}) and has not begun to{slow}.",
             (("", "if it stays so: look at ground, motors and torque limits"),),
         )
     return Answer(Verdict.IDLE, f"It may move{slow}; nothing stands against it, and nothing is asked of it.")

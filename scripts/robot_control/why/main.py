@@ -25,11 +25,11 @@ FRAME = 0.25
 MASTER_PERIOD = 1.0
 """s between two questions to the master"""
 PATIENCE = 2.5
-"""s to wait for everybody's word before the first answer; each node reports once per second"""
+"""s to wait for a report of every node before the first answer; each node reports once per second"""
 
 
 class Listener:
-    """What was heard last."""
+    """The last message of each topic."""
 
     def __init__(self) -> None:
         self.namespace = rospy.get_namespace().rstrip("/") or "/"
@@ -42,23 +42,23 @@ class Listener:
         self._limited: tuple[float, float, float] | None = None  # m/s, rad/s, when
         self._measured: tuple[float, float, float] | None = None
         self.strangers = 0  # how often in a row the master did not know this program
-        rospy.Subscriber("safety_status", SafetyStatus, self._hear_status)
-        rospy.Subscriber("/diagnostics", DiagnosticArray, self._hear_diagnostics)
-        rospy.Subscriber("cmd_vel_out", TwistStamped, self._hear_limited, queue_size=1)
-        rospy.Subscriber("odom", Odometry, self._hear_odometry, queue_size=1)
+        rospy.Subscriber("safety_status", SafetyStatus, self._receive_status)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
+        rospy.Subscriber("cmd_vel_out", TwistStamped, self._receive_limited, queue_size=1)
+        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
 
-    def _hear_status(self, message: SafetyStatus) -> None:
+    def _receive_status(self, message: SafetyStatus) -> None:
         self._status, self._status_at = message, time.monotonic()
 
-    def _hear_diagnostics(self, message: DiagnosticArray) -> None:
+    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
             report = Report(status.message, {pair.key: pair.value for pair in status.values})
             self._reports["/" + status.name.lstrip("/")] = (time.monotonic(), report)
 
-    def _hear_limited(self, message: TwistStamped) -> None:
+    def _receive_limited(self, message: TwistStamped) -> None:
         self._limited = (message.twist.linear.x, message.twist.angular.z, time.monotonic())
 
-    def _hear_odometry(self, message: Odometry) -> None:
+    def _receive_odometry(self, message: Odometry) -> None:
         self._measured = (message.twist.twist.linear.x, message.twist.twist.angular.z, time.monotonic())
 
     def ask_master(self) -> None:
@@ -72,7 +72,7 @@ class Listener:
         self.strangers = 0 if known else self.strangers + 1
 
     def complete(self) -> bool:
-        """Everybody of the loop has spoken."""
+        """Every node of the loop has reported."""
         facts = self.facts()
         return facts.safety is not None and all(facts.there(node) for node in LOOP)
 
@@ -80,7 +80,7 @@ class Listener:
         """As of now."""
         now = time.monotonic()
         state = self._state or ([], [], [])
-        reports = {name: Report(heard.message, heard.values, now - at) for name, (at, heard) in self._reports.items()}
+        reports = {name: Report(last.message, last.values, now - at) for name, (at, last) in self._reports.items()}
         return Facts(
             master=self.master.uri,
             master_answers=self._state is not None,
@@ -88,7 +88,7 @@ class Listener:
             safety=self._safety(now),
             reports={below(self.namespace, name): report for name, report in reports.items()},
             registered=frozenset(below(self.namespace, name) for name in nodes_of(state)),
-            elsewhere=other_robots(self.namespace, (name for name, heard in reports.items() if heard.age < SILENCE)),
+            elsewhere=other_robots(self.namespace, (name for name, report in reports.items() if report.age < SILENCE)),
             senders=senders_of(state[0], map(rospy.resolve_name, COMMAND_TOPICS), rospy.get_name()),
             seers=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
             limited=_fresh(self._limited, now),

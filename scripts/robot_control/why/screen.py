@@ -73,7 +73,7 @@ Rows = Iterator[tuple[str, str, str]]
 
 def _rows(facts: Facts, answer: Answer, look: Look) -> Rows:
     yield from _to_do(answer)
-    safety = facts.heard()
+    safety = facts.received()
     if safety is not None:
         yield from _safety(safety, look)
     yield from _nodes(facts)
@@ -113,7 +113,7 @@ def _nodes(facts: Facts) -> Rows:
     absent = missing_nodes(facts)
     words = []
     for node in LOOP:
-        if node in absent or (not facts.there(node) and facts.heard() is None):
+        if node in absent or (not facts.there(node) and facts.received() is None):
             words.append(f"{node} MISSING")
         elif not facts.there(node):
             words.append(f"{node} silent")
@@ -160,7 +160,7 @@ def _circumstances(facts: Facts) -> Rows:
     lost = facts.reasons(ESTIMATOR, "estimate").values()
     if lost:
         yield "odometry", "; ".join(map(bare, lost)), "33"
-    if not facts.master_answers and facts.heard() is not None:
+    if not facts.master_answers and facts.received() is not None:
         yield (
             "master",
             f"{facts.master} does not answer: what is connected goes on, nothing new connects; start the nodes again",

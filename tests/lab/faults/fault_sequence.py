@@ -2,7 +2,7 @@
 
     0 … driven       the sender asks for the legs of the drive; faults, emergency stops, resets come in between
     … rested         the sender says zero, or nothing; what fails may go on failing
-    … released       what fails is healed or not; a reset is asked for, nobody sends
+    … released       faults end or do not; a reset is requested, no command is sent
 
 Drawing is a pure function of the seed and of the robots that are there.
 """
@@ -62,7 +62,7 @@ class FaultSequence:
     interval: float  # s, at which the sender repeats itself
     driven: float
     falls_silent: bool  # after `driven`: nothing more is sent; else zero is
-    heals: bool  # before the release
+    faults_end: bool  # before the release
     events: list[Event] = field(default_factory=list)
 
     @property
@@ -97,13 +97,13 @@ def draw_sequence(seed: int, robots: Sequence[str]) -> FaultSequence:
         interval=float(random.choice([0.02, 0.1, 0.5])),
         driven=driven,
         falls_silent=bool(random.random() < 0.5),
-        heals=bool(random.random() < 0.5),
+        faults_end=bool(random.random() < 0.5),
         events=sorted(events, key=lambda event: event.time),
     )
 
 
 def _faults(random: np.random.Generator, driven: float) -> list[Event]:
-    """0 … 4 faults; every second one heals, after 5 ms … 2 s."""
+    """0 … 4 faults; every second one ends, after 5 ms … 2 s."""
     events = []
     for _ in range(random.integers(5)):
         component = str(random.choice(COMPONENTS))
@@ -115,7 +115,7 @@ def _faults(random: np.random.Generator, driven: float) -> list[Event]:
 
 
 def _operator(random: np.random.Generator, driven: float) -> list[Event]:
-    """Every third drive is stopped, every second one reset, on the way, too; one plant in twenty is set down anew."""
+    """Every third drive is stopped, every second one reset, on the way, too; one plant in twenty is reset."""
     events = []
     if random.random() < 1 / 3:
         events.append(Event(random.uniform(0.3, driven), "e_stop"))

@@ -16,7 +16,7 @@ What no brake can do, is not asked for. A motor that is off, intermittent or giv
 (drivers/motors/motor_faults.h): while one does, s may grow by what the slope gives a free robot, g sin 5° t, and by
 GARBAGE_SPEED, and the robot need not come to rest. A monitor that errs (garbage, wrong) gives permits by itself: then
 only what the gate answers for is judged: "permit", "machine", that "brake" ends at rest, and "rest" once it is well. A
-blocked wheel, or a motor that gives what it was not told, jolts the robot harder than any brake: its tilt is not the
+blocked wheel, or a motor that gives a wrong torque, jolts the robot harder than any brake: its tilt is not the
 brake's. A drive that is slow or delayed learns of the brake LATE_DRIVE later.
 """
 
@@ -196,7 +196,7 @@ class _Court:
             for row in range(first, end):
                 if not moving[row - reset]:
                     continue
-                yield self._violation("release", row, f"{self._speed[row]:.3f} m/s though nobody asked for it")
+                yield self._violation("release", row, f"{self._speed[row]:.3f} m/s without a command")
 
     def tilt(self) -> Iterator[Violation]:
         """Upright, but after a motor jolted it."""

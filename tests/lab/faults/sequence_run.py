@@ -50,7 +50,7 @@ def run_sequence(sequence: FaultSequence, loop: ClosedLoop) -> Log:
         player.run_until(event.time)
         player.act(event)
     player.run_until(sequence.rested)
-    if sequence.heals:
+    if sequence.faults_end:
         for component in {event.component for event in sequence.events if event.action == "inject"}:
             loop.inject_fault(component, "ok")
     loop.e_stop_reset()

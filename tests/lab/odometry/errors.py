@@ -1,4 +1,4 @@
-"""How robot and sensors of a seed differ from what the estimator is told: the priors of the odometry benchmark.
+"""How robot and sensors of a seed differ from the parameters of the estimator: the priors of the odometry benchmark.
 
     wheel radii    left (1 + e), right (1 − e),  e ~ N(0, 0.5 %): their mean, which wheels and IMU cannot tell, is exact
     wheel base     1 + N(0, 2 %)
@@ -25,7 +25,7 @@ STREAM = 1  # of the random numbers: the scenarios' are others
 
 @dataclass(frozen=True)
 class Errors:
-    """Relative: 0.01 is 1 % more than believed."""
+    """Relative: 0.01 is 1 % more than nominal."""
 
     left_radius: float
     right_radius: float

@@ -8,7 +8,7 @@
 ω is the gyro's rate about base z, integrated by trapezoids; position by chords, x += Δs cos(θ + Δθ/2), whose error
 goes with Δθ³ and vanishes at 1 kHz (Borenstein, Everett & Feng, "Where am I?", 1996, section 1.3.1).
 
-b̂ is a scalar Kalman filter that is told the true noise densities σ, s of the gyro (sensor_errors.h) and the true prior:
+b̂ is a scalar Kalman filter with the true noise densities σ, s of the gyro (sensor_errors.h) and the true prior:
 
     while it moves                             P += s² Δt
     after T s of standstill, ω̄ its mean        K = P/(P + σ²/T)    b̂ += K (ω̄ − b̂)    P −= K P
@@ -73,14 +73,14 @@ def standing(recording: Recording) -> NDArray[np.bool_]:
 
 
 def bias(recording: Recording, still: NDArray[np.bool_]) -> Array:
-    """(N,) rad/s: what is believed of the gyro's bias about z, after each standstill anew."""
+    """(N,) rad/s: the estimated bias of the gyro about z, renewed after each standstill."""
     period = _period(recording)
     edge = round(STILL / period)
     estimate, variance, last = 0.0, GYRO_BIAS**2, 0
-    believed = np.zeros(len(still))
+    biases = np.zeros(len(still))
     bounds = np.flatnonzero(np.diff(still.astype(np.int8), prepend=0, append=0))
     for begin, end in zip(bounds[::2], bounds[1::2], strict=True):
-        believed[last:end] = estimate
+        biases[last:end] = estimate
         if end - begin <= 2 * edge:
             last = end
             continue
@@ -90,8 +90,8 @@ def bias(recording: Recording, still: NDArray[np.bool_]) -> Array:
         estimate += gain * (samples.mean() - estimate)
         variance -= gain * variance
         last = end
-    believed[last:] = estimate
-    return believed
+    biases[last:] = estimate
+    return biases
 
 
 METHODS = {

@@ -16,7 +16,7 @@ velocity, both in base axes:
     slip = |rim − ground| / max(|rim|, |ground|, 0.1 m/s)
 
 The ground speed is that along the wheel's plane, upwards too: a wheel that rolls over a kerb does not slip. What slides
-sideways is not told by it. Below 0.1 m/s a difference of 2 cm/s is 20 %: a wheel at rest does not slip by a count.
+sideways does not show in it. Below 0.1 m/s a difference of 2 cm/s is 20 %: a wheel at rest does not slip by a count.
 """
 
 from __future__ import annotations
