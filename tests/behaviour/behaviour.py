@@ -27,8 +27,8 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
+from lab.robot_corpus import DIFFBOT, urdf_of
 from robot_control import ClosedLoop
-from robot_control.robots import DIFFBOT, urdf_of
 
 SUMS = Path(__file__).with_name("sums.json")
 ROBOTS = (DIFFBOT, "create_2", "jackal", "pmb2", "scout_v2")

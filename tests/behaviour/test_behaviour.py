@@ -2,7 +2,7 @@
 
 import behaviour
 import pytest
-from robot_control.robots import DIFFBOT
+from lab.robot_corpus import DIFFBOT
 
 INTEL = "vendor_id\t: GenuineIntel\ncpu family\t: 6\nflags\t\t: fpu avx2 sse fma\n"
 

@@ -175,9 +175,7 @@ def _taken(loop: ClosedLoop, draw_one: Callable[[], dict[str, Any]]) -> tuple[di
     return {}, DRAWS
 
 
-def _exceeds(
-    loop: ClosedLoop, driven: Log, stopping: Log, command: tuple[float, float], rim: float
-) -> dict[str, str]:
+def _exceeds(loop: ClosedLoop, driven: Log, stopping: Log, command: tuple[float, float], rim: float) -> dict[str, str]:
     faults = {}
     cycles = max(1, round(EXCESS_TIME / loop.period))
     fastest = abs(command[0]) + rim * abs(command[1])
