@@ -14,7 +14,8 @@ import argparse
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +23,16 @@ from robot_control.common.files import write_text
 
 from lab import markdown
 from lab.faults.fault_sequence import ALL_RUNS
+from lab.runs import seed_programs
+from lab.runs.address import check_address
+from lab.runs.runner import Processes, Runner
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
 # Only when they are named.
 JUDGED = ("campaign", "driving", "limiter", "release", "drive", "odometry", "hostile", "tuning")
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000}  # sequences; a minute each on two cores
+ON_CLUSTERS = ("campaign", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
 def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
@@ -39,50 +44,74 @@ def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
     return result
 
 
-def tell(text: str) -> None:
+def say(text: str) -> None:
     """Progress, and what went wrong."""
     print(text, file=sys.stderr, flush=True)
 
 
-def run_seeds(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    """Those that need nothing but their seeds."""
+@contextmanager
+def opened_runner(given: argparse.Namespace) -> Iterator[Runner]:
+    """The processes of this machine, or the workers of the cluster that --scheduler names.
+
+    Raises:
+        RuntimeError: there is no such cluster, or it must not be used.
+    """
+    if given.scheduler is None:
+        yield Processes()
+        return
+    from lab.runs.cluster import Cluster
+
+    with Cluster(given.scheduler, insecure=given.insecure, tls=given.tls) as cluster:
+        yield cluster
+
+
+def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict[str, Any], bool]:
+    """The benchmarks of `ON_CLUSTERS` but the programs among them."""
     if name == "campaign":
         from lab.faults import campaign
 
-        return campaign.bench(given.first, given.runs or ALL_RUNS, tell)
-    from lab import hostile
+        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner)
+    if name == "driving":
+        from lab.drives import normal_driving
 
-    return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, tell)
+        return normal_driving.bench(given.share, say, runner)
+    if name == "odometry":
+        from lab.odometry import bench as odometry
+
+        count = given.runs or odometry.SEEDS
+        return odometry.bench(given.first, count, say, plots=given.plots, runner=runner)
+    from lab import tuning
+
+    return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, say, runner)
+
+
+def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    """One of `SEED_PROGRAMS`: it uses all processors by itself, or runs in blocks on the workers of a cluster."""
+    runs = given.runs or SEED_PROGRAMS[name]
+    if given.scheduler is None:
+        result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs))
+    else:
+        with opened_runner(given) as runner:
+            result = seed_programs.run_seeds(name, given.first, runs, say, runner)
+    return result, all(row["value"] == 0 for row in result["rows"] if row["name"] == "sequences failed")
 
 
 def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     """What NAME measured, and whether that is as it has to be."""
-    if name in {"campaign", "hostile"}:
-        return run_seeds(name, given)
-    if name == "driving":
-        from lab.drives import normal_driving as driving
-
-        return driving.bench(given.share, tell)
     if name in SEED_PROGRAMS:
-        result = run_program(given.programs / f"bench_{name}", str(given.first), str(given.runs or SEED_PROGRAMS[name]))
-        return result, all(row["value"] == 0 for row in result["rows"] if row["name"] == "sequences failed")
+        return run_seed_program(name, given)
+    if name in ON_CLUSTERS:
+        with opened_runner(given) as runner:
+            return run_many(name, given, runner)
+    if name == "hostile":
+        from lab import hostile
+
+        return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, say)
     if name == "drive":
         from lab.drives import drive_promises
 
-        return drive_promises.bench(tell)
-    if name in {"odometry", "tuning"}:
-        return _run_over_robots(name, given)
+        return drive_promises.bench(say)
     return run_program(given.programs / f"bench_{name}", given.params), True
-
-
-def _run_over_robots(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    if name == "odometry":
-        from lab.odometry import bench as odometry_bench
-
-        return odometry_bench.bench(given.first, given.runs or odometry_bench.SEEDS, tell, plots=given.plots)
-    from lab import tuning
-
-    return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, tell)
 
 
 def to_table(result: dict[str, Any]) -> str:
@@ -138,6 +167,10 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
+    cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
+    cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this machine alone")
+    cluster.add_argument("--tls", type=Path, metavar="FOLDER", help="of ca.pem, cert.pem, key.pem; default: as Dask")
+    cluster.add_argument("--insecure", action="store_true", help="allow tcp:// beyond the loopback: plain text")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
     parser.add_argument("--markdown", action="store_true", help="write the tables of docs/measurements.md")
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
@@ -147,6 +180,14 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     if unknown:
         parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(NAMES)}")
     given.names = given.names or list(MEASURED)
+    alone = [name for name in given.names if name not in ON_CLUSTERS]
+    if given.scheduler is not None and alone:
+        parser.error(f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can")
+    if given.scheduler is not None:
+        try:
+            check_address(given.scheduler, insecure=given.insecure)
+        except ValueError as error:
+            parser.error(str(error))
     return given
 
 
@@ -157,7 +198,7 @@ def main() -> int:
     for name in given.names:
         try:
             result, good = run(name, given)
-        except (OSError, subprocess.CalledProcessError, json.JSONDecodeError) as error:
+        except (OSError, RuntimeError, subprocess.CalledProcessError, json.JSONDecodeError) as error:
             print(f"scripts/bench: {name}: {error}", file=sys.stderr)
             failed += 1
             continue

@@ -15,7 +15,6 @@ same limits and derived gains: those limits ask for more than tyres or suspensio
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -28,6 +27,7 @@ from robot_control.closed_loop import ClosedLoop, Log
 from robot_control.common.cause_names import causes_in
 
 from lab.robot_corpus import DIFFBOT, robot_names, urdf_of
+from lab.runs.runner import Processes, Runner
 
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
 ALL_RUNS = 100_000
@@ -221,21 +221,23 @@ def _one(job: tuple[str, int]) -> Tuned:
     return carry_out(*job)
 
 
-def bench(first: int, runs: int, tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(
+    first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None
+) -> tuple[dict[str, Any], bool]:
     """`runs` sets over all robots that are there, from seed `first` on, and whether none was amiss."""
     began = time.monotonic()
     there = [robot for robot in ROBOTS if robot in robot_names()]
     jobs = [(there[i % len(there)], first + i // len(there)) for i in range(runs)]
     driven = refused = amiss = stopped = of_limits = 0
-    with multiprocessing.Pool() as pool:
-        for outcome in pool.imap_unordered(_one, jobs, chunksize=8):
-            driven += bool(outcome.values)
-            refused += outcome.refused
-            stopped += bool(outcome.causes)
-            of_limits += bool(outcome.faults_of_limits)
-            if outcome.faults:
-                amiss += 1
-                tell(str(outcome))
+    runner = runner or Processes()
+    for outcome in runner.outcomes(_one, jobs, say, chunk=8):
+        driven += bool(outcome.values)
+        refused += outcome.refused
+        stopped += bool(outcome.causes)
+        of_limits += bool(outcome.faults_of_limits)
+        if outcome.faults:
+            amiss += 1
+            say(str(outcome))
     figures = [
         ("sets driven", driven, ""),
         ("sets refused", refused, ""),

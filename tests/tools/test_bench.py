@@ -2,6 +2,8 @@ import sys
 
 import pytest
 from lab import bench
+from lab.runs import seed_programs
+from lab.runs.runner import Processes
 
 ROW = '{"name": "gate step", "value": 88.5, "unit": "ns", "reference": 59, "reference_name": "kernel", "ratio": 1.5}'
 
@@ -88,3 +90,45 @@ print(json.dumps({{"bench": "limiter", "rows": rows}}))""",
     )
     monkeypatch.setattr(sys, "argv", ["bench", "limiter", "--runs", "7", "--programs", str(tmp_path)])
     assert bench.main() == code
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["step", "campaign"], "step cannot run on a cluster"),
+        (["campaign"], ""),
+    ],
+)
+def test_only_what_runs_many_seeds_runs_on_a_cluster(capsys, arguments, complaint):
+    command = [*arguments, "--scheduler", "tls://far.example:8786"]
+    if not complaint:
+        assert bench.parse(command).scheduler == "tls://far.example:8786"
+        return
+    with pytest.raises(SystemExit):
+        bench.parse(command)
+    assert complaint in capsys.readouterr().err
+
+
+def test_a_cluster_in_plain_text_is_refused_before_anything_is_measured(capsys):
+    with pytest.raises(SystemExit):
+        bench.parse(["campaign", "--scheduler", "tcp://192.168.1.5:8786"])
+    assert "--insecure" in capsys.readouterr().err
+    assert bench.parse(["campaign", "--scheduler", "tcp://192.168.1.5:8786", "--insecure"]).insecure
+
+
+def test_blocks_of_seeds_of_a_program_add_up(tmp_path, monkeypatch):
+    text = """import json, sys
+first, runs = map(int, sys.argv[1:])
+if first <= 7 < first + runs:
+    print("seed 7: curvature", file=sys.stderr)
+row = {"unit": "", "reference": 0, "reference_name": "none", "ratio": 0}
+failed = int(first <= 7 < first + runs)
+rows = [row | {"name": "sequences", "value": runs}, row | {"name": "sequences failed", "value": failed}]
+print(json.dumps({"bench": "limiter", "rows": rows + [row | {"name": "speed", "value": 1}]}))"""
+    program(tmp_path, text, "bench_limiter")
+    monkeypatch.setattr(seed_programs, "PROGRAMS", tmp_path)
+    monkeypatch.setattr(seed_programs, "BLOCKS", 3)
+    lines = []
+    result = seed_programs.run_seeds("limiter", 5, 10, lines.append, Processes(1))
+    assert [row["value"] for row in result["rows"][:2]] == [10, 1]
+    assert lines == ["seed 7: curvature"]

@@ -148,3 +148,19 @@ def test_a_rostest_is_selected_by_its_file_or_its_folder():
 
 def test_several_names_select_each_its_own():
     assert selected("signals", "start") == ["test_signals", ROSTESTS[2]]
+
+
+def listed_packages(sections):
+    """What scripts/setup would install, with the names of the sections that its arguments select."""
+    command = """cd "$0"/..; sections=$1; eval "$(sed -n '/^listed()/,/^}/p' scripts/setup)"; listed"""
+    done = shell("bash", "-euc", command, str(SCRIPTS), sections)
+    assert done.returncode == 0, done.stderr
+    return set(done.stdout.split())
+
+
+def test_packages_of_a_section_are_installed_only_where_they_are_asked_for():
+    plain = listed_packages("")
+    assert {"cmake", "python3-pytest"} <= plain
+    assert listed_packages(" [linters]") - plain == {"clang-format", "clang-tidy"}
+    assert listed_packages(" [cluster]") - plain == {"python3-distributed"}
+    assert listed_packages(" [linters] [cluster]") - plain == {"clang-format", "clang-tidy", "python3-distributed"}

@@ -7,7 +7,6 @@ python3 -m lab.drives.normal_driving --share 0.1     # a tenth of the two hours
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -20,6 +19,7 @@ from robot_control.common.cause_names import causes_in
 
 from lab.drives.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
 from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
+from lab.runs.runner import Processes, Runner
 
 RATES = {1000: 960.0, 100: 240.0, 2000: 120.0}  # Hz → s in each scene, of the project's own robot
 SLOW = 500  # Hz; below, the loops are too weak for bumps: wheels stand before them for a second, stalled indeed
@@ -105,16 +105,16 @@ def carry_out(drive: Drive) -> Driven:
     return Driven(drive, causes, sorted(warnings), float(log["distance"][0]))
 
 
-def bench(share: float, tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
-    """The result, and whether nothing was amiss; `tell` gets what was."""
+def bench(share: float, say: Callable[[str], None], runner: Runner | None = None) -> tuple[dict[str, Any], bool]:
+    """The result, and whether nothing was amiss; `say` receives what was."""
     began = time.monotonic()
     drives = all_drives(share)
     driven = []
-    with multiprocessing.Pool() as pool:
-        for outcome in pool.imap_unordered(carry_out, drives):
-            driven.append(outcome)
-            if outcome.causes or outcome.warnings:
-                tell(str(outcome))
+    runner = runner or Processes()
+    for outcome in runner.outcomes(carry_out, drives, say):
+        driven.append(outcome)
+        if outcome.causes or outcome.warnings:
+            say(str(outcome))
     simulated = sum(drive.seconds for drive in drives)
     figures = [
         ("simulated", simulated / 3600, "h"),

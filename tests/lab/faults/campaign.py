@@ -8,11 +8,10 @@ A seed gives the same bits on the same build and robots, alone or among others, 
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -24,8 +23,7 @@ from lab.faults.fault_sequence import ALL_RUNS, ANGULAR_LIMIT, LINEAR_LIMIT, dra
 from lab.faults.sequence_judge import RULES, judge
 from lab.faults.sequence_run import make_loop, run_sequence
 from lab.robot_corpus import robot_names
-
-REPORT_EVERY = 20.0  # s
+from lab.runs.runner import Processes, Runner
 
 
 @dataclass(frozen=True)
@@ -85,26 +83,14 @@ def run_seed(seed: int, robots: Sequence[str]) -> Outcome:
     )
 
 
-def outcomes(seeds: Sequence[int], robots: Sequence[str], processes: int | None = None) -> Iterator[Outcome]:
-    """In the order of the seeds; one process per processor where `processes` is None."""
-    run = partial(run_seed, robots=robots)
-    with multiprocessing.Pool(processes) as pool:
-        yield from pool.imap(run, seeds, chunksize=4)
-
-
-def campaign(seeds: Sequence[int], tell: Callable[[str], None], processes: int | None = None) -> Tally:
-    """Runs all seeds; `tell` gets every failure, and the progress every `REPORT_EVERY` seconds."""
+def campaign(seeds: Sequence[int], say: Callable[[str], None], runner: Runner | None = None) -> Tally:
+    """Runs all seeds; `say` receives every failure, and the progress."""
     tally = Tally()
-    began = last = time.monotonic()
-    for outcome in outcomes(seeds, robot_names(), processes):
+    runner = runner or Processes()
+    for outcome in runner.outcomes(partial(run_seed, robots=robot_names()), seeds, say, chunk=4):
         tally.add(outcome)
         if outcome.violations:
-            tell(outcome.text)
-        now = time.monotonic()
-        if now - last > REPORT_EVERY:
-            last = now
-            left = (now - began) / tally.runs * (len(seeds) - tally.runs)
-            tell(f"{tally.runs} of {len(seeds)}, {len(tally.failed)} failed, {left / 60:.0f} min left")
+            say(outcome.text)
     return tally
 
 
@@ -126,12 +112,14 @@ def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
     }
 
 
-def bench(first: int, runs: int, tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(
+    first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None
+) -> tuple[dict[str, Any], bool]:
     """The result, and whether every sequence was survived."""
     began = time.monotonic()
     if runs == 1:
-        tell(draw_sequence(first, robot_names()).describe())
-    tally = campaign(range(first, first + runs), tell)
+        say(draw_sequence(first, robot_names()).describe())
+    tally = campaign(range(first, first + runs), say, runner)
     return result_of(tally, time.monotonic() - began), not tally.failed
 
 

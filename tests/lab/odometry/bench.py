@@ -6,10 +6,9 @@ python3 -P -m lab.odometry.bench --runs 3 --only slip,waves --plots FOLDER
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,46 +19,30 @@ from lab.odometry.judge import Run, run
 from lab.odometry.promises import all_promises, of
 from lab.odometry.scenarios import SCENARIOS
 from lab.odometry.table import table
+from lab.runs.runner import Processes, Runner
 
 SEEDS = 50
 LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors have something to do to the end
-REPORT_EVERY = 20.0  # s
 
 
 def all_runs(
     seeds: Sequence[int],
     scenarios: Sequence[str],
-    tell: Callable[[str], None],
+    say: Callable[[str], None],
     *,
     pictured: int | None = None,
     cache: Path | None = None,
-    processes: int | None = None,
+    runner: Runner | None = None,
 ) -> list[Run]:
     """In the order of scenarios and seeds; `pictured`: the seed whose runs keep what a plot needs; `cache`: folder of
     recordings, taken where they are there.
     """
     order = sorted(scenarios, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else 9)
     work = [(scenario, seed) for scenario in order for seed in seeds]
-    began = last = time.monotonic()
-    runs: list[Run] = []
-    for done in _outcomes(work, partial(_one, pictured=pictured, cache=cache), processes):
-        runs.append(done)
-        now = time.monotonic()
-        if now - last > REPORT_EVERY:
-            last = now
-            tell(f"{len(runs)} of {len(work)} runs, {now - began:.0f} s")
+    runner = runner or Processes()
+    runs = list(runner.outcomes(partial(_one, pictured=pictured, cache=cache), work, say))
     numbers = {name: number for number, name in enumerate(SCENARIOS)}
     return sorted(runs, key=lambda each: (numbers[each.scenario], each.seed))
-
-
-def _outcomes(
-    work: Sequence[tuple[str, int]], one: Callable[[tuple[str, int]], Run], processes: int | None
-) -> Iterator[Run]:
-    if processes == 1:
-        yield from map(one, work)
-        return
-    with multiprocessing.Pool(processes) as pool:
-        yield from pool.imap_unordered(one, work)
 
 
 def _one(work: tuple[str, int], pictured: int | None, cache: Path | None) -> Run:
@@ -109,26 +92,27 @@ def _plain(name: str, value: float, unit: str) -> dict[str, Any]:
 def bench(
     first: int,
     count: int,
-    tell: Callable[[str], None],
+    say: Callable[[str], None],
     *,
     plots: Path | None = None,
     cache: Path | None = None,
     scenarios: Sequence[str] = tuple(SCENARIOS),
+    runner: Runner | None = None,
 ) -> tuple[dict[str, Any], bool]:
-    """The result, and whether every promise is kept; `tell` gets progress and what is not."""
+    """The result, and whether every promise is kept; `say` receives progress and what is not."""
     began = time.monotonic()
     for folder in (plots, cache):
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     pictured = None if plots is None else first
-    runs = all_runs(range(first, first + count), scenarios, tell, pictured=pictured, cache=cache)
+    runs = all_runs(range(first, first + count), scenarios, say, pictured=pictured, cache=cache, runner=runner)
     if plots is not None:
         from lab.odometry.plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
 
         draw_all(runs, plots)
     broken = [promise for promise in all_promises(runs) if not promise.kept]
     for promise in broken:
-        tell(str(promise))
+        say(str(promise))
     return result_of(runs, time.monotonic() - began), not broken
 
 
