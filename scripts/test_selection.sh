@@ -22,7 +22,7 @@ has_ctest_entry() {  # build folder, NAME
   ! grep -q '^Total Tests: 0$' <<<"$entries"
 }
 
-has_pytest_case() {  # NAME; a file that cannot be read may hold it: the run itself will tell
+has_pytest_case() {  # NAME; a file that cannot be read may hold it: the run itself shows it
   local status=0 none=5
   $PYTHON -m pytest -q --collect-only "${PYTEST_FOLDERS[@]}" -k "$(pytest_expression "$1")" \
     >/dev/null 2>&1 </dev/null || status=$?

@@ -49,7 +49,7 @@ class Estimator:
             wheel_radius and wheel_base together are the robot: two wheels, base_link in the middle of their axle.
         imu_position: (x, y, z) of the IMU in base_link, m; overrides the URDF's.
         imu_orientation: of the IMU in base_link: (roll, pitch, yaw) in rad, turned about the fixed axes x, y, z in
-            this order as in a URDF, or a quaternion (x, y, z, w); three numbers or four tell which. Overrides the
+            this order as in a URDF, or a quaternion (x, y, z, w); by their number, three or four. Overrides the
             URDF's.
         encoder_counts: of one turn of a wheel, gear included, all edges counted; sets
             `state_estimator.encoder_noise` to 2π / encoder_counts / √12 rad. None: that parameter holds, 4096 counts

@@ -219,7 +219,7 @@ def _launched() -> Iterator[list[Target]]:
             os.environ.update(before)
 
 
-def bench(first: int, runs: int, tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(first: int, runs: int, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
     """The figures, and whether every node lives."""
     with _launched() as targets:
         pids = {target.name: pid_of(target) for target in targets}
@@ -233,7 +233,7 @@ def bench(first: int, runs: int, tell: Callable[[str], None]) -> tuple[dict[str,
         while done < runs and not wrong:
             part, wrong = run(targets, first + done, min(runs - done, runs // 20 or 1), alive)
             done += part
-            tell(f"{done} of {runs} connections, {time.monotonic() - begin:.0f} s")
+            say(f"{done} of {runs} connections, {time.monotonic() - begin:.0f} s")
         mute = []
         for target in targets:
             with contextlib.suppress(OSError):
@@ -242,7 +242,7 @@ def bench(first: int, runs: int, tell: Callable[[str], None]) -> tuple[dict[str,
             mute.append(f"{target.name} does not answer any more")
         wrong += [] if wrong else mute
     for text in wrong:
-        tell(text)
+        say(text)
     row = {"unit": "", "reference": 0, "reference_name": "none", "ratio": 0}
     rows = [{"name": "connections", "value": done, **row}, {"name": "nodes ended or mute", "value": len(wrong), **row}]
     return {"bench": "hostile", "rows": rows}, not wrong

@@ -322,7 +322,7 @@ def test_where_no_way_is_free_clearance_is_told_and_not_a_zero_on_cmd_vel(drivin
     facts = saying(driving, CONTROLLER, command__holding="standing with zero command")
     facts = replace(facts, safety=replace(facts.safety, speed_limit=0.0), limited=(0.0, 0.0), measured=(0.0, 0.0))
     assert judge(facts).verdict is Verdict.STOPPED
-    assert judge(facts).headline == "No way is free: clearance leaves it no speed."
+    assert judge(facts).headline == "The path is not free: clearance leaves it no speed."
     assert judge(facts).commands == ("rostopic pub -1 /clearance std_msgs/Float64 inf",)
     assert "/lidar does" in text(replace(facts, seers=("/lidar",)))
 

@@ -96,7 +96,7 @@ def parse_options(arguments: Sequence[str]) -> Options:
     add("--turn-speed", type=positive, default=0.6, help="rad/s at most (default %(default)s)")
     add("--manual", action="store_true", help="another sender drives the robot, or a person pushes it: nothing is sent")
     add("--truth", action="store_true", help="simulation: ground_truth/odom is the tape")
-    add("--yes", action="store_true", help="asks for no permission: the way is free")
+    add("--yes", action="store_true", help="asks for no permission: the path is free")
     add("--measured", type=positive, nargs="+", default=[], metavar="M", help="answers for the straight drives, m")
     add("--returned", type=place, nargs="+", default=[], metavar="X,Y", help="answers for the squares, m")
     add("--out", type=Path, default=Path("calibrated.yaml"), help="(default %(default)s)")

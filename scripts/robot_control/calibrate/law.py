@@ -152,8 +152,8 @@ def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels
         raise NotCalibratedError("nothing was measured: drive a distance, or squares both ways")
     if len(ways) == 1:
         raise NotCalibratedError(
-            "squares of one direction cannot tell unequal wheels from a wrong base (Borenstein & Feng 1996): drive "
-            "them both ways"
+            "squares of one direction cannot distinguish unequal wheels from a wrong base (Borenstein & Feng 1996): "
+            "drive them both ways"
         )
     index = np.flatnonzero(free)
     values = np.ones(3)

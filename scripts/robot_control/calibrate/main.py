@@ -57,7 +57,7 @@ STANDSTILL = 0.5
 ESTIMATOR = "state_estimator"
 MARKS = (
     "Mark on the floor where the middle between the wheels stands, and which way the robot points (a string along the "
-    "axle, and one ahead). Each run begins where the robot stands: set it back whenever the way is no longer free."
+    "axle, and one ahead). Each run begins where the robot stands: set it back whenever the path is no longer free."
 )
 REFUSALS = (RefusedError, NotCalibratedError, NoAnswerError, ParameterError, RobotError, OSError, ValueError)
 
@@ -78,7 +78,7 @@ class Drive:
         beside = margin(self.ahead)
         if -beside <= ahead <= self.ahead + beside and -self.right - beside <= left <= self.left + beside:
             return ""
-        return f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, off its way"
+        return f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, off its path"
 
 
 @dataclass
@@ -99,7 +99,7 @@ class Wizard:
         options = self.options
         self.lengths, self.places = list(options.measured), list(options.returned)
         print(space(options), flush=True)
-        self._permission("Is the way free, and a hand at the emergency stop?")
+        self._permission("Is the path free, and a hand at the emergency stop?")
         straights: list[Straight] = []
         squares: list[Square] = []
         if options.distance > 0:
@@ -129,9 +129,9 @@ class Wizard:
     def _square(self, number: int, *, clockwise: bool) -> Square:
         side = self.options.side
         left, right = (0.0, side) if clockwise else (side, 0.0)
-        way = "clockwise" if clockwise else "counter-clockwise"
+        direction = "clockwise" if clockwise else "counter-clockwise"
         drive = Drive("square", square(side, clockwise=clockwise), side, left, right)
-        path, truth = self._driven(drive, f"square {number + 1} of {self.options.runs}, {way}")
+        path, truth = self._driven(drive, f"square {number + 1} of {self.options.runs}, {direction}")
         if self.options.truth:
             measured = truth
         elif self.places:

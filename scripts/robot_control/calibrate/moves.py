@@ -3,7 +3,7 @@
 A pilot is asked with every pose and answers with a velocity. It need not be exact: what was driven is measured, not
 what was planned. So it is simple: proportional, with the cruise speed as a ceiling.
 
-    on a line  v = clip(creep + k·(rest of the way)),  ω = −k_θ·(heading error) − k_y·(m to the left of the line)
+    on a line  v = clip(creep + k·(rest of the path)),  ω = −k_θ·(heading error) − k_y·(m to the left of the line)
     corner     ω = ±clip(creep_ω + k·|rest of the turn|),  v = 0
 """
 

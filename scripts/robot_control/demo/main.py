@@ -215,7 +215,7 @@ def _seconds(text: str) -> float:
 
 
 def _folder(text: str) -> Path:
-    """Makes it and writes in it: a permission bit alone does not tell whether that succeeds (read-only, /proc)."""
+    """Makes it and writes in it: a permission bit alone does not show whether that succeeds (read-only, /proc)."""
     folder = Path(text).resolve()
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -126,7 +126,7 @@ def _draw_path(axes: Axes, time: FloatArray, rows: Estimate, spans: list[tuple[f
 
 
 def _along(distance: FloatArray) -> IntArray:
-    """Rows that share the way evenly, the last one among them."""
+    """Rows that share the path evenly, the last one among them."""
     marks = np.linspace(distance[0], distance[-1], ELLIPSES + 1)[1:]
     rows: IntArray = np.unique(np.minimum(np.searchsorted(distance, marks), distance.size - 1))
     return rows

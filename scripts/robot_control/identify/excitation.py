@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 LEVELS = (1 / 3, 2 / 3, 1.0)
-"""Of the fastest speed: three tell viscous from dry friction"""
+"""Of the fastest speed: three distinguish viscous from dry friction"""
 CRUISE = 0.8
 """s at the speed of a move; five times the filters of the fit, so that friction is seen without inertia"""
 PAUSE = 0.2
@@ -56,11 +56,11 @@ class AxisLimits:
         """s from rest to `speed`, at most."""
         return speed / self.acceleration + self.acceleration / self.jerk
 
-    def fastest_within(self, way: float) -> float:
-        """The largest speed at which a move takes no more than `way`; 0: none."""
+    def fastest_within(self, distance: float) -> float:
+        """The largest speed at which a move takes no more than `distance`; 0: none."""
         square = 1 / (2 * self.acceleration) + 1 / (2 * self.deceleration)
         linear = CRUISE + (self.acceleration + self.deceleration) / (2 * self.jerk)
-        return (math.sqrt(linear**2 + 4 * square * way) - linear) / (2 * square)
+        return (math.sqrt(linear**2 + 4 * square * distance) - linear) / (2 * square)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 SILENCE = 1.0
 """s without odometry or safety_status (each comes at least once per second); beyond, the robot is not supervised"""
 MARGIN = 0.1
-"""m around the plan's way: tracking, odometry and a late command"""
+"""m around the planned path: tracking, odometry and a late command"""
 ANSWER = 2.0
 """s of motion asked for after which a robot that stands has refused"""
 STANDING = 0.01

@@ -153,7 +153,7 @@ class _Solution:
 def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
     """Instrumental variables for one side; `block` rows. A term that is not in the log has value and error NaN.
 
-    Cruising and accelerating rows each weigh by the inverse of their own variance, which the residuals tell: with equal
+    Cruising and accelerating rows each weigh by the inverse of their own variance, from the residuals: with equal
     weights what the tyres do in ramps passes for friction, 5 % of it.
     """
     torque = np.concatenate([part.torque[:, side] for part in parts])

@@ -102,7 +102,7 @@ class Facts:
 
 
 class Verdict(Enum):
-    """Into how many words the answer fits."""
+    """The answer in one word."""
 
     STOPPED = "stopped"  # something stands against motion
     IDLE = "idle"  # it may move, and no velocity command is being received
@@ -120,8 +120,8 @@ class Answer:
 
 
 def judge(facts: Facts) -> Answer:
-    """The answer: of all that stands against motion, what has to be mended first."""
-    for look in (_nobody, _paused, _stopped, _gate, _no_way, _controller):
+    """The answer: of all that stands against motion, what has to be repaired first."""
+    for look in (_no_nodes, _paused, _stopped, _gate, _no_path, _controller):
         answer = look(facts)
         if answer is not None:
             return answer
@@ -158,7 +158,7 @@ def _run(facts: Facts, node: str) -> str:
     return f"rosrun robot_control {node}{namespace}"
 
 
-def _nobody(facts: Facts) -> Answer | None:
+def _no_nodes(facts: Facts) -> Answer | None:
     safety = facts.received()
     if safety is None and not facts.master_answers:
         return Answer(
@@ -263,16 +263,16 @@ def _gate(facts: Facts) -> Answer | None:
     )
 
 
-def _no_way(facts: Facts) -> Answer | None:
+def _no_path(facts: Facts) -> Answer | None:
     safety = facts.received()
     if safety is None or safety.speed_limit >= MOVING or not _asked(facts):
         return None
-    remedy = "make the way free, and publish it on clearance in metres"
+    remedy = "clear the path, and publish it on clearance in metres"
     if facts.seers:
         remedy += f": {', '.join(facts.seers)} {'does' if len(facts.seers) == 1 else 'do'}"
     return Answer(
         Verdict.STOPPED,
-        "No way is free: clearance leaves it no speed.",
+        "The path is not free: clearance leaves it no speed.",
         (("operator", remedy),),
         () if facts.seers else (f"rostopic pub -1 {facts.path('clearance')} std_msgs/Float64 inf",),
     )

@@ -79,7 +79,7 @@ def promises(robot: str) -> Iterator[Figure]:
         yield from part(robot)
 
 
-def bench(tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
     """The result, and whether every promise is kept by every robot that is here."""
     rows, absent, good = [], [], True
     for robot in ROBOTS:
@@ -89,7 +89,7 @@ def bench(tell: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
         for figure in promises(robot):
             good = good and figure.good
             if not figure.good:
-                tell(f"{robot}: {figure.name} {figure.value:.4g} {figure.unit}, allowed {figure.bound:.4g}")
+                say(f"{robot}: {figure.name} {figure.value:.4g} {figure.unit}, allowed {figure.bound:.4g}")
             ratio = float(np.abs(figure.value) / figure.bound)
             row = {"name": f"{robot} {figure.name}", "value": figure.value, "unit": figure.unit}
             rows.append(row | {"reference": figure.bound, "reference_name": "what is allowed", "ratio": ratio})

@@ -1,6 +1,6 @@
 """How robot and sensors of a seed differ from the parameters of the estimator: the priors of the odometry benchmark.
 
-    wheel radii    left (1 + e), right (1 − e),  e ~ N(0, 0.5 %): their mean, which wheels and IMU cannot tell, is exact
+    wheel radii    left (1 + e), right (1 − e),  e ~ N(0, 0.5 %): their mean, which wheels and IMU do not show, is exact
     wheel base     1 + N(0, 2 %)
     gyro           bias N(0, 0.1 °/s), each axis; scale 1 + U(−0.1 %, 0.1 %), every axis the same
     all else       the plant's own defaults: encoder of 4096 counts, noise, walks and accelerometer bias of a BMI088

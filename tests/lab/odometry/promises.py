@@ -1,7 +1,7 @@
 """What the odometry promises, each with its measured figure: `scripts/bench odometry`.
 
 The bounds are those of the project's requirements. They hold for robots and sensors as errors.py draws them,
-in the drives of scenarios.py, judged as judge.py says; "with n seeds" where fewer can tell less.
+in the drives of scenarios.py, judged as judge.py says; "with n seeds" where fewer prove less.
 """
 
 from __future__ import annotations
