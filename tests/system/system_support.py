@@ -137,8 +137,10 @@ def refusal(
 
 
 class Robot:
-    """Four nodes in a namespace, and what they publish. `prefix`: a command that runs each of them. `with_faults`: those
-    into whose outputs faults can be injected."""
+    """Four nodes in a namespace, and what they publish.
+
+    `prefix`: a command that runs each of them. `with_faults`: the programs into whose outputs faults can be injected.
+    """
 
     def __init__(self, namespace: str = "", prefix: Sequence[str] = (), *, with_faults: bool = False) -> None:
         self.namespace = namespace

@@ -117,7 +117,11 @@ SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "parameters/parameters.h"}  
 def test_nothing_simulated_is_in_the_product():
     def rule(path):
         name = str(path.relative_to(SRC))
-        if folder(path) in SIMULATED | {"simulation", "python"} or name in SIMULATORS or name.endswith("_with_faults.cpp"):
+        if (
+            folder(path) in SIMULATED | {"simulation", "python"}
+            or name in SIMULATORS
+            or name.endswith("_with_faults.cpp")
+        ):
             return
         yield from (other for other in includes(path) if other.split("/")[0] in SIMULATED)
 
