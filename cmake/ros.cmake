@@ -21,10 +21,10 @@ function(robot_control_ros target)
   add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp)
 endfunction()
 
-# robot_control_node(NAME): src/nodes/NAME.cpp, started with `rosrun robot_control NAME`.
+# robot_control_node(NAME LIBRARY…): src/nodes/NAME.cpp, started with `rosrun robot_control NAME`.
 function(robot_control_node name)
   add_executable(${name} ${name}.cpp)
-  target_link_libraries(${name} PRIVATE rc_bridge)
+  target_link_libraries(${name} PRIVATE ${ARGN})
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
   install(TARGETS ${name} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -3,5 +3,6 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "diff_drive_controller", make_diff_drive_controller);
+  return run_node(argc, argv, "diff_drive_controller",
+                  [](const Setup& setup) { return make_diff_drive_controller(setup); });
 }

@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "safety_monitor", make_safety_monitor);
+  return run_node(argc, argv, "safety_monitor", [](const Setup& setup) { return make_safety_monitor(setup); });
 }

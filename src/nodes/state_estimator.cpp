@@ -3,5 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "state_estimator", make_state_estimator);
+  return run_node(argc, argv, "state_estimator", [](const Setup& setup) { return make_state_estimator(setup); });
 }

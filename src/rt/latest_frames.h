@@ -32,7 +32,7 @@ inline constexpr std::size_t kFrameSlots = 8;
 inline constexpr int kReadTries = 4;
 
 inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
-inline constexpr std::uint64_t kLayoutVersion = 2;
+inline constexpr std::uint64_t kLayoutVersion = 3;
 
 /// First bytes of every shared object: of a LatestFrames as of a Ring. `magic` to `retired` keep their places
 /// in every layout version, so that a process can judge and retire an object that it cannot read.
@@ -43,6 +43,7 @@ struct ChannelHead {
   std::uint64_t slots;                              ///< number of frames that fit
   std::atomic<std::uint64_t> retired;               ///< 1: the name now belongs to another object, map anew
   std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
+  std::atomic<std::uint64_t> decorated;             ///< 1: the writer of this channel has an OutputDecorator
   std::atomic<std::uint64_t> robot_hash;            ///< RobotModel::hash of the writer's robot; sensors channel only
   std::array<std::atomic<char>, 256> robot_source;  ///< where that robot was read, zero-terminated
 };
@@ -78,14 +79,11 @@ class FrameWriter {
   /// Seals the frame, stores it and wakes all readers. One futex call, nothing else.
   void publish(Frame& frame) noexcept {
     seal(frame);
-    store(frame);
-    wake();
+    publish_sealed(frame);
   }
 
-  /// The same with a checksum that is wrong: what an injected fault publishes.
-  void publish_broken(Frame& frame) noexcept {
-    seal(frame);
-    frame.head.checksum = ~frame.head.checksum;
+  /// The same of a frame that is sealed already.
+  void publish_sealed(const Frame& frame) noexcept {
     store(frame);
     wake();
   }

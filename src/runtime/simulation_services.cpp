@@ -25,6 +25,14 @@ std::string before(std::uint64_t cycle) {
   return "before cycle " + std::to_string(cycle);
 }
 
+struct FaultyNode {
+  FaultComponent component;
+  const char* node;
+};
+constexpr FaultyNode kFaultyNodes[]{{FaultComponent::kController, "diff_drive_controller"},
+                                    {FaultComponent::kEstimator, "state_estimator"},
+                                    {FaultComponent::kMonitor, "safety_monitor"}};
+
 ServiceAnswer ended() {
   return {false, "the run has ended"};
 }
@@ -39,8 +47,13 @@ std::uint64_t mint_number() {
 }
 
 SimulationServices::SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
-                                       std::function<std::vector<std::string>()> missing)
-    : hold_(hold), driver_(driver), cycle_(cycle), missing_(std::move(missing)) {}
+                                       std::function<std::vector<std::string>()> missing,
+                                       std::function<bool(FaultComponent)> takes_faults)
+    : hold_(hold),
+      driver_(driver),
+      cycle_(cycle),
+      missing_(std::move(missing)),
+      takes_faults_(std::move(takes_faults)) {}
 
 /// With `asking_` held.
 std::uint64_t SimulationServices::ask() {
@@ -146,7 +159,17 @@ ServiceAnswer SimulationServices::reset() {
 
 ServiceAnswer SimulationServices::inject_fault(const std::string& component, const std::string& kind) {
   const std::lock_guard lock(asking_);
-  if (std::string problem = set_fault(asked_.faults, component, kind); !problem.empty()) return {false, problem};
+  InjectedFaults faults = asked_.faults;
+  if (std::string problem = set_fault(faults, component, kind); !problem.empty()) return {false, problem};
+  for (const FaultyNode& node : kFaultyNodes) {
+    const FaultKind wanted = fault_of(faults, node.component);
+    if (wanted == fault_of(asked_.faults, node.component) || wanted == FaultKind::kOk) continue;
+    if (takes_faults_(node.component)) continue;
+    const std::string name = node.node;
+    return {false, component + ": not possible in this " + name +
+                       "; launch sim.launch with faults:=true, which starts " + name + "_with_faults"};
+  }
+  asked_.faults = faults;
   ask();
   return {true, "injected: " + names_of(asked_.faults)};
 }

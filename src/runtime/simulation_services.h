@@ -26,9 +26,11 @@ std::uint64_t mint_number();
 
 class SimulationServices {
  public:
-  /// `missing`: who the loop waits for, by node name; any thread asks.
+  /// Any thread asks: `missing`, which nodes the loop waits for; `takes_faults`, whether a node's program is one into
+  /// which faults can be injected.
   SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
-                     std::function<std::vector<std::string>()> missing);
+                     std::function<std::vector<std::string>()> missing,
+                     std::function<bool(FaultComponent)> takes_faults);
 
   /// Paused, the machine does not move and stamps do not advance; the others see the last frame again, as paused.
   /// Time that passed meanwhile is neither caught up nor slip.
@@ -42,7 +44,8 @@ class SimulationServices {
   /// succeed where the machine does not start; then the old run goes on, with the driver's fault.
   ServiceAnswer reset();
 
-  /// From the next cycle on; words of names.h, "ok" heals. Unknown ones are answered with the list.
+  /// From the next cycle on; words of names.h, "ok" heals. Unknown ones are answered with the list. A fault of a node
+  /// is refused unless the program that runs is the one for it.
   ServiceAnswer inject_fault(const std::string& component, const std::string& kind);
 
  private:
@@ -61,6 +64,7 @@ class SimulationServices {
   Driver& driver_;
   DriverCycle& cycle_;
   std::function<std::vector<std::string>()> missing_;
+  std::function<bool(FaultComponent)> takes_faults_;
   std::mutex asking_;     ///< guards `asked_`
   std::mutex exclusive_;  ///< held by step and reset
   LoopHold::Asked asked_;

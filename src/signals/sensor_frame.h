@@ -69,7 +69,7 @@ struct SensorFrame {
   double battery_current = 0;    ///< A, positive when discharging
   GateReport gate;               ///< of tick k-1
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
-  InjectedFaults injected{};     ///< of a simulator; a node that finds itself in it fails as told
+  InjectedFaults injected{};     ///< of a simulator, for the log and the programs NODE_with_faults
   std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
   std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or set down anew. Outlives a reset.
 };

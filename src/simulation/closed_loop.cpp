@@ -4,6 +4,7 @@
 #include <string>
 
 #include "drivers/mujoco_plant.h"
+#include "faults/faulty_frame_output.h"
 #include "runtime/cycles/controller_cycle.h"
 #include "runtime/cycles/driver_cycle.h"
 #include "runtime/cycles/estimator_cycle.h"
@@ -49,12 +50,14 @@ struct ClosedLoop::Parts {
         plant(robot, given.plant, given.loop.period()),
         driver(plant, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, given.loop.period_ns(),
                nullptr, gate_parameters(given)),
-        estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
+        estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr,
+                  faulty_estimator_output()),
         controller(given.controller, robot, given.loop.period(),
-                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr),
+                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr,
+                   faulty_controller_output()),
         monitor(safety_limits(given, robot), robot, given.loop.period(),
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
-                load_script(given.loop.command_script), nullptr),
+                load_script(given.loop.command_script), nullptr, faulty_monitor_output()),
         retuning(given, robot, controller.tunings()) {
     plant.start();
     driver.set_boot(kBoot);

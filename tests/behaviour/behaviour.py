@@ -65,6 +65,8 @@ cycle,linear,angular,event
 5000,nan,0,
 6500,0,-1,
 """
+LAUNCH = "sim.launch clock:=lockstep"
+LAUNCH_WITH_FAULTS = f"{LAUNCH} faults:=true"
 LAUNCH_LIMIT = 120.0  # s; the run takes 5 s on an idle machine
 
 Sum = Callable[[], str]
@@ -127,7 +129,7 @@ def drive_with_faults(robot: str, seed: int) -> str:
     return recorder.digest()
 
 
-def launch_lockstep() -> str:
+def launch_lockstep(faults: str = "false") -> str:
     """Sum of the `run.csv` that `sim.launch clock:=lockstep` writes.
 
     Raises:
@@ -142,6 +144,7 @@ def launch_lockstep() -> str:
         free.close()
         arguments = {
             "clock": "lockstep",
+            "faults": faults,
             "seed": HEALTHY_SEED,
             "cycles": LAUNCH_CYCLES,
             "command_script": script,
@@ -175,7 +178,7 @@ def launch_lockstep() -> str:
 
 def runs() -> dict[str, Sum]:
     """Name of each run, and what gives its sum."""
-    result: dict[str, Sum] = {"sim.launch clock:=lockstep": launch_lockstep}
+    result: dict[str, Sum] = {LAUNCH: launch_lockstep, LAUNCH_WITH_FAULTS: lambda: launch_lockstep("true")}
     for robot in ROBOTS:
         result[healthy_name(robot)] = lambda robot=robot: drive_healthy(robot, HEALTHY_SEED)  # type: ignore[misc]
         result[faulty_name(robot)] = lambda robot=robot: drive_with_faults(robot, FAULTY_SEED)  # type: ignore[misc]

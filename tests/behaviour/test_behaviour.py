@@ -31,6 +31,11 @@ def test_two_runs_give_one_sum_and_another_seed_another():
     assert first != behaviour.drive_healthy(DIFFBOT, 2)
 
 
+def test_the_nodes_with_faults_behave_as_those_of_the_robot_while_none_is_injected():
+    sums = behaviour.recorded()[1]
+    assert sums[behaviour.LAUNCH_WITH_FAULTS] == sums[behaviour.LAUNCH]
+
+
 def test_every_run_has_a_recorded_sum():
     assert set(behaviour.recorded()[1]) == set(behaviour.runs())
 

@@ -100,7 +100,9 @@ TEST_F(BusCleanup, TakesAPermitThatCannotBeReadForALatchedOne) {
     Permit permit;
     permit.head.run = 7;
     permit.head.cycle = 4;
-    FrameWriter<Permit>(channel.memory()).publish_broken(permit);
+    seal(permit);
+    permit.head.checksum = ~permit.head.checksum;
+    FrameWriter<Permit>(channel.memory()).publish_sealed(permit);
   }
   EXPECT_THAT(removed(), Not(Contains(other_.name())));
   std::filesystem::resize_file(object_file(other_.name(), ChannelNames::kPermit), 100);

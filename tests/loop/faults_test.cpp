@@ -69,7 +69,7 @@ class Faults : public ::testing::Test {
 };
 
 TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
-  FourNodes(parameters_, robot_, true).run(kPatience, [&](DriverProcess& driver) {
+  FourNodes(parameters_, robot_, true, true).run(kPatience, [&](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     services.set_pause(true);
     ServiceAnswer answer;
@@ -105,6 +105,24 @@ TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
   }
   writer.close();
   EXPECT_TRUE(content(folder_.path() / "log" / "run.csv") == content(folder_.path() / "one.csv"));
+}
+
+TEST_F(Faults, OfTheMachineAloneCanBeInjectedWhileTheNodesAreThoseOfTheRobot) {
+  FourNodes(parameters_, robot_, true).run(kPatience, [&](DriverProcess& driver) {
+    SimulationServices& services = *driver.services();
+    services.set_pause(true);
+    ServiceAnswer answer;
+    for (int patience = 0; patience < 10 && !answer.success; ++patience) answer = services.step(1);  // 2 s each
+    ASSERT_TRUE(answer.success) << answer.message;
+    for (const std::string_view name : kFaultComponentNames) {
+      const std::string component(name);
+      const bool is_node = component == "controller" || component == "estimator" || component == "monitor";
+      answer = services.inject_fault(component, "off");
+      EXPECT_EQ(answer.success, !is_node) << answer.message;
+      EXPECT_EQ(answer.message.find("faults:=true") != std::string::npos, is_node) << answer.message;
+      EXPECT_TRUE(services.inject_fault(component, "ok").success) << component;
+    }
+  });
 }
 
 }  // namespace

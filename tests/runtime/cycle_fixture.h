@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "faults/faulty_frame_output.h"
 #include "hal/driver.h"
 #include "runtime/cycles/controller_cycle.h"
 #include "runtime/cycles/driver_cycle.h"
@@ -71,8 +72,11 @@ inline CommandScript script_with_zero() {
   return script;
 }
 
+/// The nodes of a robot, or those into whose outputs faults can be injected.
+enum class Nodes { kOfTheRobot, kWithFaults };
+
 struct Loop {
-  Loop() {
+  explicit Loop(Nodes nodes = Nodes::kOfTheRobot) : with_faults(nodes == Nodes::kWithFaults) {
     driver.set_boot(99);
     driver.begin_run(1);
     restart_estimator();
@@ -82,20 +86,20 @@ struct Loop {
 
   /// What a killed and restarted node is: a new object on the channels that its predecessor left.
   void restart_estimator() {
-    estimator =
-        std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer, nullptr);
+    estimator = std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer,
+                                                 nullptr, with_faults ? faulty_estimator_output() : nullptr);
   }
   void restart_controller() {
     controller = std::make_unique<ControllerCycle>(
         DriveControllerParameters{}, robot, kPeriod,
         ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, script_with_zero(),
-        nullptr);
+        nullptr, with_faults ? faulty_controller_output() : nullptr);
   }
   void restart_monitor() {
     monitor = std::make_unique<MonitorCycle>(
         SafetyParameters{}, robot, kPeriod,
         MonitorCycle::Channels{&sensors.reader, &state.reader, &command.reader, permit.writer}, CommandScript(),
-        nullptr);
+        nullptr, with_faults ? faulty_monitor_output() : nullptr);
   }
 
   /// One cycle of all four.
@@ -126,6 +130,7 @@ struct Loop {
   }
   const GateReport& gate() const { return driver.trace().gate; }
 
+  bool with_faults;
   RobotModel robot = two_wheels();
   StandingMachine machine;
   TestChannel<SensorFrame> sensors;

@@ -1,4 +1,4 @@
-/// Estimator, controller and monitor that fail as told: what each publishes, and what the others make of it.
+/// Faults injected into estimator, controller and monitor: what each publishes, and how the other nodes react.
 
 #include <gtest/gtest.h>
 
@@ -55,11 +55,40 @@ class NodeFaults : public ::testing::Test {
     return limit + 1;
   }
 
-  Loop loop;
+  Loop loop{Nodes::kWithFaults};
   CommandFrame command_;
   StateFrame state_;
   Permit permit_;
 };
+
+TEST(NodesOfTheRobot, PublishTheSameFramesWhateverIsInjected) {
+  Loop healthy;
+  Loop injected;
+  injected.machine.faults.fill(FaultKind::kGarbage);
+  for (Loop* any : {&healthy, &injected}) {
+    any->step();
+    any->controller->inbox().store({.twist = kForward, .count = 1});
+  }
+  for (int i = 0; i < 100; ++i) {
+    healthy.step();
+    injected.step();
+    EXPECT_EQ(healthy.newest_state().head.checksum, injected.newest_state().head.checksum) << i;
+    EXPECT_EQ(healthy.newest_command().head.checksum, injected.newest_command().head.checksum) << i;
+    EXPECT_EQ(healthy.newest_permit().head.checksum, injected.newest_permit().head.checksum) << i;
+  }
+  EXPECT_EQ(healthy.newest_permit().action, PermitAction::kDrive) << "or nothing was shown";
+}
+
+TEST(NodesOfTheRobot, AnnounceThatTheyTakeNoFaults) {
+  const Loop of_the_robot;
+  EXPECT_FALSE(decorated(of_the_robot.state.reader));
+  EXPECT_FALSE(decorated(of_the_robot.command.reader));
+  EXPECT_FALSE(decorated(of_the_robot.permit.reader));
+  const Loop with_faults(Nodes::kWithFaults);
+  EXPECT_TRUE(decorated(with_faults.state.reader));
+  EXPECT_TRUE(decorated(with_faults.command.reader));
+  EXPECT_TRUE(decorated(with_faults.permit.reader));
+}
 
 TEST_F(NodeFaults, OffIsATokenInEveryCycle) {
   for (const FaultComponent node : kNodes) {
@@ -105,7 +134,7 @@ TEST_F(NodeFaults, StuckIsOldContentUnderANewHead) {
 }
 
 TEST_F(NodeFaults, DelayedIsTheContentOfTenCyclesAgo) {
-  Loop healthy;
+  Loop healthy(Nodes::kWithFaults);
   start(healthy);
   inject(FaultComponent::kController, FaultKind::kDelayed);
   std::vector<double> efforts;
@@ -119,7 +148,7 @@ TEST_F(NodeFaults, DelayedIsTheContentOfTenCyclesAgo) {
 }
 
 TEST_F(NodeFaults, AWrongControllerTurnsEveryEffortRound) {
-  Loop healthy;
+  Loop healthy(Nodes::kWithFaults);
   start(healthy);
   inject(FaultComponent::kController, FaultKind::kWrong);
   for (int i = 0; i < 20; ++i) {
@@ -134,7 +163,7 @@ TEST_F(NodeFaults, AWrongEstimatorMirrorsTheMotion) {
   state_.pose_odom.position = {1, 2, 0};
   state_.twist_base = {.linear = {0.5, 0, 0}, .angular = {0, 0, 0.2}};
   FaultRandom random;
-  spoil(FaultKind::kWrong, state_, random);
+  distort(FaultKind::kWrong, state_, random);
   EXPECT_EQ(state_.pose_odom.position, (Vector3{-1, -2, 0}));
   EXPECT_EQ(state_.twist_base.linear, (Vector3{-0.5, 0, 0}));
   EXPECT_EQ(state_.twist_base.angular, (Vector3{0, 0, -0.2}));
@@ -165,7 +194,7 @@ TEST_F(NodeFaults, GarbageIsBrokenUnboundedOrRandom) {
 }
 
 TEST_F(NodeFaults, AreTheSameInEveryRun) {
-  Loop other;
+  Loop other(Nodes::kWithFaults);
   start(other);
   inject(FaultComponent::kController, FaultKind::kGarbage);
   inject(other, FaultComponent::kController, FaultKind::kGarbage);
@@ -179,7 +208,7 @@ TEST_F(NodeFaults, AreTheSameInEveryRun) {
 }
 
 TEST_F(NodeFaults, OfANewRunBeginAnew) {
-  Loop other;
+  Loop other(Nodes::kWithFaults);
   inject(FaultComponent::kController, FaultKind::kGarbage);
   loop.steps(50);
   inject(other, FaultComponent::kController, FaultKind::kGarbage);

@@ -15,6 +15,8 @@ from system_support import LIMIT, MONITOR, PLANT, RobotTestCase, wait_for
 
 
 class ServicesTest(RobotTestCase):
+    with_faults = True
+
     @classmethod
     def setUpClass(cls) -> None:
         super().setUpClass()

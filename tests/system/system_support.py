@@ -137,11 +137,15 @@ def refusal(
 
 
 class Robot:
-    """Four nodes in a namespace, and what they publish. `prefix`: a command that runs each of them."""
+    """Four nodes in a namespace, and what they publish.
 
-    def __init__(self, namespace: str = "", prefix: Sequence[str] = ()) -> None:
+    `prefix`: a command that runs each of them. `with_faults`: the programs into whose outputs faults can be injected.
+    """
+
+    def __init__(self, namespace: str = "", prefix: Sequence[str] = (), *, with_faults: bool = False) -> None:
         self.namespace = namespace
         self.prefix = prefix
+        self.with_faults = with_faults
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
         self.joints: JointState | None = None
@@ -166,7 +170,8 @@ class Robot:
     def start(self, *names: str) -> None:
         """Starts these nodes, or all four."""
         for name in names or LOOP:
-            self.nodes[name] = Program(name, namespace=self.namespace, prefix=self.prefix)
+            program = f"{name}_with_faults" if self.with_faults and name != PLANT else name
+            self.nodes[name] = Program(program, namespace=self.namespace, prefix=self.prefix)
 
     def end(self) -> None:
         """Ends all nodes and removes their shared memory: a master's port is never seen again."""
@@ -299,11 +304,12 @@ class RobotTestCase(unittest.TestCase):
 
     robot: Robot
     prefix: Sequence[str] = ()
+    with_faults = False
 
     @classmethod
     def setUpClass(cls) -> None:
         init_test_node(cls.__name__)
-        cls.robot = Robot(prefix=cls.prefix)
+        cls.robot = Robot(prefix=cls.prefix, with_faults=cls.with_faults)
         cls.robot.start()
 
     @classmethod

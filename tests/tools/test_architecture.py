@@ -23,16 +23,18 @@ MAY_INCLUDE = {
     "control": {"signals", "robot"},
     "safety": {"signals", "robot"},
     "hal": {"signals", "rt", "robot"},
-    "drivers": {"signals", "hal", "description", "robot", "rt", "files"},
+    # Simulated faults: of the machine in drivers, of a node's output around its cycle.
+    "faults": {"signals", "rt", "hal"},
+    "drivers": {"signals", "faults", "hal", "description", "robot", "rt", "files"},
     # The schema fills in the parameter structs that the laws define.
     "parameters": {"signals", "rt", "files", "robot", "estimation", "control", "safety", "hal", "drivers"},
     "telemetry": {"signals"},
     # What each node does in one cycle, and the process around it.
     "runtime": {"signals", "rt", "files", "robot", "parameters", "estimation", "control", "safety", "hal", "telemetry"},
-    "simulation": CORE | {"telemetry"},
-    "python": CORE | {"telemetry", "simulation"},
+    "simulation": CORE | {"faults", "telemetry"},
+    "python": CORE | {"faults", "telemetry", "simulation"},
     "bridge": CORE | {"telemetry"},
-    "nodes": CORE | {"telemetry", "bridge"},
+    "nodes": CORE | {"faults", "telemetry", "bridge"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
 MUJOCO = re.compile(r"^mujoco")
@@ -109,6 +111,24 @@ def test_only_drivers_see_mujoco():
     assert violations(rule) == []
 
 
+SIMULATED = {"drivers", "faults"}
+SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "parameters/parameters.h"}  # the latter: the simulator's parameters
+
+
+def test_nothing_simulated_is_in_the_product():
+    def rule(path):
+        name = str(path.relative_to(SRC))
+        if (
+            folder(path) in SIMULATED | {"simulation", "python"}
+            or name in SIMULATORS
+            or name.endswith("_with_faults.cpp")
+        ):
+            return
+        yield from (other for other in includes(path) if other.split("/")[0] in SIMULATED)
+
+    assert violations(rule) == []
+
+
 def test_only_rt_reads_clocks():
     def rule(path):
         if folder(path) != "rt":
@@ -137,12 +157,14 @@ def test_only_the_bridge_knows_ros_time():
 
 def test_linked_libraries_are_included_libraries():
     """CMake's wall is the same wall."""
+    texts = {path.parent.name: re.sub(r"#[^\n]*", "", path.read_text()) for path in SRC.glob("*/CMakeLists.txt")}
+    defined_in = {
+        library: name for name, text in texts.items() for library in re.findall(r"robot_control_library\((\w+)", text)
+    }
     wrong = []
-    for path in SRC.glob("*/CMakeLists.txt"):
-        own = path.parent.name
-        text = re.sub(r"#[^\n]*", "", path.read_text())
-        linked = set(re.findall(r"\brc_(\w+)", text)) - {own}
-        wrong += [f"{own} links rc_{other}" for other in sorted(linked - MAY_INCLUDE.get(own, set()))]
+    for own, text in texts.items():
+        linked = {defined_in[library] for library in re.findall(r"\brc_(\w+)", text)} - {own}
+        wrong += [f"{own} links a library of {other}" for other in sorted(linked - MAY_INCLUDE.get(own, set()))]
     assert wrong == []
 
 

@@ -4,9 +4,12 @@ import re
 from pathlib import Path
 
 import pytest
+from roslaunch.config import ROSLaunchConfig
 from roslaunch.substitution_args import resolve_args
+from roslaunch.xmlloader import XmlLoader
 
 LAUNCH = Path(__file__).parents[2] / "launch"
+NODES = ("state_estimator", "diff_drive_controller", "safety_monitor")
 VARIABLES = ("ROS_IP", "ROS_HOSTNAME", "ROS_MASTER_URI")
 
 
@@ -69,6 +72,26 @@ def test_a_word_alone_is_a_shipped_scene(monkeypatch):
     assert resolve("mine.xml") == "/called/here/mine.xml"
     assert resolve("worlds/mine.xml") == "/called/here/worlds/mine.xml"
     assert resolve("/abs/mine.xml") == "/abs/mine.xml"
+
+
+def programs_of(*arguments):
+    """Node name → program that sim.launch starts."""
+    config = ROSLaunchConfig()
+    XmlLoader(resolve_anon=False).load(str(LAUNCH / "sim.launch"), config, argv=list(arguments), verbose=False)
+    return {node.name: node.type for node in config.nodes}
+
+
+def test_a_simulation_starts_the_programs_of_the_robot():
+    started = programs_of()
+    assert started["mujoco_plant"] == "mujoco_plant"
+    assert {name: started[name] for name in NODES} == {name: name for name in NODES}
+
+
+def test_for_faults_it_starts_other_programs_under_the_same_names():
+    assert programs_of("faults:=true") == {
+        "mujoco_plant": "mujoco_plant",
+        **{name: f"{name}_with_faults" for name in NODES},
+    }
 
 
 def test_every_argument_that_a_user_may_give_is_set_in_every_launch():

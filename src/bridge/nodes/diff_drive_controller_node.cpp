@@ -26,8 +26,8 @@ namespace {
 
 class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
  public:
-  explicit DiffDriveControllerNode(const Setup& setup)
-      : ProcessNode(setup),
+  DiffDriveControllerNode(const Setup& setup, OutputDecoratorPtr<CommandFrame> decorator)
+      : ProcessNode(setup, std::move(decorator)),
         input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
         pace_(report().command_rate),
         command_report_(robot(), parameters().controller) {}
@@ -222,8 +222,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup) {
-  return std::make_unique<DiffDriveControllerNode>(setup);
+std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup, OutputDecoratorPtr<CommandFrame> decorator) {
+  return std::make_unique<DiffDriveControllerNode>(setup, std::move(decorator));
 }
 
 }  // namespace robot_control

@@ -86,8 +86,8 @@ class ConnectionNote {
  public:
   void look(std::int64_t now_ns) {
     const std::uint64_t evicted = evicted_connections();
-    const std::uint64_t overlong = overlong_announcements();
-    if ((evicted == evicted_ && overlong == overlong_) || now_ns < next_ns_) return;
+    const std::uint64_t refused = overlong_announcements();
+    if ((evicted == evicted_ && refused == overlong_) || now_ns < next_ns_) return;
     next_ns_ = now_ns + kSilence;
     if (evicted != evicted_) {
       ROS_WARN(
@@ -95,14 +95,14 @@ class ConnectionNote {
           "which program makes so many: ss -tnp",
           static_cast<unsigned long long>(evicted - evicted_));
     }
-    if (overlong != overlong_) {
+    if (refused != overlong_) {
       ROS_WARN(
           "%llu connections were closed that announced a header of more than %u or a message of more than %u "
           "bytes: this node takes none as long; look which program sends them: ss -tnp",
-          static_cast<unsigned long long>(overlong - overlong_), kLongestHeader, kLongestMessage);
+          static_cast<unsigned long long>(refused - overlong_), kLongestHeader, kLongestMessage);
     }
     evicted_ = evicted;
-    overlong_ = overlong;
+    overlong_ = refused;
   }
 
  private:

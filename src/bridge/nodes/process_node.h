@@ -2,6 +2,7 @@
 /// A Node whose work is a Process: everything that the four nodes of the loop have in common.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bridge/messages/time_map.h"
@@ -13,8 +14,12 @@ namespace robot_control {
 template <class Work>
 class ProcessNode : public Node {
  public:
-  explicit ProcessNode(const Setup& setup)
-      : setup_(setup), time_(setup.parameters.loop.clock), process_(setup.parameters, setup.robot, setup.bus) {}
+  /// `more`: what the constructor of Work takes beyond parameters, robot and bus.
+  template <class... More>
+  explicit ProcessNode(const Setup& setup, More&&... more)
+      : setup_(setup),
+        time_(setup.parameters.loop.clock),
+        process_(setup.parameters, setup.robot, setup.bus, std::forward<More>(more)...) {}
 
   void poll() override { process_.poll(); }
   bool finished() const override { return process_.finished(); }

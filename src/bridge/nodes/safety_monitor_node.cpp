@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 
 #include <mutex>
+#include <utility>
 
 #include "bridge/inputs/input_topic.h"
 #include "bridge/messages/messages.h"
@@ -169,8 +170,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_safety_monitor(const Setup& setup) {
-  return std::make_unique<SafetyMonitorNode>(setup);
+std::unique_ptr<Node> make_safety_monitor(const Setup& setup, OutputDecoratorPtr<Permit> decorator) {
+  return std::make_unique<SafetyMonitorNode>(setup, std::move(decorator));
 }
 
 }  // namespace robot_control

@@ -5,9 +5,12 @@
 #include <memory>
 
 #include "bridge/nodes/node.h"
+#include "hal/frame_output.h"
+#include "signals/state_frame.h"
 
 namespace robot_control {
 
-std::unique_ptr<Node> make_state_estimator(const Setup& setup);
+/// `decorator`: of its output; null in the programs of a robot.
+std::unique_ptr<Node> make_state_estimator(const Setup& setup, OutputDecoratorPtr<StateFrame> decorator = nullptr);
 
 }  // namespace robot_control

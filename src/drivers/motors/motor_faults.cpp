@@ -37,11 +37,11 @@ void MotorFaults::step(Motors& side, FaultKind kind, std::uint64_t cycle) noexce
   if (kind == FaultKind::kStuck) state = State::kBlocked;
   if (kind == FaultKind::kGarbage) state = State::kMad;
   if (kind == FaultKind::kWrong) state = State::kReversed;
-  const auto spoil = [&](FaultKind how, WheelCommands&, FaultRandom& random) {
+  const auto distort = [&](FaultKind how, WheelCommands&, FaultRandom& random) {
     if (how != FaultKind::kGarbage) return;
     for (const std::size_t joint : side.joints) drives_[joint].random_effort = random.within(drives_[joint].limit);
   };
-  const Emission emission = side.output.step(kind, cycle, commands, spoil);
+  const Emission emission = side.output.step(kind, cycle, commands, distort);
   if (emission == Emission::kNothing && kind != FaultKind::kSlow) state = State::kDead;
   for (std::size_t i = 0; i < side.joints.size(); ++i) {
     Drive& drive = drives_[side.joints[i]];

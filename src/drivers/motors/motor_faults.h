@@ -9,7 +9,7 @@
 ///   delayed       the command of 10 cycles ago, the brake too
 ///   intermittent  as off, and healthy, at random
 ///
-/// When and how long, see hal/faulty_output.h. Friction, damping and inertia of the joint stay as they are.
+/// When and how long, see faults/faulty_output.h. Friction, damping and inertia of the joint stay as they are.
 ///
 /// A blocked rotor is a stiff spring and damper between wheel and body, q* the angle at the beginning:
 ///
@@ -25,7 +25,7 @@
 #include <span>
 #include <vector>
 
-#include "hal/faulty_output.h"
+#include "faults/faulty_output.h"
 #include "robot/robot_model.h"
 #include "signals/joint.h"
 

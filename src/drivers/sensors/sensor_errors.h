@@ -35,7 +35,7 @@
 
 #include "drivers/motors/battery.h"
 #include "drivers/mujoco_plant_parameters.h"
-#include "hal/delay_line.h"
+#include "faults/delay_line.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
 

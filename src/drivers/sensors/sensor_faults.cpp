@@ -14,35 +14,35 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// False: there is no sample.
 bool step_axes(FaultyOutput<Vector3>& output, FaultKind kind, std::uint64_t cycle, double range,
                Vector3& value) noexcept {
-  const auto spoil = [range](FaultKind how, Vector3& axes, FaultRandom& random) {
+  const auto distort = [range](FaultKind how, Vector3& axes, FaultRandom& random) {
     for (double& axis : axes) axis = how == FaultKind::kWrong ? -axis : random.within(range);
   };
-  if (output.step(kind, cycle, value, spoil) == Emission::kValue || kind == FaultKind::kSlow) return true;
+  if (output.step(kind, cycle, value, distort) == Emission::kValue || kind == FaultKind::kSlow) return true;
   value.fill(kNaN);
   return false;
 }
 
 bool step_battery(FaultyOutput<BatterySample>& output, FaultKind kind, std::uint64_t cycle,
                   BatterySample& battery) noexcept {
-  const auto spoil = [](FaultKind how, BatterySample& spoilt, FaultRandom& random) {
+  const auto distort = [](FaultKind how, BatterySample& distorted, FaultRandom& random) {
     if (how == FaultKind::kWrong) {
-      spoilt.voltage *= SensorFaults::kWrongVoltage;
+      distorted.voltage *= SensorFaults::kWrongVoltage;
     } else {
-      spoilt.voltage *= 2 * random.unit();
-      spoilt.current = random.within(SensorFaults::kGarbageCurrent);
+      distorted.voltage *= 2 * random.unit();
+      distorted.current = random.within(SensorFaults::kGarbageCurrent);
     }
   };
-  if (output.step(kind, cycle, battery, spoil) == Emission::kValue || kind == FaultKind::kSlow) return true;
+  if (output.step(kind, cycle, battery, distort) == Emission::kValue || kind == FaultKind::kSlow) return true;
   battery = {.voltage = kNaN, .current = kNaN};
   return false;
 }
 
 bool pressed(FaultyOutput<bool>& button, FaultKind kind, std::uint64_t cycle) noexcept {
   bool pressed = kind == FaultKind::kStuck;
-  const auto spoil = [](FaultKind how, bool& value, FaultRandom& random) {
+  const auto distort = [](FaultKind how, bool& value, FaultRandom& random) {
     value = how == FaultKind::kWrong || random.unit() < 0.5;
   };
-  return (button.step(kind, cycle, pressed, spoil) == Emission::kNothing && kind != FaultKind::kSlow) || pressed;
+  return (button.step(kind, cycle, pressed, distort) == Emission::kNothing && kind != FaultKind::kSlow) || pressed;
 }
 
 }  // namespace
@@ -74,17 +74,17 @@ void SensorFaults::step_encoders(Encoders& encoders, FaultKind kind, std::uint64
     readings[i] = {joint.position, joint.velocity};
   }
   const Readings& began = encoders.output.held();
-  const auto spoil = [&began](FaultKind how, Readings& spoilt, FaultRandom& random) {
-    for (std::size_t i = 0; i < spoilt.size(); ++i) {
+  const auto distort = [&began](FaultKind how, Readings& distorted, FaultRandom& random) {
+    for (std::size_t i = 0; i < distorted.size(); ++i) {
       if (how == FaultKind::kWrong) {
-        spoilt[i] = {2 * began[i].position - spoilt[i].position, -spoilt[i].velocity};
+        distorted[i] = {2 * began[i].position - distorted[i].position, -distorted[i].velocity};
       } else {
-        spoilt[i] = {began[i].position + random.within(2 * std::numbers::pi), random.within(kGarbageSpeed)};
+        distorted[i] = {began[i].position + random.within(2 * std::numbers::pi), random.within(kGarbageSpeed)};
       }
     }
   };
   const bool sampled =
-      encoders.output.step(kind, cycle, readings, spoil) == Emission::kValue || kind == FaultKind::kSlow;
+      encoders.output.step(kind, cycle, readings, distort) == Emission::kValue || kind == FaultKind::kSlow;
   for (std::size_t i = 0; i < encoders.joints.size(); ++i) {
     JointSample& joint = measurement.joints[encoders.joints[i]];
     joint.position = sampled ? readings[i].position : kNaN;

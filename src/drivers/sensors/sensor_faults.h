@@ -24,8 +24,8 @@
 ///   delayed       the sample of 10 cycles ago                   not pressed
 ///   intermittent  as off, and healthy, at random                pressed and not, at random: a loose wire
 ///
-/// When and how long, see hal/faulty_output.h. Efforts and temperatures stay: the drive itself is well. All else of a
-/// frame is untouched. What is valid stays so in every kind but off: no device knows that it lies.
+/// When and how long, see faults/faulty_output.h. Efforts and temperatures stay: the drive itself is well. All else of
+/// a frame is untouched. What is valid stays so in every kind but off: no device knows that it lies.
 
 #include <array>
 #include <cstddef>
@@ -33,7 +33,7 @@
 #include <vector>
 
 #include "drivers/sensors/sensor_errors.h"
-#include "hal/faulty_output.h"
+#include "faults/faulty_output.h"
 #include "robot/robot_model.h"
 #include "signals/sensor_frame.h"
 

@@ -8,10 +8,12 @@
 namespace robot_control {
 
 ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
-                                 const Channels& channels, CommandScript script, Now now)
+                                 const Channels& channels, CommandScript script, Now now,
+                                 OutputDecoratorPtr<CommandFrame> decorator)
     : controller_(parameters, robot, period),
       clock_(now),
       channels_(channels),
+      output_(channels.command, std::move(decorator)),
       script_(std::move(script)),
       robot_hash_(robot.hash) {
   trace_.tuning = drive_tuning(parameters, robot, period);
@@ -95,7 +97,7 @@ bool ControllerCycle::step() noexcept {
   }
   controller_.step(input, trace_.command);
   const FrameHead head{.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
-  if (!out_.publish(channels_.command, head, sensors_.injected, trace_.command)) return false;
+  if (!output_.publish(head, sensors_, trace_.command)) return false;
   trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }

@@ -1,15 +1,15 @@
 #pragma once
 /// The controller's duty in one cycle: state k (which woke it), sensors k and the newest live permit ≤ k-1
-/// → command k. A token is passed on, and a state that is corrupt is one. Told to fail, it does (faulty_writer.h).
+/// → command k. A token is passed on, and a state that is corrupt is one.
 
 #include <cstdint>
 
 #include "control/drive_controller.h"
+#include "hal/frame_output.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
 #include "runtime/cycles/cycle_clock.h"
-#include "runtime/faulty_writer.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -24,7 +24,8 @@ class ControllerCycle {
   };
 
   ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
-                  const Channels& channels, CommandScript script, Now now);
+                  const Channels& channels, CommandScript script, Now now,
+                  OutputDecoratorPtr<CommandFrame> decorator = nullptr);
 
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
@@ -46,7 +47,7 @@ class ControllerCycle {
   DriveController controller_;
   CycleClock clock_;
   Channels channels_;
-  FaultyWriter<CommandFrame> out_{FaultComponent::kController};
+  FrameOutput<CommandFrame> output_;
   CommandScript script_;
   std::uint64_t robot_hash_;
   LatestValue<VelocityCommand> inbox_;

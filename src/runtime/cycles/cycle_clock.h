@@ -67,12 +67,4 @@ std::optional<std::uint64_t> published_before(const FrameWriter<Frame>& own, std
   return last.head.cycle;
 }
 
-/// Cycle k has passed here, without a frame.
-template <class Frame>
-void publish_token(FrameWriter<Frame>& channel, const FrameHead& of) noexcept {
-  Frame token{};
-  token.head = {.run = of.run, .cycle = of.cycle, .stamp_ns = of.stamp_ns, .kind = FrameKind::kToken};
-  channel.publish(token);
-}
-
 }  // namespace robot_control

@@ -1,13 +1,17 @@
 #include "runtime/cycles/estimator_cycle.h"
 
+#include <utility>
+
 namespace robot_control {
 
 EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
-                               const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now)
+                               const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now,
+                               OutputDecoratorPtr<StateFrame> decorator)
     : estimator_(parameters, robot, period),
       clock_(now),
       sensors_channel_(sensors),
       state_channel_(state),
+      output_(state, std::move(decorator)),
       robot_hash_(robot.hash) {}
 
 void EstimatorCycle::enter_run() noexcept {
@@ -40,7 +44,7 @@ bool EstimatorCycle::step() noexcept {
   estimator_.step(sensors_, trace_.state);
   trace_.state.first_cycle = first_cycle_;
   const FrameHead head{.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
-  if (!out_.publish(state_channel_, head, sensors_.injected, trace_.state)) return false;
+  if (!output_.publish(head, sensors_, trace_.state)) return false;
   trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }

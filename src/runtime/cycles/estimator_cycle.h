@@ -1,14 +1,13 @@
 #pragma once
-/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on. Told to fail, it does
-/// (faulty_writer.h).
+/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on.
 
 #include <cstdint>
 
 #include "estimation/estimator.h"
+#include "hal/frame_output.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/cycles/cycle_clock.h"
-#include "runtime/faulty_writer.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -21,7 +20,8 @@ class EstimatorCycle {
 
  public:
   EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
-                 const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
+                 const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now,
+                 OutputDecoratorPtr<StateFrame> decorator = nullptr);
 
   /// True when there was a new sensor frame of the driver's current run, and a state was published.
   bool step() noexcept;
@@ -42,7 +42,7 @@ class EstimatorCycle {
   CycleClock clock_;
   const FrameReader<SensorFrame>& sensors_channel_;
   FrameWriter<StateFrame> state_channel_;
-  FaultyWriter<StateFrame> out_{FaultComponent::kEstimator};
+  FrameOutput<StateFrame> output_;
   std::uint64_t robot_hash_;
   PoseRequest requested_;  ///< the requesting thread's
   LatestValue<PoseRequest> inbox_;

@@ -6,10 +6,12 @@
 namespace robot_control {
 
 MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
-                           const Channels& channels, CommandScript script, Now now)
+                           const Channels& channels, CommandScript script, Now now,
+                           OutputDecoratorPtr<Permit> decorator)
     : monitor_(parameters, robot, period),
       clock_(now),
       channels_(channels),
+      output_(channels.permit, std::move(decorator)),
       script_(std::move(script)),
       robot_hash_(robot.hash),
       loss_ns_(std::llround(static_cast<double>(parameters.loss_cycles) * period * 1e9)) {
@@ -89,7 +91,7 @@ bool MonitorCycle::step() noexcept {
   }
   monitor_.step(input_, trace_.permit);
   published_run_.store(run, std::memory_order_release);
-  if (!out_.publish(channels_.permit, head(), sensors_.injected, trace_.permit)) return false;
+  if (!output_.publish(head(), sensors_, trace_.permit)) return false;
   trace_.timing = clock_.timing(woke_ns, sensors_);
   return true;
 }
@@ -164,9 +166,7 @@ void MonitorCycle::idle() noexcept {
 
 void MonitorCycle::publish_again() noexcept {
   monitor_.step(input_, trace_.permit);
-  if (fault_of(sensors_.injected, out_.component()) != FaultKind::kOk) return;
-  trace_.permit.head = head();
-  channels_.permit.publish(trace_.permit);
+  output_.publish_again(head(), sensors_, trace_.permit);
 }
 
 FrameHead MonitorCycle::head() const noexcept {

@@ -1,6 +1,6 @@
 #pragma once
 /// The monitor's duty in one cycle: sensors k (which woke it), command k-1, head of state k-1 → permit k.
-/// A token is passed on. Told to fail, it does (faulty_writer.h); then it has nothing to say out of turn.
+/// A token is passed on.
 ///
 /// Wall clock: a step that finds no current sensor frame (none, corrupt, of another run or robot than the channel's
 /// head announces) counts as silence once the last current frame is loss_cycles periods old, whatever woke the step.
@@ -8,12 +8,12 @@
 #include <atomic>
 #include <cstdint>
 
+#include "hal/frame_output.h"
 #include "robot/robot_model.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
 #include "runtime/cycles/cycle_clock.h"
-#include "runtime/faulty_writer.h"
 #include "safety/safety_monitor.h"
 #include "signals/trace.h"
 
@@ -29,7 +29,7 @@ class MonitorCycle {
   };
 
   MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period, const Channels& channels,
-               CommandScript script, Now now);
+               CommandScript script, Now now, OutputDecoratorPtr<Permit> decorator = nullptr);
 
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
@@ -75,7 +75,7 @@ class MonitorCycle {
   SafetyMonitor monitor_;
   CycleClock clock_;
   Channels channels_;
-  FaultyWriter<Permit> out_{FaultComponent::kMonitor};
+  FrameOutput<Permit> output_;
   CommandScript script_;
   std::uint64_t robot_hash_;
   std::int64_t loss_ns_;         ///< loss_cycles periods

@@ -1,15 +1,18 @@
 #include "runtime/processes/controller_process.h"
 
+#include <utility>
+
 namespace robot_control {
 
-ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
+                                     OutputDecoratorPtr<CommandFrame> decorator)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kController, "drive_control", ChannelNames::kCommand, TraceRing::kController}),
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
       cycle_(parameters.controller, robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
+             load_script(parameters.loop.command_script), clock_of(parameters.loop), std::move(decorator)),
       retuning_(parameters, robot_, cycle_.tunings()) {
   require_drivable(parameters, robot);
 }

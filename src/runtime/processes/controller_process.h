@@ -13,7 +13,8 @@ namespace robot_control {
 class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerTrace> {
  public:
   /// Throws BusError; ParameterError for a script that cannot be read, or gains that this robot makes unstable.
-  ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
+  ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
+                    OutputDecoratorPtr<CommandFrame> decorator = nullptr);
   ~ControllerProcess() override { stop(); }
 
   std::vector<std::string> missing() const override;

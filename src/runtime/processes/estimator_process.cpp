@@ -1,12 +1,15 @@
 #include "runtime/processes/estimator_process.h"
 
+#include <utility>
+
 namespace robot_control {
 
-EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
+                                   OutputDecoratorPtr<StateFrame> decorator)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kEstimator, "state_estimator", ChannelNames::kState, TraceRing::kEstimator}),
       cycle_(parameters.estimator, robot_, parameters.loop.period(), sensors_.reader, output_.writer,
-             clock_of(parameters.loop)) {}
+             clock_of(parameters.loop), std::move(decorator)) {}
 
 std::vector<std::string> EstimatorProcess::missing() const {
   return missing_anywhere();

@@ -1,11 +1,14 @@
 #include "runtime/processes/monitor_process.h"
 
+#include <utility>
+
 #include "runtime/safety_limits.h"
 #include "signals/names.h"
 
 namespace robot_control {
 
-MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
+MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
+                               OutputDecoratorPtr<Permit> decorator)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kMonitor, "safety_monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
@@ -13,7 +16,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
       latch_file_(parameters.latch_file),
       cycle_(safety_limits(parameters, robot_), robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
+             load_script(parameters.loop.command_script), clock_of(parameters.loop), std::move(decorator)),
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()) {
   const LatchRecord& found = latch_file_.found();
   if (found.causes != 0) cycle_.restore(found.causes, found.first_cause);

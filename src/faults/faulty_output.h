@@ -1,11 +1,12 @@
 #pragma once
-/// An output that fails as told (signals/injected_fault.h): the samples of a sensor, the frames of a node.
+/// An output into which a fault can be injected (signals/injected_fault.h): the samples of a sensor, the frames of a
+/// node.
 ///
 ///   kOk            the healthy value
 ///   kOff           nothing
 ///   kStuck         the value of the cycle in which the fault began, for ever
-///   kGarbage       what `spoil` makes of it, from random numbers
-///   kWrong         what `spoil` makes of it
+///   kGarbage       what `distort` makes of it, from random numbers
+///   kWrong         what `distort` makes of it
 ///   kSlow          a new value when the fault begins and every kFaultCycles cycles after; in between none
 ///   kDelayed       the value of kFaultCycles cycles ago; until there is one, that of the fault's beginning
 ///   kIntermittent  on at first, then changes between nothing and the healthy value with kChangeProbability in
@@ -17,7 +18,7 @@
 #include <cstdint>
 #include <random>
 
-#include "hal/delay_line.h"
+#include "faults/delay_line.h"
 #include "signals/injected_fault.h"
 
 namespace robot_control {
@@ -60,9 +61,9 @@ class FaultyOutput {
   void reset() noexcept { kind_ = FaultKind::kOk; }
 
   /// Once per cycle. `value`: the healthy one goes in, what comes out of the component takes its place.
-  /// `spoil(kind, value, random)` makes a value garbage or wrong. An unknown kind is kOff.
-  template <class Spoil>
-  Emission step(FaultKind kind, std::uint64_t cycle, Value& value, Spoil spoil) noexcept {
+  /// `distort(kind, value, random)` makes a value garbage or wrong. An unknown kind is kOff.
+  template <class Distort>
+  Emission step(FaultKind kind, std::uint64_t cycle, Value& value, Distort distort) noexcept {
     if (kind != kind_) begin(kind, cycle, value);
     switch (kind) {
       case FaultKind::kOk:
@@ -72,7 +73,7 @@ class FaultyOutput {
         return Emission::kValue;
       case FaultKind::kGarbage:
       case FaultKind::kWrong:
-        spoil(kind, value, random_);
+        distort(kind, value, random_);
         return Emission::kValue;
       case FaultKind::kSlow:
         return slow(cycle, value);

@@ -1,4 +1,4 @@
-#include "runtime/spoilt_frames.h"
+#include "faults/frame_distortion.h"
 
 #include <cmath>
 #include <limits>
@@ -24,7 +24,7 @@ void negate(Vector3& vector) noexcept {
 
 }  // namespace
 
-void spoil(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept {
+void distort(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept {
   if (kind == FaultKind::kWrong) {
     negate(state.pose_odom.position);
     negate(state.twist_base.linear);
@@ -38,7 +38,7 @@ void spoil(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept {
   for (double& entry : state.gyro_bias) entry = garbage(random);
 }
 
-void spoil(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept {
+void distort(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept {
   constexpr double kModes = 6;  // two of them unknown
   for (std::size_t i = 0; i < command.joint_count && i < kMaxJoints; ++i) {
     JointCommand& joint = command.joints[i];
@@ -57,7 +57,7 @@ void spoil(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept 
   }
 }
 
-void spoil(FaultKind kind, Permit& permit, FaultRandom& random) noexcept {
+void distort(FaultKind kind, Permit& permit, FaultRandom& random) noexcept {
   constexpr double kActions = 4;  // one of them unknown
   constexpr double kStates = 6;
   constexpr double kAnyCauses = 4096;

@@ -1,4 +1,4 @@
-#include "hal/delay_line.h"
+#include "faults/delay_line.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a node that was told to fail makes of its own output, kGarbage and kWrong (signals/injected_fault.h).
+/// Frames of a node with an injected fault, kGarbage and kWrong (signals/injected_fault.h).
 ///
 ///              kGarbage                                          kWrong
 ///   state      every number of pose, twist and bias              the motion mirrored: x, y, speeds, with their sign
@@ -10,7 +10,7 @@
 /// A garbage number is uniform within ±kGarbage, one in eight NaN, one in eight infinite. What is wrong is finite and
 /// plausible, and its flags say that all is well. Heads are the caller's.
 
-#include "hal/faulty_output.h"
+#include "faults/faulty_output.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
 #include "signals/state_frame.h"
@@ -19,8 +19,8 @@ namespace robot_control {
 
 inline constexpr double kGarbage = 1000;
 
-void spoil(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept;
-void spoil(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept;
-void spoil(FaultKind kind, Permit& permit, FaultRandom& random) noexcept;
+void distort(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept;
+void distort(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept;
+void distort(FaultKind kind, Permit& permit, FaultRandom& random) noexcept;
 
 }  // namespace robot_control

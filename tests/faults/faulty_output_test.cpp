@@ -1,6 +1,6 @@
 /// An output whose healthy value in cycle k is k: what comes out of it under each kind of fault.
 
-#include "hal/faulty_output.h"
+#include "faults/faulty_output.h"
 
 #include <gtest/gtest.h>
 
@@ -21,13 +21,13 @@ using Outcome = std::optional<double>;
 
 class FaultyOutputTest : public testing::Test {
  protected:
-  static void spoil(FaultKind kind, double& value, FaultRandom& random) {
+  static void distort(FaultKind kind, double& value, FaultRandom& random) {
     value = kind == FaultKind::kWrong ? -value : random.within(1000);
   }
 
   Outcome step(FaultKind kind, std::uint64_t cycle) {
     value_ = static_cast<double>(cycle);
-    return output_.step(kind, cycle, value_, spoil) == Emission::kValue ? Outcome(value_) : Outcome();
+    return output_.step(kind, cycle, value_, distort) == Emission::kValue ? Outcome(value_) : Outcome();
   }
 
   /// Healthy up to kOnset, then so many cycles of `kind`.
@@ -124,7 +124,7 @@ TEST_F(FaultyOutputTest, IsTheSameForTheSameSeedAndCycle) {
     std::vector<Outcome> second;
     for (std::uint64_t cycle = kOnset; cycle < kOnset + 200; ++cycle) {
       double value = static_cast<double>(cycle);
-      second.push_back(other.step(kind, cycle, value, spoil) == Emission::kValue ? Outcome(value) : Outcome());
+      second.push_back(other.step(kind, cycle, value, distort) == Emission::kValue ? Outcome(value) : Outcome());
     }
     EXPECT_EQ(first, second) << "whatever came before the fault";
   }

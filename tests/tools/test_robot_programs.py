@@ -1,0 +1,51 @@
+"""The programs of a robot hold nothing that is simulated: by their symbols and by the libraries they load."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+import roslib.packages
+
+SRC = Path(__file__).parents[2] / "src"
+ROBOT = ("state_estimator", "diff_drive_controller", "safety_monitor", "telemetry")
+WITH_FAULTS = tuple(f"{name}_with_faults" for name in ROBOT[:3])
+
+
+def simulated_names():
+    """Classes of src/drivers and src/faults, and the functions that distort frames."""
+    headers = "\n".join(path.read_text() for folder in ("drivers", "faults") for path in (SRC / folder).rglob("*.h"))
+    return {"distort", *re.findall(r"^class (\w+)", headers, re.MULTILINE)}
+
+
+def program(name):
+    found = roslib.packages.find_node("robot_control", name)
+    assert found, f"no program {name}"
+    return found[0]
+
+
+def simulated_symbols(name):
+    """Those of `simulated_names` that occur in the symbols of the program."""
+    listed = subprocess.run(["nm", "-C", program(name)], check=True, capture_output=True, text=True).stdout
+    return set(re.findall(r"\w+", listed)) & simulated_names()
+
+
+def libraries(name):
+    return subprocess.run(["readelf", "-d", program(name)], check=True, capture_output=True, text=True).stdout
+
+
+@pytest.mark.parametrize("name", ROBOT)
+def test_a_program_of_the_robot_holds_nothing_simulated(name):
+    assert simulated_symbols(name) == set()
+    assert "libmujoco" not in libraries(name)
+
+
+@pytest.mark.parametrize("name", WITH_FAULTS)
+def test_the_program_for_faults_holds_them(name):
+    assert simulated_symbols(name) >= {"FaultyFrameOutput", "FaultRandom", "distort"}
+    assert "libmujoco" not in libraries(name)
+
+
+def test_the_simulator_holds_its_machine():
+    assert simulated_symbols("mujoco_plant") >= {"MujocoPlant", "SensorFaults", "MotorFaults"}
+    assert "libmujoco" in libraries("mujoco_plant")
