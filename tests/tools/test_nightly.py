@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 ROW = re.compile(r"^\|[^|]+\| `(tests/[^`]+)` \| `(\w+)` \|[^|]+\|$", re.MULTILINE)
 TABLE = ROW.findall((ROOT / "docs/tests.md").read_text())
 INSTANTIATED = re.compile(r"INSTANTIATE_TEST_SUITE_P\(\s*Nightly,\s*(\w+)")
-LABELLED = re.compile(r'list\(FILTER entries INCLUDE REGEX (\w+)\)\s+set_tests_properties\([^)]*LABELS "[^"]*nightly')
+LABELLED = re.compile(r"set\(nightly ([\w ]+)\)")
 TESTS = [path for path in (ROOT / "tests").rglob("*") if path.suffix in (".py", ".cpp") and path != Path(__file__)]
 
 
@@ -28,8 +28,8 @@ def decorated(path):
 
 def labelled():
     """Files of tests/system that are nightly as a whole."""
-    names = LABELLED.findall((ROOT / "tests/system/CMakeLists.txt").read_text())
-    return {f"tests/system/{name}_test.py" for name in names}
+    (names,) = LABELLED.findall((ROOT / "tests/system/CMakeLists.txt").read_text())
+    return {f"tests/system/{name}_test.py" for name in names.split()}
 
 
 def marked():
