@@ -56,15 +56,26 @@ use_private_ros_master() {
   unset ROS_HOSTNAME ROS_NAMESPACE
 }
 
-build_workspace() {
-  local started=$SECONDS log=build/colcon.log
+# With `without_tests` no test program is built; what an earlier call built of them stays for a later one.
+build_workspace() {  # [without_tests]
+  local started=$SECONDS log=build/colcon.log testing=ON
+  [ "${1-}" != without_tests ] || testing=OFF
   mkdir -p build
   touch build/COLCON_IGNORE
   say "building with $(compilers) compilers (all output: $REPOSITORY/$log)"
   if ! MAKEFLAGS="-j$(compilers)" with_progress "$log" build/robot_control colcon build \
-      --event-handlers console_direct+ --cmake-args -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=$PYTHON; then
+      --event-handlers console_direct+ --cmake-args -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=$PYTHON -DCATKIN_ENABLE_TESTING=$testing; then
     grep -n -A6 -E 'error:|Error |CMake Error|undefined reference' "$log" | head -60 >&2 || tail -40 "$log" >&2
     fail "the build failed; all of it is in $REPOSITORY/$log"
   fi
   say "built in $((SECONDS - started)) s"
+}
+
+# The programs of tests/bench, which a build of the workspace leaves out.
+build_benchmarks() {
+  local log=build/benchmarks.log
+  if ! with_progress "$log" build/robot_control cmake --build build/robot_control --target benchmarks -j "$(compilers)"; then
+    grep -n -A6 'error' "$log" | head -60 >&2
+    fail "the benchmarks could not be built; all of it is in $REPOSITORY/$log"
+  fi
 }

@@ -14,14 +14,14 @@ namespace {
 constexpr double kClosedLoopShare = 60.0 / 150.0;
 constexpr double kFourNodesShare = 20.0 / 150.0;
 constexpr std::uint64_t kTimedCycles = 10'000;
-constexpr int kRounds = 5;  // the best one: a stall in another process's favour proves nothing
+constexpr int kRounds = 5;  // until one is good: a stall in another process's favour proves nothing
 
 class Speed : public ::testing::Test {
  protected:
   template <class Measure>
-  double best_share(Measure measure) {
+  double best_share(Measure measure, double wanted) {
     double best = 0;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRounds && best < wanted; ++round) {
       const double bare = bare_loop_speed(parameters_, robot_, kTimedCycles);
       best = std::max(best, measure() / bare);
     }
@@ -33,11 +33,13 @@ class Speed : public ::testing::Test {
 };
 
 TEST_F(Speed, TheLoopInOneProcessKeepsItsShareOfTheBareEngine) {
-  EXPECT_GE(best_share([&] { return closed_loop_speed(parameters_, kTimedCycles); }), kClosedLoopShare);
+  EXPECT_GE(best_share([&] { return closed_loop_speed(parameters_, kTimedCycles); }, kClosedLoopShare),
+            kClosedLoopShare);
 }
 
 TEST_F(Speed, FourProcessesInLockstepKeepTheirShareOfTheBareEngine) {
-  EXPECT_GE(best_share([&] { return four_nodes_speed(parameters_, robot_, kTimedCycles); }), kFourNodesShare);
+  EXPECT_GE(best_share([&] { return four_nodes_speed(parameters_, robot_, kTimedCycles); }, kFourNodesShare),
+            kFourNodesShare);
 }
 
 }  // namespace

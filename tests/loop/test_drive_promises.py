@@ -9,7 +9,10 @@ from robot_control import ClosedLoop
 STOPPED = 4  # SupervisorState
 
 
-@pytest.fixture(params=ROBOTS)
+OTHERS = [pytest.param(name, marks=pytest.mark.nightly) for name in ROBOTS if name != DIFFBOT]
+
+
+@pytest.fixture(params=[DIFFBOT, *OTHERS])
 def robot(request) -> str:
     if request.param not in robot_names():
         pytest.skip(f"{request.param}: no description here; ROBOT_CORPUS names the folder of real robots")

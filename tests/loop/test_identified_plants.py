@@ -19,7 +19,7 @@ DELAYED = {"pid_kp": 1.0, "pid_ki": 5.0}  # bear 10 cycles on the ground (wheel_
 FRICTION_SHARE = 0.02  # of the effort limit, dry, and as much viscous at 0.5 m/s: a good gear motor's
 OPTIONS = Options(space=1.0, max_speed=0.5, repeats=2, mass=None, output=None, log=None, params=None, urdf=None)
 CORPUS = [
-    pytest.param(name, marks=pytest.mark.skipif(FOLDER is None, reason=ABSENT))
+    pytest.param(name, marks=[pytest.mark.nightly, pytest.mark.skipif(FOLDER is None, reason=ABSENT)])
     for name in ("kobuki", "p3dx_mario", "dingo_d")
 ]
 
@@ -86,8 +86,22 @@ def test_finds_the_turning_inertia_that_a_payload_at_the_rim_adds():
     assert with_load - without == pytest.approx(added, rel=TOLERANCE)
 
 
-@pytest.mark.parametrize("where", ["actuator_delay", "sensor_delay"])
-@pytest.mark.parametrize("cycles", [0, 2, 6])
+@pytest.mark.parametrize(
+    ("where", "cycles"),
+    [
+        ("actuator_delay", 6),
+        ("sensor_delay", 2),
+        *(
+            pytest.param(where, cycles, marks=pytest.mark.nightly)
+            for where, cycles in (
+                ("actuator_delay", 0),
+                ("actuator_delay", 2),
+                ("sensor_delay", 0),
+                ("sensor_delay", 6),
+            )
+        ),
+    ],
+)
 def test_finds_a_hidden_delay_to_the_cycle(where, cycles):
     log, _, _ = excited(DIFFBOT, {where: cycles, "motor_friction": 0.1}, DELAYED)
     found = identify(log, base_of(ClosedLoop().robot))

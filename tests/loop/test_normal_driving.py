@@ -4,12 +4,13 @@ import pytest
 from lab.drives.normal_driving import Drive, all_drives, bench, carry_out
 from lab.robot_corpus import DIFFBOT, SCENES
 
-SHARE = 1 / 12  # ten minutes of the two hours
+TWO_MINUTES, TEN_MINUTES = 1 / 60, 1 / 12  # of the two hours
 
 
-def test_ten_minutes_over_all_scenes_robots_and_rates_without_a_false_stop():
+@pytest.mark.parametrize("share", [TWO_MINUTES, pytest.param(TEN_MINUTES, marks=pytest.mark.nightly)])
+def test_a_share_of_all_scenes_robots_and_rates_without_a_false_stop(share):
     lines = []
-    result, fine = bench(SHARE, lines.append)
+    result, fine = bench(share, lines.append)
     assert fine, "\n".join(lines)
     figures = {row["name"]: row["value"] for row in result["rows"]}
     assert figures["distance"] / figures["simulated"] > 0.5, "km/h: it hardly moved"

@@ -6,17 +6,16 @@ from lab.tuning import bench, longest_excess, shaking
 from robot_control import ClosedLoop, ParameterError
 from robot_control.common.cause_names import causes_in
 
-RUNS = 50  # of the 10⁵ of scripts/bench tuning
-COUNTS = (64, 200, 512, 1000, 4096)  # of an encoder's turn
 
-
-def test_no_set_that_is_taken_exceeds_the_speed_or_shakes_without_a_cause():
+# Of the 10⁵ of scripts/bench tuning.
+@pytest.mark.parametrize("runs", [10, pytest.param(50, marks=pytest.mark.nightly)])
+def test_no_set_that_is_taken_exceeds_the_speed_or_shakes_without_a_cause(runs):
     lines = []
-    result, fine = bench(0, RUNS, lines.append)
+    result, fine = bench(0, runs, lines.append)
     figures = {row["name"]: row["value"] for row in result["rows"]}
     assert fine, "\n".join(lines)
-    assert figures["sets driven"] == RUNS
-    assert figures["sets refused"] > RUNS / 4, "else they are drawn too tamely to say anything"
+    assert figures["sets driven"] == runs
+    assert figures["sets refused"] > runs / 4, "else they are drawn too tamely to say anything"
 
 
 @pytest.mark.parametrize(
@@ -48,7 +47,7 @@ def test_a_set_that_makes_the_wheels_shake_is_warned_of_and_stopped():
     assert np.abs(log["truth_linear"]).max() < 1.05
 
 
-@pytest.mark.parametrize("counts", COUNTS)
+@pytest.mark.parametrize("counts", [64, 4096, *(pytest.param(n, marks=pytest.mark.nightly) for n in (200, 512, 1000))])
 def test_derived_gains_shake_nothing_behind_any_encoder(counts):
     loop = ClosedLoop(params={"mujoco_plant": {"encoder_resolution": counts}})
     for command in ((0.5, 0.2), (0.05, 0.0), (1.0, 0.0), (0.0, 2.0), (0.0, 0.0)):

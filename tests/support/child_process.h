@@ -52,6 +52,16 @@ class ChildProcess {
     if (id_ > 0) ::kill(id_, signal);
   }
 
+  /// Sends SIGSTOP or a signal that ends it, and waits until it stands still with all its threads or has ended. Where
+  /// its threads have no core, that takes its time.
+  void stop_with(int signal) const noexcept {
+    if (id_ <= 0) return;
+    ::kill(id_, signal);
+    siginfo_t info{};
+    while (waitid(P_PID, static_cast<id_t>(id_), &info, WSTOPPED | WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+    }
+  }
+
   /// Of one that has ended: -1 after a signal.
   int code() const noexcept { return code_; }
   /// That ended it; 0: none.

@@ -19,12 +19,12 @@ namespace robot_control {
 /// From a signal to standstill.
 struct MeasuredStop {
   std::uint64_t cycles = 0;   ///< from the newest one seen before the signal to the first of all that braked
-  std::uint64_t blurred = 0;  ///< cycles that passed while the signal was sent: the uncertainty of `cycles`
+  std::uint64_t blurred = 0;  ///< cycles that passed until the signal had its effect: the uncertainty of `cycles`
   bool before = false;        ///< it braked already: this machine stood still, nothing is measured
   double way = 0;             ///< m, true, from then to standstill
   std::uint64_t reasons = 0;  ///< the gate's, in the first cycle that braked
 
-  /// Else this machine kept the test from its work between a look and a signal: to be measured anew.
+  /// Else this machine kept the test, or the process that gets the signal, from its work: to be measured again.
   bool measured() const noexcept { return !before && blurred <= 2; }
 };
 
@@ -192,7 +192,7 @@ class DrivingRobot {
     look();
     log_.forget();
     const std::uint64_t before = cycle();
-    nodes_.process(node).send(signal);
+    nodes_.process(node).stop_with(signal);
     MeasuredStop stop{.blurred = cycle() - before};
     if (!await([&] { return log_.rested(kRestCycles); })) throw std::runtime_error("does not stop: " + situation());
     const std::uint64_t braked = *log_.braking_since();

@@ -60,7 +60,10 @@ inline std::string to_text(const StopTrials& trials) {
   return text.data();
 }
 
-/// Throws std::runtime_error where the robot does not stop, or not drive again, or half the trials are blurred.
+/// Trials that may be blurred beyond as many as are asked for.
+inline constexpr int kRepeatedTrials = 20;
+
+/// Throws std::runtime_error where the robot does not stop, or not drive again, or too many trials are blurred.
 inline StopTrials run_trials(DrivingRobot& robot, const LossCell& cell, int count) {
   StopTrials trials;
   while (static_cast<int>(trials.cycles.size()) < count) {
@@ -69,7 +72,7 @@ inline StopTrials run_trials(DrivingRobot& robot, const LossCell& cell, int coun
     if (stop.measured()) {
       trials.cycles.push_back(static_cast<double>(stop.cycles));
       trials.ways.push_back(stop.way);
-    } else if (++trials.repeated > count) {
+    } else if (++trials.repeated > count + kRepeatedTrials) {
       throw std::runtime_error("this machine stalls too often to measure anything");
     }
     if (cell.signal == SIGSTOP) {

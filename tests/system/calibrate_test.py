@@ -13,7 +13,7 @@ import rostest
 import yaml
 from geometry_msgs.msg import Twist
 from robot_control.msg import SafetyStatus
-from system_support import ESTIMATOR, PLANT, STALL_CAUSES, Program, RobotTestCase, init_test_node, wait_for
+from system_support import ESTIMATOR, PLANT, STALL_CAUSES, Program, RobotTestCase, init_test_node, nightly, wait_for
 
 HIDDEN = {"left_radius_error": 0.012, "right_radius_error": 0.004, "wheel_base_error": 0.02}
 SHORT = ("--truth", "--yes", "--distance=1", "--repeats=1", "--side=1", "--runs=1", "--speed=0.5", "--turn-speed=1.2")
@@ -71,6 +71,7 @@ class CalibrateTest(RobotTestCase):
             self.robot.release()
         raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times: {program.output}")
 
+    @nightly
     def test_measures_the_hidden_wheels_and_writes_what_the_nodes_take(self) -> None:
         words = self.measured()
         for part in ("It needs 1.625 m ahead", "square 1 of 1, clockwise", "largest mean return error", "wrote"):

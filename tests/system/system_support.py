@@ -13,6 +13,7 @@ import time
 import unittest
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 import roslib.packages
 import rospy
@@ -26,6 +27,8 @@ from std_srvs.srv import Trigger, TriggerResponse
 
 rosunit_skips.record()
 
+Case = TypeVar("Case", bound=Callable[..., None])
+
 PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
 LIMIT = 30.0
@@ -34,6 +37,11 @@ SEND_PERIOD = 0.1
 """s; a twelfth of cmd_vel_timeout."""
 STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost", "monitor_late", "command_stale", "gate_refuses"}
 """What a machine that stood still for 20 ms may latch by itself."""
+
+
+def nightly(case: Case) -> Case | None:
+    """Decorates a slow case. Without `scripts/test --nightly` it is no test method: neither run nor skipped."""
+    return case if os.environ.get("ROBOT_CONTROL_NIGHTLY") else None
 
 
 def wait_for(
@@ -199,6 +207,8 @@ class Robot:
         self._cmd_vel.publish(message)
 
     def send_e_stop(self, stop: bool) -> None:
+        """Once, to a monitor that is connected: what is published before that is lost."""
+        wait_for("a subscriber of e_stop", lambda: self._e_stop.get_num_connections() > 0)
         self._e_stop.publish(Bool(stop))
 
     def call(self, service: str) -> TriggerResponse:

@@ -164,3 +164,30 @@ def test_packages_of_a_section_are_installed_only_where_they_are_asked_for():
     assert listed_packages(" [linters]") - plain == {"clang-format", "clang-tidy"}
     assert listed_packages(" [cluster]") - plain == {"python3-distributed"}
     assert listed_packages(" [linters] [cluster]") - plain == {"clang-format", "clang-tidy", "python3-distributed"}
+
+
+def cases_of(nightly):
+    """What selects the cases of gtest, pytest, rostest and CTest."""
+    selection = str(SCRIPTS / "test_selection.sh")
+    said = '"${GTEST_FILTER-all}|${PYTEST_CASES[*]}|${ROBOT_CONTROL_NIGHTLY-}|$NIGHTLY_LABEL"'
+    done = shell("bash", "-euc", f'source "$0"; select_cases "$1"; echo {said}', selection, nightly)
+    return done.stdout.strip().split("|")
+
+
+def test_the_nightly_cases_are_left_out_unless_they_are_asked_for():
+    assert cases_of("false") == ["-*Nightly*", "-m not nightly", "", "nightly"]
+    assert cases_of("true") == ["all", "", "1", ""]
+
+
+@pytest.mark.parametrize(("arguments", "testing"), [([], "ON"), (["without_tests"], "OFF")])
+def test_a_build_without_tests_switches_them_off_in_catkin(arguments, testing, tmp_path):
+    """The demo's; always said, for CMake remembers what an earlier build was told."""
+    script = 'source "$0"; cd "$1"; colcon() { echo "$@"; }; build_workspace "${@:2}"; cat build/colcon.log'
+    done = shell("bash", "-euc", script, str(SCRIPTS / "environment.sh"), str(tmp_path), *arguments)
+    assert f"-DCATKIN_ENABLE_TESTING={testing}" in done.stdout.split()
+    assert "build_workspace without_tests\n" in (SCRIPTS / "demo").read_text()
+
+
+def test_continuous_integration_refuses_an_unknown_argument():
+    done = shell(str(SCRIPTS.parent / ".ci" / "run"), "--warp")
+    assert (done.returncode, done.stdout) == (2, "")
