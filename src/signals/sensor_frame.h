@@ -54,7 +54,7 @@ enum DigitalInput : std::uint64_t { kInputEmergencyStop = 1u << 0 };
 
 struct SensorFrame {
   FrameHead head;
-  std::uint64_t boot = 0;  ///< Random number of the driver process; outlives a reset, not a restart.
+  std::uint64_t driver_instance = 0;  ///< Random number of the driver process; outlives a reset, not a restart.
   DriverState driver_state = DriverState::kStarting;
   std::uint64_t faults = 0;
   std::uint64_t valid = 0;

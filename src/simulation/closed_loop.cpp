@@ -17,7 +17,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kBoot = 1;  // any number but 0, as for a run: nobody else is on these channels
+constexpr std::uint64_t kDriverInstance = 1;  // any number but 0, as for a run: nobody else is on these channels
 
 /// ClosedLoop is the only sender of commands: each run begins with a zero request.
 CommandScript script_of(const Parameters& parameters) {
@@ -57,7 +57,7 @@ struct ClosedLoop::Parts {
                 load_script(given.loop.command_script), nullptr),
         retuning(given, robot, controller.tunings()) {
     plant.start();
-    driver.set_boot(kBoot);
+    driver.set_driver_instance(kDriverInstance);
     driver.begin_run(1);
   }
 

@@ -73,7 +73,7 @@ inline CommandScript script_with_zero() {
 
 struct Loop {
   Loop() {
-    driver.set_boot(99);
+    driver.set_driver_instance(99);
     driver.begin_run(1);
     restart_estimator();
     restart_controller();

@@ -76,7 +76,7 @@ void DriverCycle::step() noexcept {
   SensorFrame& sensors = trace_.sensors;
   driver_.read(sensors);
   sensors.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
-  sensors.boot = boot_;
+  sensors.driver_instance = driver_instance_;
   sensors.gate = gate_.report();
   sensors.overruns = overruns_;
   sensors.slipped_ns = slipped_ns_;

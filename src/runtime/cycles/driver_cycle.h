@@ -29,8 +29,8 @@ class DriverCycle {
   DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
               const GateParameters& gate = {});
 
-  /// The number of this process; see SensorFrame::boot.
-  void set_boot(std::uint64_t boot) noexcept { boot_ = boot; }
+  /// The number of this process; see SensorFrame::driver_instance.
+  void set_driver_instance(std::uint64_t driver_instance) noexcept { driver_instance_ = driver_instance; }
 
   /// Announces a run in the head of the sensors channel and wakes its readers, so that they attach to it.
   /// `run`: random, not 0. Cycles count from 0.
@@ -77,7 +77,7 @@ class DriverCycle {
   Gate gate_;
   std::int64_t period_ns_;
   Now now_;
-  std::uint64_t boot_ = 0;
+  std::uint64_t driver_instance_ = 0;
   std::uint64_t run_ = 0;
   std::uint64_t cycle_ = 0;
   std::int64_t start_ns_ = 0;
