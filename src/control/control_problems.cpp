@@ -187,7 +187,7 @@ struct Believed {
   double most;  ///< times either way
 };
 
-void check_believable(const Believed& value, std::vector<std::string>& problems) {
+void check_plausible(const Believed& value, std::vector<std::string>& problems) {
   if (!value.given || (*value.given <= value.most * value.described && value.described <= value.most * *value.given)) {
     return;
   }
@@ -236,14 +236,14 @@ void check_joint_losses(const DriveControllerParameters& parameters, const Robot
 }
 
 /// A payload, a rotor behind a gear: but not a hundred times what is described, which would drive the robot by itself.
-void check_believable(const DriveControllerParameters& parameters, const RobotModel& robot,
-                      std::vector<std::string>& problems) {
+void check_plausible(const DriveControllerParameters& parameters, const RobotModel& robot,
+                     std::vector<std::string>& problems) {
   const FeedForwardParameters& given = parameters.feed_forward;
-  check_believable({"mass", "kg", given.mass, robot.mass, 5}, problems);
-  check_believable({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
+  check_plausible({"mass", "kg", given.mass, robot.mass, 5}, problems);
+  check_plausible({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
   if (robot.wheels.empty()) return;
   const double wheel = robot.wheels.front().inertia;
-  check_believable({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
+  check_plausible({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
   check_joint_losses(parameters, robot, problems);
 }
 
@@ -302,7 +302,7 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
                                           double period) {
   const RobotModel robot = measured_robot(believed, parameters.feed_forward);
   std::vector<std::string> problems;
-  check_believable(parameters, believed, problems);
+  check_plausible(parameters, believed, problems);
   std::vector<Loop> judged;
   const double bandwidth = tracking_bandwidth(parameters, period);
   const double most = std::max(kMostTracking / period, tracking_bandwidth({}, period));

@@ -103,7 +103,7 @@ TEST(SpeedLimiter, KeepsTheCurvatureOfATooFastCommandAndSaysSo) {
 
 TEST(SpeedLimiter, ContinuesFromTheSeedAndReturnsFromAboveTheLimit) {
   SpeedLimiter limiter(kLimits);
-  limiter.seed({1.5, 0});
+  limiter.restart_from({1.5, 0});
   EXPECT_NEAR(limiter.step({2, 0}, kDt).linear, 1.499, 1e-15);
   for (int k = 0; k < 500; ++k) limiter.step({2, 0}, kDt);
   EXPECT_EQ(limiter.value().linear, 1.0);
@@ -221,7 +221,7 @@ TEST(SpeedLimiter, ReturnsFromLimitsThatWereLowered) {
   cycles_to(limiter, {1, 0});
   SpeedLimits lower = kSmooth;
   lower.linear.speed = 0.4;
-  limiter.limit(lower);
+  limiter.set_limits(lower);
   double before = 1;
   for (int k = 0; k < 2000; ++k) {
     const double now = limiter.step({1, 0}, kDt).linear;
@@ -255,7 +255,7 @@ TEST(SpeedLimiter, HalfOfTheLimitsTakesTwiceAsLong) {
   SpeedLimiter limiter(kLimits);
   for (int k = 1; k <= 2000; ++k) limiter.step({1, 0}, kDt, false, 0.5);
   EXPECT_NEAR(limiter.value().linear, 1, 1e-12);  // 2000 roundings
-  EXPECT_NEAR(limiter.used_part(), 0.5, 1e-9);
+  EXPECT_NEAR(limiter.used_acceleration_scale(), 0.5, 1e-9);
 }
 
 // 1 m/s² grew under 10 m/s³: it fades as fast, and carries the speed on by 0.05 m/s, whatever the limit is now.
@@ -265,7 +265,7 @@ TEST(SpeedLimiter, AJerkLimitLoweredDuringARampHoldsUpNoStop) {
     while (limiter.value().linear < 0.2) limiter.step({1, 0}, kDt);
     SpeedLimits lower = kSmooth;
     lower.linear.jerk = jerk;
-    limiter.limit(lower);
+    limiter.set_limits(lower);
     double fastest = 0;
     for (int k = 0; k < 20'000; ++k) {
       const double before = limiter.value().linear;

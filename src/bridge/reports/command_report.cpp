@@ -21,7 +21,7 @@ std::string format(const char* pattern, Values... values) {
   return text.data();
 }
 
-PlanarTwist wish_of(const CommandFrame& command) {
+PlanarTwist requested_twist(const CommandFrame& command) {
   return {command.twist_requested.linear[0], command.twist_requested.angular[2]};
 }
 
@@ -44,12 +44,12 @@ void CommandReport::enter_run(const CommandFrame& command) {
 }
 
 CommandReport::Told CommandReport::made_of(const CommandFrame& command) const {
-  const PlanarTwist wish = wish_of(command);
-  const double scale = kinematics_.wheel_speed_scale(wish);
-  const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
+  const PlanarTwist requested = requested_twist(command);
+  const double scale = kinematics_.wheel_speed_scale(requested);
+  const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
   return {.rims = kinematics_.rim_speeds(twist),
-          .zero = wish.linear == 0 && wish.angular == 0,
-          .limited = twist.linear != wish.linear || twist.angular != wish.angular,
+          .zero = requested.linear == 0 && requested.angular == 0,
+          .limited = twist.linear != requested.linear || twist.angular != requested.angular,
           .hindrance = command.reasons & kHindrances};
 }
 
@@ -60,16 +60,16 @@ bool CommandReport::same(const Told& one, const Told& other) {
 }
 
 std::string CommandReport::text(const Told& told, const CommandFrame& command) const {
-  const PlanarTwist wish = wish_of(command);
-  std::string asked = format("cmd_vel %g m/s, %g rad/s", wish.linear, wish.angular);
+  const PlanarTwist requested = requested_twist(command);
+  std::string asked = format("cmd_vel %g m/s, %g rad/s", requested.linear, requested.angular);
   if ((told.hindrance & kNoEffect) != 0) {
     const std::uint64_t why = told.hindrance & kNoEffect;
     return asked + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));
   }
   if (told.hindrance != 0) return asked + ", but " + sentences_of(kCommandReasonNames, told.hindrance);
   if (told.limited) {
-    const double scale = kinematics_.wheel_speed_scale(wish);
-    const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
+    const double scale = kinematics_.wheel_speed_scale(requested);
+    const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
     asked += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
   }
   return format("left %.2f m/s, right %.2f m/s (%s)", told.rims.left, told.rims.right, asked.c_str());
