@@ -13,9 +13,9 @@ namespace robot_control {
 
 namespace {
 
-std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& believed,
+std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& described,
                                   double period) {
-  const RobotModel robot = measured_robot(believed, parameters.feed_forward);
+  const RobotModel robot = measured_robot(described, parameters.feed_forward);
   std::vector<WheelLoop> loops;
   for (const WheelModel& wheel : robot.wheels) {
     loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),

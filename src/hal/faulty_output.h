@@ -1,5 +1,5 @@
 #pragma once
-/// An output that fails as told (signals/injected_fault.h): the samples of a sensor, the frames of a node.
+/// An output with an injected fault (signals/injected_fault.h): the samples of a sensor, the frames of a node.
 ///
 ///   kOk            the healthy value
 ///   kOff           nothing

@@ -1,16 +1,16 @@
 #pragma once
-/// The last step of a node's cycle: the frame goes out; of a node that was told to fail (SensorFrame::injected), what
-/// then goes out.
+/// The last step of a node's cycle: publishes the frame or, while a fault is injected (SensorFrame::injected), the
+/// faulty output.
 ///
-///   no output (off, slow, intermittent)   a token: cycle k has passed here, without a frame
+///   no output (off, slow, intermittent)   a token: cycle k was processed without a frame
 ///   stuck, delayed                        old content under the head of this cycle, so its own cycle numbers
 ///                                         (a permit's expiry, a command's state_cycle) are old, too
 ///   garbage                               spoilt_frames.h; one frame in four with a wrong checksum
 ///   wrong                                 spoilt_frames.h
 ///
-/// Only the output fails: the law goes on beneath. Nothing here depends on the clock: a failing node does the same in
-/// `clock: wall` as in lockstep, and in one process as in four. A new run knows nothing of the last one: a fault that
-/// is there in its first cycle begins in that cycle.
+/// Only the output is faulty: the law continues. Nothing here depends on the clock: a failing node does the same in
+/// `clock: wall` as in lockstep, and in one process as in four. A new run restarts: a fault that is
+/// injected in its first cycle begins in that cycle.
 
 #include "hal/faulty_output.h"
 #include "rt/latest_frames.h"

@@ -13,7 +13,7 @@ bool requests_motion(const CommandFrame* command) noexcept {
   return command != nullptr && !zero(command->twist_requested);
 }
 
-Measurement counted(double count) noexcept {
+ConditionMeasurement counted(double count) noexcept {
   return {.beyond = true, .value = count, .limit = count};
 }
 
@@ -148,7 +148,7 @@ void SafetyMonitor::add_pending() noexcept {
   constexpr auto kCorrupt = static_cast<double>(FrameConditions::kPersistence);
   for (std::uint64_t rest = pending_; rest != 0; rest &= rest - 1) {
     const auto cause = static_cast<StopCause>(rest & (~rest + 1));
-    Measurement measurement{.beyond = true};
+    ConditionMeasurement measurement{.beyond = true};
     if (cause == kCauseCorruptFrame) measurement = counted(kCorrupt);
     active_.add(cause, Reaction::kBrake, measurement);
   }

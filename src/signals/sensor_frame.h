@@ -1,5 +1,5 @@
 #pragma once
-/// Driver → everybody: the sensors of cycle k, the driver's health, and the gate's verdict of tick k-1.
+/// Driver → all nodes: the sensors of cycle k, the driver's state, and the gate's verdict of tick k-1.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxContacts = 8;
 struct ImuSample {
   Vector3 angular_velocity{};     ///< rad/s
   Vector3 linear_acceleration{};  ///< m/s²
-  Quaternion orientation{};       ///< all zero where the device has none
+  Quaternion orientation{};       ///< all zero if the device has none
 };
 
 enum class DriverState : std::uint64_t {
@@ -69,9 +69,9 @@ struct SensorFrame {
   double battery_current = 0;    ///< A, positive when discharging
   GateReport gate;               ///< of tick k-1
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
-  InjectedFaults injected{};     ///< of a simulator; a node that finds itself in it fails as told
+  InjectedFaults injected{};     ///< of a simulator; the named components and nodes produce faulty output
   std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
-  std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or set down anew. Outlives a reset.
+  std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or reset. Outlives a reset.
 };
 
 }  // namespace robot_control

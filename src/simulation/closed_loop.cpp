@@ -17,7 +17,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kDriverInstance = 1;  // any number but 0, as for a run: nobody else is on these channels
+constexpr std::uint64_t kDriverInstance = 1;  // any number but 0, as for a run: no other process uses these channels
 
 /// ClosedLoop is the only sender of commands: each run begins with a zero request.
 CommandScript script_of(const Parameters& parameters) {

@@ -39,11 +39,11 @@ TEST(SpeedLimiter, ReachesOneMetrePerSecondInExactlyOneSecond) {
 TEST(SpeedLimiter, NeverExceedsALimitNorOvershoots) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> wish(-4, 4);
+    std::uniform_real_distribution<double> requested(-4, 4);
     std::uniform_int_distribution<int> hold(1, 800);
     SpeedLimiter limiter(kLimits);
     for (int change = 0; change < 40; ++change) {
-      const PlanarTwist target{wish(random), wish(random)};
+      const PlanarTwist target{requested(random), requested(random)};
       const int cycles = hold(random);
       for (int k = 0; k < cycles; ++k) {
         const PlanarTwist before = limiter.value();
@@ -67,12 +67,12 @@ TEST(SpeedLimiter, NeverExceedsALimitNorOvershoots) {
 TEST(SpeedLimiter, DoesTheSameInReverseBitForBit) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> wish(-3, 3);
+    std::uniform_real_distribution<double> requested(-3, 3);
     SpeedLimiter forward(kLimits);
     SpeedLimiter reverse(kLimits);
     PlanarTwist target;
     for (int k = 0; k < 5000; ++k) {
-      if (k % 250 == 0) target = {wish(random), wish(random)};
+      if (k % 250 == 0) target = {requested(random), requested(random)};
       const PlanarTwist ahead = forward.step(target, kDt);
       const PlanarTwist back = reverse.step({-target.linear, -target.angular}, kDt);
       ASSERT_EQ(ahead.linear, -back.linear) << "seed " << seed << " cycle " << k;

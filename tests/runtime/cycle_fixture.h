@@ -1,5 +1,5 @@
 #pragma once
-/// Four cycles on channels in private memory, around a machine that only remembers what it was told.
+/// Four cycles on channels in private memory, around a machine that only remembers what it was reported.
 
 #include <memory>
 #include <string>
@@ -34,7 +34,7 @@ inline RobotModel two_wheels() {
   return robot;
 }
 
-/// Stands still whatever it is told.
+/// Stands still whatever it is reported.
 class StandingMachine final : public Driver {
  public:
   void start() override {}

@@ -3,7 +3,7 @@
 ///   latch command k-1 and permit k-1 → sample sensors of x(t_k) → publish sensors k → gate
 ///   → apply torque over [t_k, t_k+1).
 /// Latched are the newest command of cycles k-4 … k-1 and the newest permit of cycles k-7 … k-1, of which the gate
-/// tells one that has expired from none.
+/// distinguishes an expired one from a missing one.
 /// Sensor-to-torque delay is exactly one period. No clock is read here; `now` stamps the trace only.
 
 #include <cstdint>
@@ -52,10 +52,10 @@ class DriverCycle {
   /// A simulated machine has these faults from the next tick on.
   void inject(const InjectedFaults& faults) noexcept;
 
-  /// Wall clock: the next tick is due then. Whatever its stamp lies behind that, and has not slipped, was held.
+  /// Wall clock: the next tick is due then. The part of its lag that has not slipped was held.
   void set_due(std::int64_t deadline_ns) noexcept;
 
-  /// Hardware whose node was late: the next tick is that many cycles further on.
+  /// Hardware, after its node was late: the next tick is that many cycles further on.
   void skip(std::uint64_t cycles) noexcept { cycle_ += cycles; }
 
   std::uint64_t run() const noexcept { return run_; }

@@ -1,6 +1,6 @@
 #pragma once
-/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on. Told to fail, it does
-/// (faulty_writer.h).
+/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on. Injected
+/// faults: faulty_writer.h.
 
 #include <cstdint>
 

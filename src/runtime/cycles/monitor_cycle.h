@@ -1,6 +1,7 @@
 #pragma once
 /// The monitor's duty in one cycle: sensors k (which woke it), command k-1, head of state k-1 → permit k.
-/// A token is passed on. Told to fail, it does (faulty_writer.h); then it has nothing to say out of turn.
+/// A token is passed on. While a fault is injected the node publishes the faulty output (faulty_writer.h), and nothing
+/// between cycles.
 ///
 /// Wall clock: a step that finds no current sensor frame (none, corrupt, of another run or robot than the channel's
 /// head announces) counts as silence once the last current frame is loss_cycles periods old, whatever woke the step.
@@ -87,7 +88,7 @@ class MonitorCycle {
   OperatorInput operator_input_;  ///< inbox and script added up
   bool silent_ = false;
   std::uint64_t corrupt_sensors_ = 0;  ///< in a row
-  SensorFrame arrived_;                ///< as read, not yet believed
+  SensorFrame arrived_;                ///< as read, not yet checked
   SensorFrame sensors_;                ///< of the last step
   StateFrame state_;
   CommandFrame command_;

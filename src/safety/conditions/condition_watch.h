@@ -16,29 +16,29 @@
 namespace robot_control {
 
 /// The measured quantity of a condition in one cycle.
-struct Measurement {
+struct ConditionMeasurement {
   bool beyond = false;
   double value = 0;  ///< in the unit of the cause
   double limit = 0;
   std::uint64_t joint = kMaxJoints;  ///< index into RobotModel::joints; kMaxJoints: no single joint
 };
 
-inline Measurement beyond(std::size_t joint, double value, double limit) noexcept {
+inline ConditionMeasurement beyond(std::size_t joint, double value, double limit) noexcept {
   return {.beyond = value > limit, .value = value, .limit = limit, .joint = joint};
 }
 
 /// The one of two with the larger value − limit. NaN is never worse.
-inline const Measurement& worse(const Measurement& a, const Measurement& b) noexcept {
+inline const ConditionMeasurement& worse(const ConditionMeasurement& a, const ConditionMeasurement& b) noexcept {
   return b.value - b.limit > a.value - a.limit ? b : a;
 }
 
 /// Below its limit by more than any measurement.
-inline constexpr Measurement kNothingMeasured{.limit = std::numeric_limits<double>::infinity()};
+inline constexpr ConditionMeasurement kNothingMeasured{.limit = std::numeric_limits<double>::infinity()};
 
 /// The number of cycles for which a measurement counts: from kFarTimes the limit on, n times the limit in one cycle
 /// counts as much as the limit in n cycles, at most kMostTimes. So a light wheel whose motor runs away (10³ rad/s) is
 /// stopped before its persistence ends, and a wheel that leaves a bump is not.
-inline std::uint64_t weighed(const Measurement& measurement, std::uint64_t elapsed) noexcept {
+inline std::uint64_t weighed(const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
   constexpr double kFarTimes = 3;
   constexpr double kMostTimes = 50;
   const double times = measurement.value / measurement.limit;
@@ -67,7 +67,7 @@ class ConditionWatch {
   void reset() noexcept { beyond_ = 0; }
 
   /// `elapsed`: cycles since the last step, ≥ 1. True: active.
-  bool step(const Measurement& measurement, std::uint64_t elapsed) noexcept {
+  bool step(const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
     measurement_ = measurement;
     beyond_ = watched() && measurement.beyond ? beyond_ + elapsed : 0;
     return active();
@@ -76,14 +76,14 @@ class ConditionWatch {
   bool active() const noexcept { return beyond_ >= cycles_; }
 
   /// Of the last step.
-  const Measurement& measurement() const noexcept { return measurement_; }
+  const ConditionMeasurement& measurement() const noexcept { return measurement_; }
 
  private:
   StopCause cause_;
   Condition condition_;
   std::uint64_t cycles_;
   std::uint64_t beyond_ = 0;
-  Measurement measurement_;
+  ConditionMeasurement measurement_;
 };
 
 }  // namespace robot_control

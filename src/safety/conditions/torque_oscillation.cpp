@@ -59,7 +59,7 @@ void TorqueOscillation::enter_run() noexcept {
 
 void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targets, const WheelMotion& motion,
                              std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  Measurement measurement = kNothingMeasured;
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < count_; ++i) {
     const double measured = input.sensors->joints[i].effort;
     if (input.command != nullptr) commanded_[i] = input.command->joints[i].effort;
@@ -93,7 +93,7 @@ void TorqueOscillation::follow(std::size_t wheel, double measured, double comman
   of.target = target;
 }
 
-Measurement TorqueOscillation::judge(std::size_t wheel, const WheelMotion& motion) const noexcept {
+ConditionMeasurement TorqueOscillation::judge(std::size_t wheel, const WheelMotion& motion) const noexcept {
   const Wheel& of = wheels_[wheel];
   const double most = effort_limit_[wheel];
   if (most <= 0) return kNothingMeasured;

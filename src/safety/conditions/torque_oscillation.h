@@ -58,7 +58,7 @@ class TorqueOscillation {
   };
 
   void follow(std::size_t wheel, double measured, double commanded, double target, std::uint64_t elapsed) noexcept;
-  Measurement judge(std::size_t wheel, const WheelMotion& motion) const noexcept;
+  ConditionMeasurement judge(std::size_t wheel, const WheelMotion& motion) const noexcept;
 
   double period_;
   ConditionWatch warning_;

@@ -58,8 +58,8 @@ void WheelFollowing::Excess::reset() noexcept {
   mark = 0;
 }
 
-void WheelFollowing::Excess::step(Measurement measurement, double speed, double progress, std::uint64_t elapsed,
-                                  ActiveCauses& out) noexcept {
+void WheelFollowing::Excess::step(ConditionMeasurement measurement, double speed, double progress,
+                                  std::uint64_t elapsed, ActiveCauses& out) noexcept {
   if (!measurement.beyond) {
     mark = 0;
   } else if (mark == 0) {
@@ -77,7 +77,7 @@ void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotio
   const double target = targets[wheel];
   const double speed = target == 0 ? std::abs(motion.speed(wheel)) : along(target, motion.speed(wheel));
   const double tolerance = motion.speed_tolerance(wheel);
-  const Measurement measurement = beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance);
+  const ConditionMeasurement measurement = beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance);
   excess.step(measurement, speed, kProgress + tolerance, weighed(measurement, elapsed), out);
 }
 
@@ -90,9 +90,9 @@ void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMot
   excess.step(beyond(wheel, speed, excess.watch.limit() + tolerance), speed, kProgress + tolerance, elapsed, out);
 }
 
-Measurement WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
-                                    double dt) noexcept {
-  Measurement measurement = kNothingMeasured;
+ConditionMeasurement WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets,
+                                             const WheelMotion& motion, double dt) noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     Stall& stall = stalls_[i];
     const double wanted = targets.has(i) ? std::min(std::abs(targets[i]), fastest_[i]) : 0;
@@ -109,8 +109,8 @@ Measurement WheelFollowing::stalled(const SensorFrame& sensors, const WheelTarge
   return measurement;
 }
 
-Measurement WheelFollowing::not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
-                                        std::uint64_t elapsed) noexcept {
+ConditionMeasurement WheelFollowing::not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
+                                                 std::uint64_t elapsed) noexcept {
   rested_ = standstill.moving() ? 0 : rested_ + elapsed;
   if (!targets.commanded_to_stand() || static_cast<double>(rested_) * period_ >= kRest) {
     moved_ = 0;

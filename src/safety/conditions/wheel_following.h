@@ -65,7 +65,7 @@ class WheelFollowing {
 
     void reset() noexcept;
     /// `speed` rad/s in the evaluated direction; `progress` rad/s, a loss of speed that restarts the persistence.
-    void step(Measurement measurement, double speed, double progress, std::uint64_t elapsed,
+    void step(ConditionMeasurement measurement, double speed, double progress, std::uint64_t elapsed,
               ActiveCauses& out) noexcept;
   };
 
@@ -73,10 +73,10 @@ class WheelFollowing {
                      ActiveCauses& out) noexcept;
   void judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
                        ActiveCauses& out) noexcept;
-  Measurement stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
-                      double dt) noexcept;
-  Measurement not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
-                          std::uint64_t elapsed) noexcept;
+  ConditionMeasurement stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
+                               double dt) noexcept;
+  ConditionMeasurement not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
+                                   std::uint64_t elapsed) noexcept;
 
   /// rad/s, each wheel's velocity limit; ∞: none known.
   static constexpr std::array<double, kMaxWheels> without_limit() noexcept {

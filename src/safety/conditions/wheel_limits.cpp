@@ -47,15 +47,15 @@ void WheelLimits::step(const SensorFrame& sensors, const WheelMotion& motion, bo
                        std::uint64_t elapsed, ActiveCauses& out) noexcept {
   const double in_force = in_force_.step(speed_limit, elapsed);
   const bool known = motion.speed_known();
-  const Measurement speed = known ? fastest(motion, in_force) : kNothingMeasured;
+  const ConditionMeasurement speed = known ? fastest(motion, in_force) : kNothingMeasured;
   out.judge(speed_, speed, weighed(speed, elapsed));
   out.judge(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingMeasured, elapsed);
   out.judge(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingMeasured, elapsed);
   out.judge(power_, known ? drawn(sensors, motion) : kNothingMeasured, elapsed);
 }
 
-Measurement WheelLimits::fastest(const WheelMotion& motion, double speed_limit) const noexcept {
-  Measurement measurement = kNothingMeasured;
+ConditionMeasurement WheelLimits::fastest(const WheelMotion& motion, double speed_limit) const noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     const double slowed = (kSlack * speed_limit + kSlackSpeed) / radius_[i];
     const double limit = std::min(speed_.limit(), slowed) + motion.speed_tolerance(i);
@@ -64,8 +64,8 @@ Measurement WheelLimits::fastest(const WheelMotion& motion, double speed_limit) 
   return measurement;
 }
 
-Measurement WheelLimits::most_jerked(const WheelMotion& motion) const noexcept {
-  Measurement measurement = kNothingMeasured;
+ConditionMeasurement WheelLimits::most_jerked(const WheelMotion& motion) const noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     const double limit = acceleration_.limit() + motion.acceleration_tolerance(i);
     measurement = worse(measurement, beyond(i, std::abs(motion.acceleration(i)), limit));
@@ -73,15 +73,15 @@ Measurement WheelLimits::most_jerked(const WheelMotion& motion) const noexcept {
   return measurement;
 }
 
-Measurement WheelLimits::strongest(const SensorFrame& sensors) const noexcept {
-  Measurement measurement = kNothingMeasured;
+ConditionMeasurement WheelLimits::strongest(const SensorFrame& sensors) const noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < effort_limit_.size() && effort_limit_[i] > 0; ++i) {
     measurement = worse(measurement, beyond(i, std::abs(sensors.joints[i].effort) / effort_limit_[i], effort_.limit()));
   }
   return measurement;
 }
 
-Measurement WheelLimits::drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept {
+ConditionMeasurement WheelLimits::drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept {
   double power = 0;
   double limit = power_.limit();
   for (std::size_t i = 0; i < motion.wheels(); ++i) {

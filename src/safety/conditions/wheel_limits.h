@@ -52,10 +52,10 @@ class WheelLimits {
             std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
-  Measurement fastest(const WheelMotion& motion, double speed_limit) const noexcept;
-  Measurement most_jerked(const WheelMotion& motion) const noexcept;
-  Measurement strongest(const SensorFrame& sensors) const noexcept;
-  Measurement drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept;
+  ConditionMeasurement fastest(const WheelMotion& motion, double speed_limit) const noexcept;
+  ConditionMeasurement most_jerked(const WheelMotion& motion) const noexcept;
+  ConditionMeasurement strongest(const SensorFrame& sensors) const noexcept;
+  ConditionMeasurement drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept;
 
   ConditionWatch speed_;
   ConditionWatch acceleration_;

@@ -33,7 +33,7 @@ void YawAgreement::step(const SensorFrame& sensors, const WheelMotion& motion, s
   out.judge(watch_, known ? compare(sensors.imu.angular_velocity, motion) : kNothingMeasured, elapsed);
 }
 
-Measurement YawAgreement::compare(const Vector3& gyro, const WheelMotion& motion) const noexcept {
+ConditionMeasurement YawAgreement::compare(const Vector3& gyro, const WheelMotion& motion) const noexcept {
   double wheels = 0;
   double tolerance = 0;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {

@@ -29,7 +29,7 @@ class YawAgreement {
   void step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
-  Measurement compare(const Vector3& gyro, const WheelMotion& motion) const noexcept;
+  ConditionMeasurement compare(const Vector3& gyro, const WheelMotion& motion) const noexcept;
 
   ConditionWatch watch_;
   Vector3 up_imu_;  ///< the base's z axis in the IMU's axes

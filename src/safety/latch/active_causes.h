@@ -19,7 +19,7 @@ class ActiveCauses {
   }
 
   /// If a cause is added twice, its first measurement stays.
-  void add(StopCause cause, Reaction reaction, const Measurement& measurement = {}) noexcept {
+  void add(StopCause cause, Reaction reaction, const ConditionMeasurement& measurement = {}) noexcept {
     std::uint64_t& bits = bits_[static_cast<std::size_t>(reaction)];
     if ((bits & cause) != 0 || count_ == measurements_.size()) return;
     bits |= cause;
@@ -34,7 +34,7 @@ class ActiveCauses {
   }
 
   /// One more cycle of a condition.
-  void judge(ConditionWatch& watch, const Measurement& measurement, std::uint64_t elapsed) noexcept {
+  void judge(ConditionWatch& watch, const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
     if (watch.step(measurement, elapsed)) add(watch);
   }
 

@@ -28,7 +28,7 @@ void Warnings::step(const ActiveCauses& active, std::uint64_t cycle, std::uint64
     if ((measurement.cause & (warning | slowing)) == 0) continue;
     Held& held = held_[index_of(measurement.cause)];
     const std::uint64_t since = (bits() & measurement.cause) != 0 ? held.evidence.cycle : cycle;
-    held = {.left = hold_cycles_, .evidence = finding};
+    held = {.left = hold_cycles_, .evidence = measurement};
     held.evidence.cycle = since;
   }
   warning_ |= warning;
