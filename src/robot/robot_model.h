@@ -39,7 +39,7 @@ enum class JointRole {
   kHeld,     ///< driven by another controller (arm, lift, gripper): braked, always
 };
 
-/// s from no torque to the effort limit, where nobody says how fast a wheel's torque may change. That is how long the
+/// s from no torque to the effort limit, if the torque rate of a wheel is not given. That is how long the
 /// current of a motor needs: inductance over resistance is 0.1 … 1 ms for brushed motors of 10 … 200 W (maxon
 /// catalogue, terminal inductance and resistance of the RE series), so no motor gets slower by it.
 inline constexpr double kEffortRise = 0.001;
