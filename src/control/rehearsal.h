@@ -9,9 +9,9 @@
 ///   (τ'_right − τ'_left)/2 = (r·I/(h·b) + J·b_eff/2r)·ω̇ + r·m·x_c·v·ω/(h·b)
 ///
 /// Motions: straight at full speed and at kSlowPart of it, turning on the spot likewise, and both axes at half speed;
-/// each from rest until it is steady, then back to rest. At steady full speed 1 % of the weight pushes the wheels of the
-/// right side forwards for half a second: rolling resistance, or a caster that swivels; the loops must be strong enough
-/// for it. Result: by how much a speed stays outside its ramp for kExcessTime without interruption, in units of
+/// each from rest until it is steady, then back to rest. At steady full speed 1 % of the weight pushes the wheels of
+/// the right side forwards for half a second: rolling resistance, or a caster that swivels; the loops must be strong
+/// enough for it. Result: by how much a speed stays outside its ramp for kExcessTime without interruption, in units of
 ///
 ///   max(kExcessPart·|speed|, kLeastExcess)      speed: of the motion along that axis; if that is 0, of the fastest rim
 ///

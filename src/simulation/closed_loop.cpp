@@ -26,14 +26,6 @@ CommandScript script_of(const Parameters& parameters) {
   return script;
 }
 
-/// A channel in private memory, with its two ends.
-template <class Frame>
-struct Channel {
-  std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
-  FrameWriter<Frame> writer{memory.get(), Wake::kNobody};
-  FrameReader<Frame> reader{memory.get()};
-};
-
 RobotModel load_robot(const Parameters& parameters) {
   RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
   require_drivable(parameters, robot);
@@ -43,6 +35,14 @@ RobotModel load_robot(const Parameters& parameters) {
 }  // namespace
 
 struct ClosedLoop::Parts {
+  /// A channel in private memory, with its two ends.
+  template <class Frame>
+  struct Channel {
+    std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
+    FrameWriter<Frame> writer{memory.get(), Wake::kNobody};
+    FrameReader<Frame> reader{memory.get()};
+  };
+
   explicit Parts(const Parameters& given)
       : parameters(given),
         robot(load_robot(given)),
