@@ -7,10 +7,6 @@ target_include_directories(robot_control_options INTERFACE ${PROJECT_SOURCE_DIR}
 target_compile_options(robot_control_options INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # GCC 12 sees overlapping copies in "literal" + string (its bug 105329)
-if(CMAKE_UNITY_BUILD)
-  target_compile_options(robot_control_options INTERFACE
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-error=subobject-linkage>)  # GCC takes a source within another for a header
-endif()
 target_link_libraries(robot_control_options INTERFACE Threads::Threads)
 if(ROBOT_CONTROL_SANITIZER STREQUAL "address")
   target_compile_options(robot_control_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -g -O1)

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
-/// Whole periods in what is left of `timeout`. The margin keeps 1.25 s / 1 ms at 1250 although neither is exact in
+/// Whole periods in the rest of `timeout`. The margin keeps 1.25 s / 1 ms at 1250, although neither number is exact in
 /// binary.
 std::uint64_t cycles_left(double timeout, std::int64_t age_ns, double period) noexcept {
   constexpr double kMargin = 1e-6;
@@ -41,10 +41,10 @@ void CommandWatch::reset(const VelocityCommand& inbox, bool with_zero) noexcept 
   zero_requested_ = with_zero;
   life_ = request_cycle_ = not_finite_ = timeouts_ = stale_ = 0;
   reason_ = kReasonNoCommand;
-  wish_ = {};
+  requested_twist_ = {};
 }
 
-void CommandWatch::limit(double timeout) noexcept {
+void CommandWatch::set_timeout(double timeout) noexcept {
   timeout_ = timeout;
   silence_needed_ = cycles_of_silence(timeout, period_);
   life_ = cycles_left(timeout_, last_.age_ns, period_);
@@ -55,7 +55,7 @@ void CommandWatch::accept(const VelocityCommand& request, std::uint64_t cycle) n
   life_ = cycles_left(timeout_, request.age_ns, period_);
   const bool good = finite(request.twist);
   reason_ = good ? 0u : std::uint64_t{kReasonRefused};
-  wish_ = good ? request.twist : Twist{};
+  requested_twist_ = good ? request.twist : Twist{};
   if (!good) ++not_finite_;
 }
 
@@ -79,14 +79,14 @@ const Twist& CommandWatch::step(const VelocityCommand& request, std::uint64_t cy
   }
   if (request.many_senders != 0) {
     reason_ = kReasonManySenders;
-    wish_ = {};
+    requested_twist_ = {};
   } else if (reason_ == 0 && cycle - request_cycle_ > life_) {
     ++timeouts_;
     reason_ = kReasonTimedOut;
-    wish_ = {};
+    requested_twist_ = {};
   }
   last_ = request;
-  return wish_;
+  return requested_twist_;
 }
 
 }  // namespace robot_control

@@ -1,29 +1,30 @@
 #pragma once
-/// What the operator wants in this cycle: the inbox, judged.
+/// The requested twist of this cycle, from the inbox of velocity commands.
 ///
-/// A command is new when its count differs from the last one seen. It lives until `timeout` after its stamp (age_ns is
-/// its age when it arrived), without a stamp after the cycle in which it was first seen. In cycle k it has timed out
-/// when
+/// A command is new when its count differs from the last one. It stays in force until `timeout` after its stamp (age_ns
+/// is its age on arrival); a command without a stamp, until `timeout` after the cycle in which it was first read. It
+/// has timed out in cycle k if
 ///
 ///   (k − request_cycle)·period + age > timeout
 ///
-/// Then the wish is zero, and `timeouts` grows by one, once per command. A command with any component NaN or infinite
-/// is refused: the wish is zero until a good one arrives (what was commanded before is not resumed), and it does not
-/// time out. The same holds while one sender too many is there (VelocityCommand::many_senders) and until the next
-/// command after that. What was refused for its stamp changes no wish: the command before it stands, as long as it
-/// lives. Commands overwritten in the inbox between two cycles count as received; only the last one is judged.
+/// Then the requested twist is zero, and `timeouts` grows by one, once per command. A command with a NaN or infinite
+/// component is refused: the requested twist is zero until the next valid command (the command before it is not
+/// resumed), and the refused command does not time out. The same holds while too many nodes send commands
+/// (VelocityCommand::many_senders), and until the next command after that. A message that is refused for its stamp has
+/// no effect: the command before it stays in force until its own timeout. Commands that are overwritten in the inbox
+/// between two cycles count as received; only the last one is evaluated.
 ///
-/// Only cycles are counted here: no clock that jumps can end a command early, or bring one back.
+/// Only cycles are counted here, so a clock that jumps cannot end a command early or restore an old one.
 ///
-/// Beside the request stands the evidence that no motion is requested, for the safety monitor (motion_release.h):
+/// For the safety monitor (motion_release.h) this class also reports the evidence that no motion is requested:
 ///
 ///   zero request    an accepted command of zero velocity that is not contested (VelocityCommand::contested), received
-///                   after the first step: what the inbox holds then may be as old as the process
-///   zero requested  a zero request was received, and since then nothing else: no motion, no refused message,
-///                   no contested zero
+///                   after the first step: what the inbox holds before may be as old as the process
+///   zero requested  a zero request was received, and since then nothing else: no motion, no refused message, no
+///                   contested zero
 ///   silent cycles   k − k_message, k_message the cycle of the last message of any sender, accepted or refused; before
-///                   the first one the cycle of the first step
-///   silence needed  cmd_vel_timeout in cycles; 1 s where that is 0
+///                   the first message the cycle of the first step
+///   silence needed  cmd_vel_timeout in cycles; 1 s if that is 0
 
 #include <cstdint>
 #include <optional>
@@ -37,18 +38,18 @@ class CommandWatch {
   /// `timeout` s, 0 = never; `period` > 0, s.
   CommandWatch(double timeout, double period);
 
-  /// A new run: what the inbox holds now, and whatever came before, counts as not received. `with_zero`: the run begins
-  /// with a zero request, because nothing older can be pending (a command script, ClosedLoop).
+  /// A new run: what the inbox holds now, and everything before, counts as not received. `with_zero`: the run begins
+  /// with a zero request, because no older command can be pending (a command script, ClosedLoop).
   void reset(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
 
-  /// Another timeout, s, from the next step on; for the command that stands, too.
-  void limit(double timeout) noexcept;
+  /// Another timeout, s, from the next step on; it also applies to the command in force.
+  void set_timeout(double timeout) noexcept;
 
-  /// Returns what the robot shall do; linear x and angular z matter to a differential drive.
+  /// Returns the requested twist, of which a differential drive uses linear x and angular z.
   const Twist& step(const VelocityCommand& request, std::uint64_t cycle) noexcept;
 
   /// CommandReason bits of the last step: one of kReasonNoCommand, kReasonRefused, kReasonManySenders, kReasonTimedOut
-  /// or none; kReasonStale beside it.
+  /// or none; in addition kReasonStale.
   std::uint64_t reasons() const noexcept { return reason_ | stale_; }
   std::uint64_t request_cycle() const noexcept { return request_cycle_; }
   std::uint64_t received() const noexcept { return last_.count - first_.count + stale() + crowded(); }
@@ -70,14 +71,14 @@ class CommandWatch {
   double timeout_;
   double period_;
   VelocityCommand first_;   ///< of the run
-  VelocityCommand last_;    ///< seen
-  std::uint64_t life_ = 0;  ///< cycles, of the last command
+  VelocityCommand last_;    ///< read
+  std::uint64_t life_ = 0;  ///< cycles for which the last command stays in force
   std::uint64_t request_cycle_ = 0;
   std::uint64_t not_finite_ = 0;
   std::uint64_t timeouts_ = 0;
   std::uint64_t reason_ = 0;
   std::uint64_t stale_ = 0;  ///< kReasonStale or 0
-  Twist wish_;
+  Twist requested_twist_;
   std::optional<std::uint64_t> first_cycle_;  ///< of the first step since `reset`
   std::uint64_t message_cycle_ = 0;
   std::uint64_t silence_needed_ = 0;

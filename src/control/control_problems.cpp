@@ -179,7 +179,7 @@ std::string powerless_message(const JointModel& joint, const RobotModel& robot) 
 }
 
 /// One value of feed_forward beside what the URDF says of it.
-struct Believed {
+struct MeasuredValue {
   const char* key;
   const char* unit;
   std::optional<double> given;
@@ -187,7 +187,7 @@ struct Believed {
   double most;  ///< times either way
 };
 
-void check_believable(const Believed& value, std::vector<std::string>& problems) {
+void check_plausible(const MeasuredValue& value, std::vector<std::string>& problems) {
   if (!value.given || (*value.given <= value.most * value.described && value.described <= value.most * *value.given)) {
     return;
   }
@@ -195,7 +195,7 @@ void check_believable(const Believed& value, std::vector<std::string>& problems)
   text.precision(4);
   text << "diff_drive_controller.feed_forward." << value.key << " = " << *value.given << " " << value.unit << ": "
        << "the description says " << value.described << " " << value.unit << "; more than " << value.most
-       << " times either way is taken for a slip of the pen. Correct the one or the other.";
+       << " times either way is taken for a typing error. Correct the one or the other.";
   problems.push_back(text.str());
 }
 
@@ -236,14 +236,14 @@ void check_joint_losses(const DriveControllerParameters& parameters, const Robot
 }
 
 /// A payload, a rotor behind a gear: but not a hundred times what is described, which would drive the robot by itself.
-void check_believable(const DriveControllerParameters& parameters, const RobotModel& robot,
-                      std::vector<std::string>& problems) {
+void check_plausible(const DriveControllerParameters& parameters, const RobotModel& robot,
+                     std::vector<std::string>& problems) {
   const FeedForwardParameters& given = parameters.feed_forward;
-  check_believable({"mass", "kg", given.mass, robot.mass, 5}, problems);
-  check_believable({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
+  check_plausible({"mass", "kg", given.mass, robot.mass, 5}, problems);
+  check_plausible({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
   if (robot.wheels.empty()) return;
   const double wheel = robot.wheels.front().inertia;
-  check_believable({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
+  check_plausible({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
   check_joint_losses(parameters, robot, problems);
 }
 
@@ -298,11 +298,11 @@ bool only_limits(const DriveControllerParameters& parameters) noexcept {
 
 }  // namespace
 
-std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& believed,
+std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
                                           double period) {
-  const RobotModel robot = measured_robot(believed, parameters.feed_forward);
+  const RobotModel robot = measured_robot(described, parameters.feed_forward);
   std::vector<std::string> problems;
-  check_believable(parameters, believed, problems);
+  check_plausible(parameters, described, problems);
   std::vector<Loop> judged;
   const double bandwidth = tracking_bandwidth(parameters, period);
   const double most = std::max(kMostTracking / period, tracking_bandwidth({}, period));
@@ -311,8 +311,8 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
     const WheelModel& wheel = robot.wheels[i];
     const JointModel& joint = robot.joints[wheel.joint];
     if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, robot));
-    const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, believed, i)};
-    const Loop derived{wheel_loop_gains({}, believed, believed.wheels[i], period), tracking_bandwidth({}, period),
+    const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, described, i)};
+    const Loop derived{wheel_loop_gains({}, described, described.wheels[i], period), tracking_bandwidth({}, period),
                        period, loop.loads};
     if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
     judged.push_back(loop);
@@ -323,7 +323,7 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
     }
   }
   if (problems.empty() && !robot.wheels.empty() && !only_limits(parameters)) {
-    if (std::string problem = rehearsal_problem(parameters, believed, robot, period); !problem.empty()) {
+    if (std::string problem = rehearsal_problem(parameters, described, robot, period); !problem.empty()) {
       problems.push_back(std::move(problem));
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// The start-up check: would these gains hold this robot at this rate?
+/// The start-up check: are these gains stable on this robot at this rate?
 
 #include <string>
 #include <vector>

@@ -1,9 +1,9 @@
 #pragma once
-/// What a user set → the numbers that the controller runs with.
+/// The user's parameters → the numbers that the controller runs with.
 ///
-/// What is left out follows from what is given: a deceleration from its acceleration (drive_limits.h), gains and
-/// bandwidth from robot and rate (wheel_loop_gains.h), with the robot as it was measured (measured_robot.h). So what
-/// was left derived stays derived when something else changes.
+/// Parameters that are left out are derived: a deceleration from its acceleration (drive_limits.h), gains and bandwidth
+/// from robot and rate (wheel_loop_gains.h), with the measured robot (measured_robot.h). They are derived again
+/// whenever another parameter changes.
 
 #include "control/drive_controller_parameters.h"
 #include "control/limits/speed_limiter.h"
@@ -13,7 +13,8 @@
 
 namespace robot_control {
 
-/// `robot` as it was read; at most kMaxWheels wheels. `period` s > 0. Count 0. Allocates: for ordinary threads.
+/// `robot` as described; at most kMaxWheels wheels. `period` s > 0. Count is 0. Allocates: not for the real-time
+/// thread.
 DriveTuning drive_tuning(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
 
 SpeedLimits speed_limits(const DriveTuning& tuning) noexcept;

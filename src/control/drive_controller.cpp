@@ -13,9 +13,9 @@ namespace robot_control {
 
 namespace {
 
-std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& believed,
+std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& described,
                                   double period) {
-  const RobotModel robot = measured_robot(believed, parameters.feed_forward);
+  const RobotModel robot = measured_robot(described, parameters.feed_forward);
   std::vector<WheelLoop> loops;
   for (const WheelModel& wheel : robot.wheels) {
     loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),
@@ -36,7 +36,7 @@ PlanarTwist scaled(const PlanarTwist& twist, double scale) noexcept {
   return {scale * twist.linear, scale * twist.angular};
 }
 
-/// The largest multiple ≥ 0 of `inertial` that fits beside `rest` into `limit`; infinite: any. N·m.
+/// The largest factor m ≥ 0 with |rest + m·inertial| ≤ limit, N·m; infinite if there is none.
 double affordable_multiple(double inertial, double rest, double limit) noexcept {
   if (inertial == 0) return std::numeric_limits<double>::infinity();
   return std::max((limit - std::copysign(rest, rest * inertial)) / std::abs(inertial), 0.0);
@@ -46,7 +46,7 @@ JointCommand effort_command(double velocity, double effort) noexcept {
   return {.mode = JointMode::kEffort, .velocity = velocity, .effort = effort};
 }
 
-constexpr double kLeastPart = 0.2;  // header
+constexpr double kLeastAccelerationScale = 0.2;  // header
 
 constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
@@ -66,25 +66,25 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
 
 void DriveController::reset(const VelocityCommand& inbox, bool with_zero) noexcept {
   watch_.reset(inbox, with_zero);
-  limiter_.seed({});
+  limiter_.restart_from({});
   standstill_.reset();
   for (WheelLoop& loop : loops_) loop.reset();
   last_cycle_.reset();
   last_angle_.reset();
-  periods_ = part_ = 1;
-  driving_ = followed_ = holding_ = false;
+  periods_ = acceleration_scale_ = 1;
+  driving_ = in_control_ = holding_ = false;
   state_cycle_ = permit_cycle_ = 0;
 }
 
 void DriveController::tune(const DriveTuning& tuning) noexcept {
-  watch_.limit(tuning.cmd_vel_timeout);
-  limiter_.limit(speed_limits(tuning));
+  watch_.set_timeout(tuning.cmd_vel_timeout);
+  limiter_.set_limits(speed_limits(tuning));
   const auto planned = [&] { return feed_forward_.efforts(limiter_.value(), limiter_.acceleration()); };
   const WheelValues before = planned();
   feed_forward_.tune(tuning);
   const WheelValues after = planned();
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    const double less = driving_ && followed_ ? before[i] - after[i] : 0;
+    const double less = driving_ && in_control_ ? before[i] - after[i] : 0;
     loops_[i].tune(wheel_loop_gains(tuning.wheels[i]), tuning.tracking_bandwidth, less);
   }
 }
@@ -106,8 +106,8 @@ bool DriveController::track(const WheelValues& angle, const SensorFrame& sensors
   }
   bool good = true;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    loops_[i].measure(sensors.joints[i], periods_, followed_);
-    // Absurd but finite numbers overflow the tracking loops; they would never recover by themselves.
+    loops_[i].measure(sensors.joints[i], periods_, in_control_);
+    // Very large finite numbers overflow the tracking loops, which would not recover by themselves.
     good = good && std::isfinite(loops_[i].velocity());
   }
   return good;
@@ -117,7 +117,8 @@ bool DriveController::measure(const SensorFrame& sensors) noexcept {
   if (!usable(sensors)) return false;
   periods_ = last_cycle_ ? static_cast<double>(sensors.head.cycle - *last_cycle_) : 1.0;
   last_cycle_ = sensors.head.cycle;
-  followed_ = driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kCommandLife);
+  in_control_ =
+      driving_ && sensors.gate.verdict != GateVerdict::kBrake && periods_ <= static_cast<double>(kCommandLife);
   WheelValues angle{};
   for (std::size_t i = 0; i < loops_.size(); ++i) angle[i] = sensors.joints[i].position;
   standstill_.step(angle, sensors.head.cycle);
@@ -126,7 +127,7 @@ bool DriveController::measure(const SensorFrame& sensors) noexcept {
     return true;
   }
   last_angle_.reset();
-  for (WheelLoop& loop : loops_) loop.lose_track();
+  for (WheelLoop& loop : loops_) loop.restart_tracking();
   return false;
 }
 
@@ -144,11 +145,11 @@ std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint6
   return usable_now ? 0u : std::uint64_t{kReasonNoState};
 }
 
-/// What was asked for, as far as the permit lets it.
-PlanarTwist DriveController::wish(const Permit* permit, CommandFrame& out) const noexcept {
+/// The requested twist, limited by the permit.
+PlanarTwist DriveController::permitted_twist(const Permit* permit, CommandFrame& out) const noexcept {
   const PlanarTwist requested{out.twist_requested.linear[0], out.twist_requested.angular[2]};
   if ((out.reasons & kReasonPermitRamp) != 0) return {};
-  if ((out.reasons & (kReasonNoPermit | kReasonPermitBrake)) != 0) return requested;  // it brakes all the same
+  if ((out.reasons & (kReasonNoPermit | kReasonPermitBrake)) != 0) return requested;  // braked in any case
   if (permit->speed_limit >= kNoSpeedLimit) return requested;
   const double scale = kinematics_.rim_speed_scale(requested, permit->speed_limit);
   if (scale < 1) out.reasons |= kReasonPermitSlow;
@@ -165,40 +166,42 @@ void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   for (std::size_t i = 0; i < loops_.size(); ++i) measured[i] = loops_[i].velocity();
   const PlanarTwist twist = kinematics_.twist(measured);
   const double scale = kinematics_.wheel_speed_scale(twist);  // no plan beyond the joints' limits
-  limiter_.seed({scale * twist.linear, scale * twist.angular});
-  const bool carries = standstill_.standing() || slow();
+  limiter_.restart_from({scale * twist.linear, scale * twist.angular});
+  const bool preloads = standstill_.standing() || slow();
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    loops_[i].resume();
-    if (carries) loops_[i].carry(sensors.joints[i].effort);
+    loops_[i].reset_to_measured();
+    if (preloads) loops_[i].preload_integrator(sensors.joints[i].effort);
   }
 }
 
-double DriveController::affordable_part(const PlanarTwist& limited, const WheelValues& feed_forward) const noexcept {
-  if (part_ == 1 && std::ranges::none_of(loops_, &WheelLoop::saturated)) return 1;
+double DriveController::affordable_acceleration_scale(const PlanarTwist& limited,
+                                                      const WheelValues& feed_forward) const noexcept {
+  if (acceleration_scale_ == 1 && std::ranges::none_of(loops_, &WheelLoop::saturated)) return 1;
   const WheelValues unaccelerated = feed_forward_.efforts(limited, {});
   double multiple = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double inertial = feed_forward[i] - unaccelerated[i];
-    multiple =
-        std::min(multiple, affordable_multiple(inertial, loops_[i].wanted() - inertial, loops_[i].effort_limit()));
+    multiple = std::min(
+        multiple, affordable_multiple(inertial, loops_[i].unclamped_effort() - inertial, loops_[i].effort_limit()));
   }
   if (std::isinf(multiple)) return 1;
-  return std::clamp(multiple * limiter_.used_part(), kLeastPart, 1.0);
+  return std::clamp(multiple * limiter_.used_acceleration_scale(), kLeastAccelerationScale, 1.0);
 }
 
-void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors, CommandFrame& out) noexcept {
-  if (!followed_) follow_measured(sensors);
+void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept {
+  if (!in_control_) follow_measured(sensors);
   const bool at_rest =
-      followed_ ? is_zero(limiter_.value()) && standstill_.standing() : holding_ || standstill_.standing() || slow();
-  holding_ = is_zero(wish) && at_rest;
+      in_control_ ? is_zero(limiter_.value()) && standstill_.standing() : holding_ || standstill_.standing() || slow();
+  holding_ = is_zero(requested) && at_rest;
   if (holding_) out.reasons |= kReasonHolding;
   driving_ = (out.reasons & kBrakeReasons) == 0;
   if (!driving_) return;
 
-  if (followed_) {
-    const PlanarTwist goal = scaled(wish, kinematics_.wheel_speed_scale(wish));
-    if (goal.linear != wish.linear || goal.angular != wish.angular || part_ < 1) out.reasons |= kReasonSaturated;
-    limiter_.step(goal, periods_ * period_, (out.reasons & kEmergencies) != 0, part_);
+  if (in_control_) {
+    const PlanarTwist goal = scaled(requested, kinematics_.wheel_speed_scale(requested));
+    if (goal.linear != requested.linear || goal.angular != requested.angular || acceleration_scale_ < 1)
+      out.reasons |= kReasonSaturated;
+    limiter_.step(goal, periods_ * period_, (out.reasons & kEmergencies) != 0, acceleration_scale_);
     out.reasons |= limiter_.reasons();
   }
   // A target that changed during a ramp may lead past the wheels' limits.
@@ -208,15 +211,15 @@ void DriveController::drive(const PlanarTwist& wish, const SensorFrame& sensors,
   const PlanarTwist rate = scaled(limiter_.acceleration(), scale);
   const WheelValues velocity = kinematics_.joint_speeds(limited);
   const WheelValues acceleration = kinematics_.joint_speeds(rate);
-  const WheelValues feed_forward = followed_ ? feed_forward_.efforts(limited, rate) : WheelValues{};
-  const bool clamped = followed_ && (sensors.gate.reasons & kGateClamps) != 0;
+  const WheelValues feed_forward = in_control_ ? feed_forward_.efforts(limited, rate) : WheelValues{};
+  const bool clamped = in_control_ && (sensors.gate.reasons & kGateClamps) != 0;
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
     out.joints[i] = effort_command(velocity[i], effort);
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }
-  part_ = followed_ ? affordable_part(limited, feed_forward) : 1.0;
+  acceleration_scale_ = in_control_ ? affordable_acceleration_scale(limited, feed_forward) : 1.0;
   out.twist_limited = spatial(limited);
 }
 
@@ -233,7 +236,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   if (input.permit != nullptr) permit_cycle_ = input.permit->head.cycle;
 
   if (measure(sensors)) {
-    drive(wish(input.permit, out), sensors, out);
+    drive(permitted_twist(input.permit, out), sensors, out);
     for (std::size_t i = 0; i < loops_.size(); ++i) out.velocity_measured[i] = loops_[i].velocity();
   } else {
     out.reasons |= kReasonBadSensors;

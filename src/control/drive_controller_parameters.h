@@ -1,11 +1,11 @@
 #pragma once
-/// What a user sets of the drive controller.
+/// The user's parameters of the drive controller.
 
 #include <optional>
 
 namespace robot_control {
 
-/// What was measured of the robot and goes before its URDF in the controller (measured_robot.h), and nowhere else.
+/// Measured values of the robot, which the controller alone uses instead of those of the URDF (measured_robot.h).
 struct FeedForwardParameters {
   std::optional<double> mass;            ///< kg
   std::optional<double> yaw_inertia;     ///< kg·m² about the vertical through the middle of the wheels
@@ -26,13 +26,13 @@ struct DriveControllerParameters {
   std::optional<double> max_angular_emergency_deceleration;  ///< rad/s²
   std::optional<double> max_linear_jerk;                     ///< m/s³; 0: no limit; absent: drive_limits.h
   std::optional<double> max_angular_jerk;                    ///< rad/s³; 0: no limit
-  bool keep_curvature = true;                                ///< on the way to a new command both axes arrive together
+  bool keep_curvature = true;                                ///< both axes reach a new command in the same step
   double cmd_vel_timeout = 1.25;                             ///< s; 0 = never
-  bool one_sender = false;                                   ///< true: no command counts while more than one node sends
-  std::optional<double> pid_kp;                              ///< N·m·s/rad
-  std::optional<double> pid_ki;                              ///< N·m/rad
-  double pid_kd = 0.0;                                       ///< N·m·s²/rad
-  std::optional<double> tracking_bandwidth;                  ///< Hz, of the wheel speeds' tracking loops
+  bool one_sender = false;                   ///< true: no command is accepted while more than one node sends
+  std::optional<double> pid_kp;              ///< N·m·s/rad
+  std::optional<double> pid_ki;              ///< N·m/rad
+  double pid_kd = 0.0;                       ///< N·m·s²/rad
+  std::optional<double> tracking_bandwidth;  ///< Hz, of the tracking loops of the wheel speeds
   FeedForwardParameters feed_forward;
 };
 

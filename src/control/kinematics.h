@@ -1,5 +1,5 @@
 #pragma once
-/// Twist of the robot ↔ speeds of its wheels; those of one side turn alike, as if one belt ran over them.
+/// Twist of the robot ↔ speeds of its wheels. The rims of one side have the same speed, as if coupled by a belt.
 ///
 ///   v_left = v − ω·b/2      v = (v_left + v_right)/2      q̇ᵢ = signᵢ·v_side/radiusᵢ
 ///   v_right = v + ω·b/2     ω = (v_right − v_left)/b
@@ -14,8 +14,8 @@
 
 namespace robot_control {
 
-/// Of a joint's velocity limit, what is planned with: beyond it the gate takes torque away (hal/joint_clamp.h,
-/// kTaperStart), and a loaded wheel that lacks it leaves its curve: a skid steer by 10 %.
+/// The part of a joint's velocity limit that is planned with: beyond it the gate reduces the torque (hal/joint_clamp.h,
+/// kTaperStart), and a loaded wheel without that torque leaves the curve.
 inline constexpr double kUsableWheelSpeed = 0.9;
 
 class DriveKinematics {
@@ -37,7 +37,7 @@ class DriveKinematics {
   double wheel_speed_scale(const PlanarTwist& twist) const noexcept;
 
   /// The largest s ≤ 1 for which no rim runs faster over the ground than `limit` [m/s] at s·twist. Keeps the
-  /// curvature, too. A limit that is no speed (below zero, NaN) lets nothing move.
+  /// curvature, too. 0 if the limit is negative or NaN.
   double rim_speed_scale(const PlanarTwist& twist, double limit) const noexcept;
 
  private:

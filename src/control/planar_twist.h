@@ -1,5 +1,5 @@
 #pragma once
-/// The two numbers that a differential drive can follow, a value per side and a value per wheel.
+/// Plain values of a differential drive: a planar twist, a value per side, a value per wheel.
 
 #include <array>
 

@@ -1,8 +1,8 @@
 #pragma once
 /// Do all wheels stand? Each has moved less than kStandstillSpeed·kStandstillTime for kStandstillTime.
 ///
-/// Judged on angles, not on speeds: one encoder count at the edge (0.0015 rad of 4096) jumps the speed of any filter
-/// above the threshold, but not the angle out of the window of 0.005 rad.
+/// Angles are compared, not speeds: one encoder count (0.0015 rad of 4096) lifts every filtered speed above the
+/// threshold, but does not leave the angle window of 0.005 rad.
 
 #include <cstdint>
 
@@ -11,14 +11,14 @@
 namespace robot_control {
 
 inline constexpr double kStandstillSpeed = 0.02;  ///< rad/s; 2 mm/s on a 0.1 m wheel
-inline constexpr double kStandstillTime = 0.25;   ///< s; the wheel loops have settled by then
+inline constexpr double kStandstillTime = 0.25;   ///< s; longer than the wheel loops need to settle
 
 class Standstill {
  public:
   /// `period` > 0, s.
   explicit Standstill(double period);
 
-  /// Forgets the past: the robot may be moving.
+  /// Restarts: the robot may be moving.
   void reset() noexcept;
 
   /// rad of every wheel's joint, `cycle` of the sample.

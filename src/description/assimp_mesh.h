@@ -11,8 +11,9 @@
 
 namespace robot_control {
 
-/// The corners of every face with three or more, where the nodes' transforms put them. A problem is told in assimp's
-/// words, or that it breaks down. `format`: "obj" or "dae". Nothing but `bytes` is read: no textures, no materials.
+/// The corners of every face with three or more, where the nodes' transforms put them. A problem is reported in
+/// assimp's words, or that it breaks down. `format`: "obj" or "dae". Nothing but `bytes` is read: no textures, no
+/// materials.
 MeshFaces parse_with_assimp(std::string_view bytes, const std::string& format);
 
 }  // namespace robot_control

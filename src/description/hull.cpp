@@ -51,7 +51,7 @@ Indices ends(const Cloud& cloud) {
   return {static_cast<std::size_t>(low), static_cast<std::size_t>(high)};
 }
 
-/// Qhull with what it owns. It reports errors to a file, which nobody reads.
+/// Qhull with what it owns. It reports errors to a file, which is not read.
 class Qhull {
  public:
   Qhull() : silence_(std::fopen("/dev/null", "w")) { qh_zero(&qh_, silence_); }

@@ -15,7 +15,7 @@
 namespace robot_control {
 namespace {
 
-constexpr const char* kExport = "Export the mesh anew, as STL, OBJ or DAE";
+constexpr const char* kExport = "Export the mesh again, as STL, OBJ or DAE";
 
 std::string lower_ending(const std::filesystem::path& path) {
   std::string ending = path.extension().string();

@@ -1,12 +1,12 @@
 #pragma once
 /// Mesh files as clouds of points, and the corners of their convex hulls: what contact and measuring need of a mesh.
 ///
-/// Read are STL, OBJ and DAE (COLLADA), told by the file name's ending in either case.
+/// Read are STL, OBJ and DAE (COLLADA), recognised by the file name's ending in either case.
 ///   STL   binary when the length is 84 + 50 n bytes, n the count in bytes 80…83, else text: the word "solid" begins
 ///         genuine binary files, too. Lengths count as metres, as in rviz.
 ///   OBJ   likewise metres.
 ///   DAE   through assimp: the nodes' transforms and `<unit meter="…">` apply. `<up_axis>` does not, as in rviz and
-///         Gazebo, in whose pictures the makers of a URDF place their meshes (rviz issue 1045, gazebo-classic issue
+///         Gazebo, in which authors of a URDF check the position of their meshes (rviz issue 1045, gazebo-classic issue
 ///         1305): coordinates are taken as they stand.
 /// Points that no face uses, lines, and points at infinity are no part of a mesh.
 

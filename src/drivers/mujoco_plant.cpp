@@ -51,7 +51,7 @@ MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& p
 void MujocoPlant::start() {
   if (faults_ & kFaultSimulationError) {
     throw DriverError("mujoco_plant: MuJoCo raised an error (" + std::string(fault_message()) +
-                      "). Start the process anew.");
+                      "). Restart the process.");
   }
   data_ = set_down(model_);
   wheels_.reset();

@@ -13,7 +13,7 @@
 ///
 /// `start` sets the robot down on the site `start` of the scene and lets it settle with the brakes on, at most for
 /// 20 s; where it then rests is time zero and the origin of truth. It rests when its base has moved slower than
-/// 1 µm/s and 1 µrad/s, its joints than 1 mrad/s (a swivel nobody loads takes long, and matters not), for 0.1 s;
+/// 1 µm/s and 1 µrad/s, its joints than 1 mrad/s (an unloaded swivel takes long, and does not matter), for 0.1 s;
 /// or at last when the base is slower than 30 µm/s and 30 µrad/s. A robot that tilts by more than 30° falls over, and
 /// is refused; the driver then stays in state kStarting. Same model and commands, same bits, also after another
 /// `start`.
@@ -34,7 +34,7 @@
 ///
 /// Sensors: encoders of all joints, gyro and accelerometer at the IMU; where the parameters say so, the forces of the
 /// ground on wheels and casters (wheel_contacts.h), and a battery (battery.h) that feeds all wheels. An e-stop button
-/// that nobody presses, unless its fault does.
+/// that is not pressed, except by an injected fault.
 
 #include <array>
 #include <string>

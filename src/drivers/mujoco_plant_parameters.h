@@ -29,7 +29,7 @@ struct MujocoPlantParameters {
   std::optional<double> brake_stiffness;   ///< N·m/rad, position hold below brake_hold_speed
   std::optional<double> brake_hold_speed;  ///< rad/s
 
-  // The robot differs from what its controller believes.
+  // Differences between the simulated robot and the model of its controller.
   double left_radius_error = 0;  ///< true radius = radius · (1 + error)
   double right_radius_error = 0;
   double wheel_base_error = 0;                         ///< true wheel base = wheel base · (1 + error)

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 using Filter = ErrorStateFilter;
 
 constexpr double kQuietAcceleration = 0.1;  // m/s², mean at rest beside what is expected: sliding slower is no slide
-constexpr std::uint64_t kDoubtfulWindows = 8;  // then the velocity was wrong, not the window
-constexpr double kSpeedDeviation = 0.005;      // m/s, encoder counts behind the tracking loop
+constexpr std::uint64_t kDistrustedWindows = 8;  // then the velocity was wrong, not the window
+constexpr double kSpeedDeviation = 0.005;        // m/s, encoder counts behind the tracking loop
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void Estimator::reset() noexcept {
     side.total = 0;
     side.ahead = 0;
     side.refused = 0;
-    side.believed = true;
+    side.trusted = true;
   }
   rate_.reset(Eigen::Vector3d::Zero());
   rate_follows_ = false;
@@ -62,7 +62,7 @@ void Estimator::reset() noexcept {
   resting_ = true;
   held_ = {};
   steady_time_ = 0;
-  doubtful_windows_ = 0;
+  distrusted_windows_ = 0;
   rested_ = 0;
   wheels_ = {};
   distance_ = 0;
@@ -173,20 +173,20 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     Side& side = sides_[static_cast<std::size_t>(i)];
     const EncoderReading reading = side.encoder.step(sensors, dt);
     if (reading == EncoderReading::kRejected) flags_ |= kStateBadSample;
-    if (!side.encoder.heard()) flags_ |= kLost[i];
+    if (!side.encoder.received()) flags_ |= kLost[i];
     side.total += side.encoder.travel();
     if (reading == EncoderReading::kTravel && side.encoder.time() > 0) {
       side.speed.step(side.encoder.travel(), side.encoder.time());
     }
-    if (reading == EncoderReading::kOffset) {  // first heard: in mid-run, perhaps
+    if (reading == EncoderReading::kOffset) {  // first reading: in mid-run, perhaps
       side.ahead = 0;
       filter_.anchor_travel(i, side.total);
     }
     if (reading == EncoderReading::kLost) {
       side.ahead = 0;
       filter_.anchor_travel(i, side.total);
-      filter_.doubt_velocity(0, kRestartPosition / std::max(side.encoder.time(), period_),
-                             std::max(side.encoder.time(), period_));
+      filter_.inflate_velocity(0, kRestartPosition / std::max(side.encoder.time(), period_),
+                               std::max(side.encoder.time(), period_));
       slip_.begin(filter_);
     }
   }
@@ -200,7 +200,7 @@ double Estimator::wheel_rate() const noexcept {
   return geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
 }
 
-/// Raw odometry: whatever either side has travelled since it was last heard.
+/// Raw odometry: the travel of either side since its last reading.
 void Estimator::follow_wheels() noexcept {
   const double left = sides_[kLeft].encoder.travel();
   const double right = sides_[kRight].encoder.travel();
@@ -224,8 +224,8 @@ void Estimator::move(double dt) noexcept {
   motion.accelerometer = imu_.accelerometer();
   motion.left_travel = rolled(kLeft, dt);
   motion.right_travel = rolled(kRight, dt);
-  motion.caution = slip_.caution();
-  motion.sliding = !slip_.believed(Contact::kLeft) && !slip_.believed(Contact::kRight);
+  motion.slip_proximity = slip_.slip_proximity();
+  motion.sliding = !slip_.trusts(Contact::kLeft) && !slip_.trusts(Contact::kRight);
   motion.left_speed = left_speed;
   motion.right_speed = right_speed;
   filter_.predict(motion);
@@ -235,13 +235,13 @@ void Estimator::move(double dt) noexcept {
 
   constexpr double kSilent = std::numeric_limits<double>::quiet_NaN();
   if (parameters_.slip_detection) {
-    const auto heard = [&](int side, double travel) {  // a reading that spans more than a window contradicts none
+    const auto received = [&](int side, double travel) {  // a reading that spans more than a window contradicts none
       const bool slow = sides_[static_cast<std::size_t>(side)].encoder.gap() > ImuSamples::kSlow;
       return slow || lost(side) ? kSilent : travel;
     };
     slip_.step({.dt = dt,
-                .left = heard(kLeft, motion.left_travel),
-                .right = heard(kRight, motion.right_travel),
+                .left = received(kLeft, motion.left_travel),
+                .right = received(kRight, motion.right_travel),
                 .inertial = motion.gyro.has_value() && motion.accelerometer.has_value()},
                filter_);
   }
@@ -256,9 +256,9 @@ void Estimator::move(double dt) noexcept {
     const Vector3d deviation = filter_.acceleration_deviation();
     const bool slides = std::abs(rest.x()) > kQuietAcceleration + 3 * deviation.x() ||
                         std::abs(rest.y()) > kQuietAcceleration + 3 * deviation.y();
-    if (slides && ++doubtful_windows_ < kDoubtfulWindows) return;
+    if (slides && ++distrusted_windows_ < kDistrustedWindows) return;
   }
-  doubtful_windows_ = 0;
+  distrusted_windows_ = 0;
   filter_.halt(kRestSpeed);
   rested_ = 0;
   learn_at_rest();
@@ -270,7 +270,7 @@ void Estimator::move(double dt) noexcept {
 
 double Estimator::rolled(int index, double dt) noexcept {
   Side& side = sides_[static_cast<std::size_t>(index)];
-  if (side.encoder.heard()) return side.encoder.travel() - std::exchange(side.ahead, 0);
+  if (side.encoder.received()) return side.encoder.travel() - std::exchange(side.ahead, 0);
   const double travel = (filter_.velocity.x() - filter_.rate.z() * filter_.lever(index)) * dt;
   side.ahead += travel;
   return travel;
@@ -284,12 +284,12 @@ bool Estimator::lost(int side) const noexcept {
 
 void Estimator::correct(double dt) noexcept {
   for (const int side : {kLeft, kRight}) correct_side(side, dt);
-  if (slip_.believed(Contact::kLateral)) {
+  if (slip_.trusts(Contact::kLateral)) {
     const auto [nis, used] = filter_.correct_lateral(dt);
     note(kLateralContact, nis, dt);
     if (!used) ++rejected_[kLateralContact];
   }
-  if (slip_.believed(Contact::kVertical)) {
+  if (slip_.trusts(Contact::kVertical)) {
     const auto [nis, used] = filter_.correct_vertical(dt);
     note(kVerticalContact, nis, dt);
     if (!used) ++rejected_[kVerticalContact];
@@ -300,12 +300,12 @@ void Estimator::correct(double dt) noexcept {
 
 void Estimator::correct_side(int index, double dt) noexcept {
   Side& side = sides_[static_cast<std::size_t>(index)];
-  const bool believed = slip_.believed(index == kLeft ? Contact::kLeft : Contact::kRight);
-  if (believed && !side.believed) filter_.anchor_travel(index, side.total);
-  side.believed = believed;
-  if (!believed || !side.encoder.heard()) return;
+  const bool trusted = slip_.trusts(index == kLeft ? Contact::kLeft : Contact::kRight);
+  if (trusted && !side.trusted) filter_.anchor_travel(index, side.total);
+  side.trusted = trusted;
+  if (!trusted || !side.encoder.received()) return;
   const auto [nis, used] =
-      filter_.correct_travel(index, side.total, slip_.calm() ? Filter::Scope::kAll : Filter::Scope::kMotion);
+      filter_.correct_travel(index, side.total, slip_.no_recent_slip() ? Filter::Scope::kAll : Filter::Scope::kMotion);
   note(index == kLeft ? kLeftEncoder : kRightEncoder, nis, dt);
   side.refused = used ? 0 : side.refused + 1;
   if (used) return;
@@ -313,7 +313,7 @@ void Estimator::correct_side(int index, double dt) noexcept {
   if (side.refused < kMaxRefused) return;
   side.refused = 0;
   filter_.anchor_travel(index, side.total);
-  filter_.doubt_velocity(0, std::abs(side.speed.speed() - filter_.velocity.x()) + kRestSpeed, dt);
+  filter_.inflate_velocity(0, std::abs(side.speed.speed() - filter_.velocity.x()) + kRestSpeed, dt);
 }
 
 void Estimator::note(SensorIndex sensor, double nis, double dt) noexcept {
@@ -353,14 +353,14 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
     out.confidence[sensor] = used ? 1 / std::max(1.0, out.nis[sensor]) : 0;
   };
   out.confidence = {};
-  const bool left = sides_[kLeft].encoder.heard();
-  const bool right = sides_[kRight].encoder.heard();
-  confidence(kLeftEncoder, left && slip_.believed(Contact::kLeft));
-  confidence(kRightEncoder, right && slip_.believed(Contact::kRight));
+  const bool left = sides_[kLeft].encoder.received();
+  const bool right = sides_[kRight].encoder.received();
+  confidence(kLeftEncoder, left && slip_.trusts(Contact::kLeft));
+  confidence(kRightEncoder, right && slip_.trusts(Contact::kRight));
   confidence(kGyro, imu_.gyro().has_value());
   confidence(kAccelerometer, imu_.accelerometer().has_value());
-  confidence(kLateralContact, slip_.believed(Contact::kLateral));
-  confidence(kVerticalContact, slip_.believed(Contact::kVertical));
+  confidence(kLateralContact, slip_.trusts(Contact::kLateral));
+  confidence(kVerticalContact, slip_.trusts(Contact::kVertical));
 
   out.flags = flags_;
   const int silent = (lost(kLeft) ? 1 : 0) + (lost(kRight) ? 1 : 0);

@@ -9,14 +9,14 @@
 /// At rest (standstill_window.h) nothing is integrated: pose and covariance stay, the biases and the tilt are learned.
 /// What happens in a window that turns out not to be quiet is made good at once. Every run begins so. Wheels that stand
 /// under a gyro that reads the same rate for kSteadyTime are those of a robot at rest whose gyro bias is another one
-/// than believed.
+/// than assumed.
 ///
 /// Samples may come at any rate. One that is not finite or impossible is not used (kStateBadSample, which says, too,
 /// that encoders are missing in this cycle), and the last one holds: for three times the gap between the last two,
-/// within kShortHold … kLongHold. Beyond that the sensor is lost, and says so by its flag:
+/// within kShortHold … kLongHold. Beyond that the sensor is lost, and its flag is set:
 ///   gyro            yaw comes from the wheels, by the calibration learned so far
 ///   accelerometer   tilt and slip of all wheels together are not noticed
-///   one encoder     gyro and the other side carry on
+///   one encoder     gyro and the other side continue
 ///   both encoders, or one and the gyro: no longer kStateValid. The next good reading brings the whole travel.
 /// A frame of a cycle that is not newer gives the last state again.
 ///
@@ -55,7 +55,7 @@ class Estimator {
   static constexpr double kSteadyTime = 10.0;       ///< s; nothing turns a robot so evenly on wheels that stand
   static constexpr double kSettling = 2.0;          ///< s of rest in which yaw still learns from the gyro's bias
   static constexpr double kRestSpeed = 0.01;        ///< m/s, standard deviation of the velocity when rest ends
-  static constexpr std::uint64_t kMaxRefused = 50;  ///< encoder readings in a row behind the gate, then anew
+  static constexpr std::uint64_t kMaxRefused = 50;  ///< encoder readings in a row behind the gate, then restart
 
   /// `period`: s, > 0. Throws std::invalid_argument: a parameter or a measure of the robot out of range, a
   /// side without a wheel.
@@ -91,9 +91,9 @@ class Estimator {
     SideEncoder encoder;
     SpeedTracker speed;
     double total = 0;  ///< m, all travel of this run
-    double ahead = 0;  ///< m, taken as travelled since it was last heard
+    double ahead = 0;  ///< m, taken as travelled since its last reading
     std::uint64_t refused = 0;
-    bool believed = true;
+    bool trusted = true;
   };
 
   /// Of a window at rest that is not over yet.
@@ -146,7 +146,7 @@ class Estimator {
   Held held_;
   Eigen::Vector3d steady_gyro_ = Eigen::Vector3d::Zero();  ///< rad/s, of windows that contradict the gyro's bias
   double steady_time_ = 0;                                 ///< s, of these windows
-  std::uint64_t doubtful_windows_ = 0;                     ///< quiet ones in a row that contradict the velocity
+  std::uint64_t distrusted_windows_ = 0;                   ///< quiet ones in a row that contradict the velocity
   double rested_ = 0;                                      ///< s
   WheelOdometry wheels_;
   double distance_ = 0;

@@ -23,7 +23,7 @@ struct EstimatorParameters {
   double speed_bandwidth = 20.0;            ///< Hz, of the tracking loops behind wheel speeds
   double rate_bandwidth = 20.0;             ///< Hz, of the tracking loop behind the twist's angular velocity
 
-  bool slip_detection = true;    ///< false: wheels are always believed
+  bool slip_detection = true;    ///< false: wheels are always trusted
   bool self_calibration = true;  ///< false: the calibration stays as it starts
   bool planar = true;            ///< pose_odom is x, y, yaw, with z, roll and pitch zero; false: all six
 

@@ -29,7 +29,7 @@ void Estimator::rest(double dt) noexcept {
     held_.gyro = false;
   }
   const auto silent = [&](int side) { return sides_[static_cast<std::size_t>(side)].encoder.gap() > 0 && lost(side); };
-  if (silent(kLeft) && silent(kRight)) {  // nobody says that it still rests
+  if (silent(kLeft) && silent(kRight)) {  // no sensor confirms that it still rests
     standstill_.reset();
     rested_ = 0;
     lasting_flags_ &= ~std::uint64_t{kStateStandstill};

@@ -1,5 +1,5 @@
 #pragma once
-/// Frames of a node with an injected fault, kGarbage and kWrong (signals/injected_fault.h).
+/// Corrupts the output frames of a node for the injected faults kGarbage and kWrong (signals/injected_fault.h).
 ///
 ///              kGarbage                                          kWrong
 ///   state      every number of pose, twist and bias              the motion mirrored: x, y, speeds, with their sign

@@ -10,12 +10,13 @@
 ///   truncated or foreign magic    never writes to it, unlinks it and makes a new one
 ///   any of them, locked           BusError after a third of a second: another instance, or a node of another build, is
 ///                                 running
-///   another owner, open to others BusError naming owner or mode; not put right, since whoever could open it may
-///                                 have it open still
+///   another owner, open to others BusError naming owner or mode; its mode is not corrected, because another process
+///   may
+///                                 still have it open
 ///   a link, directory, pipe       BusError
 /// What the processes of another bus left is removed by the next start of any node (bus_cleanup.h).
-/// A reader maps read-only. It maps nothing but what is usable: an unlocked wreck is waited out, since its next
-/// writer replaces it; a locked wreck and a foreign owner are a BusError. A lock does not outlive the process
+/// A reader maps read-only. It maps nothing but what is usable: an unlocked unusable object is waited for, because its
+/// next writer replaces it; a locked one and a foreign owner are a BusError. A lock does not outlive the process
 /// that took it, unless a forked child has kept the descriptor.
 
 #include <cstdint>
@@ -68,7 +69,7 @@ template <class Object>
 class OwnedChannel {
  public:
   /// Object is LatestFrames<Frame>, Ring<Row> or RingPositions. Throws BusError. What a writer says of itself
-  /// in the head (run attached to, robot) begins anew.
+  /// in the head (run attached to, robot) restarts.
   OwnedChannel(const std::string& bus, const std::string& channel)
       : object_(OwnedBusObject::claim(bus, channel, BusLayoutOf<Object>::value)) {
     // A reader of the retired object may come with a sequence seen there; equal numbers would let it sleep.
@@ -91,7 +92,7 @@ class ForeignChannel {
   ForeignChannel(std::string bus, std::string channel)
       : object_(std::make_unique<ForeignBusObject>(bus, std::move(channel), BusLayoutOf<Object>::value)) {}
 
-  /// Ordinary thread, at 10 Hz: maps, or maps anew when the name has a new object. True if `memory()` changed.
+  /// Ordinary thread, at 10 Hz: maps, or maps again when the name has a new object. True if `memory()` changed.
   /// Throws BusError. A shortage of descriptors passes: what is mapped stays, and the next poll looks again. Old
   /// mappings stay valid; after an unlink without a successor the old one stays current,
   /// because its writer may well go on.
@@ -109,7 +110,7 @@ class ForeignChannel {
   std::unique_ptr<ForeignBusObject> object_;
 };
 
-/// A consumer tells in its own channel which run's sensors it waits on. Real-time safe.
+/// A consumer publishes in its own channel which run's sensors it waits on. Real-time safe.
 inline void attach_to_run(ChannelHead& own, std::uint64_t run) noexcept {
   own.attached_run.store(run, std::memory_order_release);
 }
@@ -119,7 +120,7 @@ inline std::uint64_t attached_run(const ChannelHead& head) noexcept {
   return head.attached_run.load(std::memory_order_acquire);
 }
 
-/// The driver tells in the sensors channel which robot it drives: RobotModel::hash and ::source (cut at 255
+/// The driver publishes in the sensors channel which robot it drives: RobotModel::hash and ::source (cut at 255
 /// bytes). Ordinary thread, before the first frame.
 void announce_robot(ChannelHead& own, std::uint64_t hash, const std::string& source) noexcept;
 

@@ -100,7 +100,7 @@ const char* kind_text(mode_t mode) {
   return "a device or socket";
 }
 
-/// The object of this name is not this user's alone. It is refused, never put right: whoever could open it may
+/// The object of this name is not this user's alone. It is refused, its mode is not corrected: another process may
 /// have it open still.
 [[noreturn]] void fail_not_private(const std::string& channel, const std::string& name) {
   const std::string file = file_of(name);
@@ -120,7 +120,7 @@ const char* kind_text(mode_t mode) {
   char mode[8];
   std::snprintf(mode, sizeof mode, "%04o", static_cast<unsigned>(status.st_mode & 07777U));
   fail(channel, name, std::string("its mode is ") + mode + ", and must be 0600: others than this user may have it open",
-       look + "stop all nodes and remove it; the next start makes it anew");
+       look + "stop all nodes and remove it; the next start creates it again");
 }
 
 /// Of descriptors, here or on the whole machine: it passes.

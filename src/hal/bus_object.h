@@ -1,6 +1,6 @@
 #pragma once
 /// What is the same for a channel of any type: the claim of an object by its writer, the view of a reader.
-/// The protocol is told in hal/bus.h.
+/// The protocol: hal/bus.h.
 
 #include <atomic>
 #include <cstdint>

@@ -25,7 +25,7 @@ class Driver {
   /// Brings the machine to a state in which `read` and `write` may be called; brakes hold. Throws DriverError.
   virtual void start() = 0;
 
-  /// Sensors of x(t_k): everything of the frame but head, boot, gate and counters. Never blocks.
+  /// Sensors of x(t_k): everything of the frame but head, driver_instance, gate and counters. Never blocks.
   virtual void read(SensorFrame& sensors) noexcept = 0;
 
   /// Applies the commands, one per joint in frame order, over [t_k, t_k+1). An unknown mode, or a number that is not

@@ -1,24 +1,28 @@
 #pragma once
-/// The last check before the motors. It asks in this order, and the first "no" brakes:
-///   1. is the permit alive (the monitor)?   2. does it allow motion?
-///   3. is the command fresh (the controller)?   4. is every number finite, every checksum right?
-/// Then it clamps. Up to 3 missed commands the last one holds; beyond, brake, unlatched and counted.
+/// The last check before the motors. It checks in this order, and brakes at the first check that fails:
+///   1. the permit has not expired (safety_monitor is running)
+///   2. the permit allows motion
+///   3. the command is of a recent cycle (diff_drive_controller is running)
+///   4. all numbers are finite and all checksums are right
+/// Then it clamps the command. Up to 3 missed commands the last one is held; after that the gate brakes, which is
+/// counted and not latched.
 ///
 /// At tick k (all of the driver's present run, else the frame counts as missing):
-///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife)  ∧  cycle not before that of an earlier tick's permit:
-///            what was revoked does not come back
-///   action   kDrive, or kRamp while k ≤ ramp_until and for longest_ramp cycles in a row at most, whatever it says
+///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife)  ∧  cycle not before that of an earlier tick's permit,
+///            so a revoked permit does not come back
+///   action   kDrive, or kRamp while k ≤ ramp_until and for at most longest_ramp cycles in a row, whatever its
+///            ramp_until says
 ///   command  k − kCommandLife ≤ cycle ≤ k − 1; older than k − 1 is *held*
-///   numbers  every field of every joint finite, every mode a JointMode, joint_count the robot's; the samples of the
-///            joints that are to move finite, where a clamp needs them
+///   numbers  every field of every joint finite, every mode a JointMode, joint_count that of the robot; the samples of
+///            the joints that are to move finite, if a clamp needs them
 ///   clamps   joint_clamp.h, in this order:
 ///            |effort| ≤ limit · |Δeffort| ≤ effort_rate·Δt · speed limit · end stops
-/// The driver's brake torque ends with the brake. So the first effort after it may lie where the brake held, at zero,
-/// or anywhere between, and one step beyond.
+/// When a brake ends, the driver's brake torque ends at once. The first effort after it may therefore lie anywhere
+/// between the torque of the brake and zero, plus one step of effort_rate·Δt.
 ///
 /// Tick 0 brakes. A brake is JointCommand{} on every joint; under FailAction::kCoast kEffort 0 on wheels, unless the
-/// command itself asks for the brake of every joint. A frame counted in `refused` is one that was there and was not
-/// believed; a tick counted in `missed` is one that only the command was missing in.
+/// command itself requests the brake on every joint. `refused` counts frames that arrived and failed a check; `missed`
+/// counts ticks in which only the command was missing.
 
 #include <array>
 #include <cstdint>
@@ -44,7 +48,7 @@ struct GateInput {
   const Permit* permit = nullptr;  ///< never null; meaningful when found
   Lookup command_found = Lookup::kMissing;
   const CommandFrame* command = nullptr;  ///< never null; meaningful when found
-  const SensorFrame* sensors = nullptr;   ///< never null; of this very tick
+  const SensorFrame* sensors = nullptr;   ///< never null; of this tick
 };
 
 class Gate {
@@ -52,10 +56,10 @@ class Gate {
   /// One entry per joint; `period` > 0, s. Throws std::invalid_argument: limits that are none, more than kMaxJoints.
   Gate(std::vector<JointLimits> limits, const GateParameters& parameters, double period);
 
-  /// A new run: counters begin anew.
+  /// A new run: counters restart.
   void reset() noexcept;
 
-  /// What the driver shall do in tick k: one command per joint. `report()` tells why.
+  /// The commands for the driver in tick k, one per joint. `report()` holds the verdict and its reasons.
   std::span<const JointCommand> step(const GateInput& input) noexcept;
 
   const GateReport& report() const noexcept { return report_; }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a user sets of the gate, and what it is told of the machine's joints.
+/// The user's parameters of the gate, and the limits of the machine's joints.
 
 #include <cstdint>
 #include <limits>

@@ -1,5 +1,5 @@
 #pragma once
-/// What a calibration of wheels and gyro may be; beyond, it is a slip of the pen, a broken file or another robot.
+/// What a calibration of wheels and gyro may be; beyond, it is a typing error, a broken file or another robot.
 
 namespace robot_control {
 

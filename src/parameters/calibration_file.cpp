@@ -18,7 +18,7 @@ namespace robot_control {
 namespace {
 
 constexpr const char* kBlock = "calibration";
-constexpr const char* kRemedy = "delete it to begin anew, or name another file";
+constexpr const char* kRemedy = "delete it to restart the calibration, or name another file";
 
 /// All that stands in the file.
 struct Content {
@@ -136,7 +136,7 @@ std::string text_of(const Content& content) {
   const auto vector = [](const Vector3& v) {
     return "[" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) + "]";
   };
-  std::string text = "# What state_estimator learned while it drove; delete this file to begin anew.\n";
+  std::string text = "# The calibration that state_estimator learned; delete this file to restart it.\n";
   text.append(kBlock).append(":\n");
   Content copy = content;
   for (const Row& row : kRows) {

@@ -12,7 +12,8 @@
 ///     …                          # wheel_base_factor, wheel_base_deviation; gyro_bias, gyro_bias_deviation: rad/s, IMU
 ///
 /// A file that is of another robot or other parameters, broken or beyond calibration_bounds.h is refused, with all that
-/// is wrong with it: whoever silently began anew would drive as badly as on the first day, and tell nobody.
+/// is wrong with it: an estimator that silently restarted its calibration would be as inaccurate as on the first day,
+/// without a message.
 
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// The values as they were written, before anybody asked what they mean.
+/// The parameter values as text, before they are interpreted.
 
 #include <filesystem>
 #include <map>

@@ -60,8 +60,8 @@ class TreeReader {
       blocks.emplace(block.name);
       for (const Key& key : block.keys) paths.insert(path_of(block, key));
     }
-    // What stands in a map where none belongs, or in an unknown one, is told with that map.
-    const auto told_with_its_map = [&](const std::string& path) {
+    // Keys inside an unexpected or unknown map are reported with that map.
+    const auto reported_with_its_map = [&](const std::string& path) {
       const std::string map = path.substr(0, path.rfind('.'));
       return map.find('.') != std::string::npos && tree_.entries.contains(map) && rule_of_group(map).empty();
     };
@@ -70,9 +70,9 @@ class TreeReader {
       problems_.add({printable(block.name), "", "unknown block", block.origin, suggest_block(block.name)});
     }
     for (const auto& [path, entry] : tree_.entries) {
-      const bool told_with_its_block = !entry.overlay && !blocks.contains(path.substr(0, path.find('.')));
+      const bool reported_with_its_block = !entry.overlay && !blocks.contains(path.substr(0, path.find('.')));
       if (paths.contains(path) || !rule_of_group(path).empty()) continue;
-      if (told_with_its_block || told_with_its_map(path)) continue;
+      if (reported_with_its_block || reported_with_its_map(path)) continue;
       problems_.add({printable(path), as_written(entry), "unknown key", entry.origin, suggest_key(path)});
     }
   }
@@ -110,7 +110,7 @@ class TreeReader {
                                 first_inside->first.starts_with(group + ".");
     if (map || overlaid_alone) return true;
     if (entry == tree_.entries.end() && may_be_absent(group)) return false;
-    if (!told_groups_.insert(group).second) return false;
+    if (!reported_groups_.insert(group).second) return false;
     const std::string rule = rule_of_group(group);
     if (entry == tree_.entries.end()) {
       problems_.add({group, "", "missing", source_, "add it: " + rule});
@@ -213,8 +213,8 @@ class TreeReader {
   std::string source_;  ///< of what is missing
   ProblemList& problems_;
   Parameters parameters_;
-  std::set<std::string, std::less<>> sound_;        ///< paths whose value was accepted
-  std::set<std::string, std::less<>> told_groups_;  ///< groups that are no maps
+  std::set<std::string, std::less<>> sound_;            ///< paths whose value was accepted
+  std::set<std::string, std::less<>> reported_groups_;  ///< groups that are no maps
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Collects what is wrong with an input, so that one error tells all of it.
+/// Collects all problems of an input, so that one error reports all of them.
 
 #include <string>
 #include <string_view>

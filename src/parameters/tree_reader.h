@@ -11,8 +11,8 @@
 
 namespace robot_control {
 
-/// `base` with what `blocks` have in `tree`; what is refused or missing stays as in `base` and becomes a problem, told
-/// of `source` where it stands nowhere. Of the loop's rate `base` knows where the tree does not.
+/// `base` with what `blocks` have in `tree`; what is refused or missing stays as in `base` and becomes a problem,
+/// reported of `source` where it stands nowhere. Of the loop's rate `base` knows where the tree does not.
 Parameters read_blocks(ParameterTree tree, std::span<const Block> blocks, const std::string& source,
                        const Parameters& base, ProblemList& problems);
 

@@ -51,17 +51,17 @@ Eigen::Vector3d finite(const RigidBodies& robot, const std::string& element, con
 
 }  // namespace
 
-std::string imu_link_of(const RigidBodies& robot, const std::string& wished, std::vector<RobotNote>& notes) {
+std::string imu_link_of(const RigidBodies& robot, const std::string& requested_link, std::vector<RobotNote>& notes) {
   const std::string& base = robot.bodies[0].name;
-  if (!wished.empty()) {
-    if (!robot.links.contains(wished)) {
-      refuse(robot.source, "robot/imu_link", "there is no link \"" + wished + "\"",
+  if (!requested_link.empty()) {
+    if (!robot.links.contains(requested_link)) {
+      refuse(robot.source, "robot/imu_link", "there is no link \"" + requested_link + "\"",
              "Name a link of the URDF, or none: then the IMU is found, or sits in " + base);
     }
-    if (!fixed_to_root(robot, wished)) {
-      refuse(robot.source, link_element(wished), "it moves against " + base, "Fix the IMU to the chassis");
+    if (!fixed_to_root(robot, requested_link)) {
+      refuse(robot.source, link_element(requested_link), "it moves against " + base, "Fix the IMU to the chassis");
     }
-    return wished == base ? "" : wished;
+    return requested_link == base ? "" : requested_link;
   }
   if (fixed_to_root(robot, "imu_link")) return "imu_link";
   for (const std::string& link : robot.link_order) {

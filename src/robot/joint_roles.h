@@ -1,5 +1,5 @@
 #pragma once
-/// Who drives the joints that are no drive wheels.
+/// The roles of the joints that are not drive wheels.
 ///
 ///   kPassive  wheels of casters and the swivels above them, suspensions and rockers (what stands between the root and
 ///             a wheel), followers of a <mimic>, joints without an effort limit

@@ -118,7 +118,7 @@ MassSum sum_of_masses(const RigidBodies& robot) {
   return sum;
 }
 
-Eigen::Vector3d believed_centre(const RigidBodies& robot, const RobotParameters& parameters,
+Eigen::Vector3d effective_centre(const RigidBodies& robot, const RobotParameters& parameters,
                                 const Eigen::Vector3d& from_urdf, RobotModel& model) {
   if (!parameters.centre_of_gravity) return from_urdf;
   const Vector3& given = *parameters.centre_of_gravity;
@@ -137,7 +137,7 @@ Eigen::Vector3d believed_centre(const RigidBodies& robot, const RobotParameters&
 void read_masses(const RigidBodies& robot, const RobotParameters& parameters, RobotModel& model) {
   const MassSum sum = sum_of_masses(robot);
   model.mass = overridden("mass", "kg", parameters.mass, sum.mass, robot, model.notes);
-  const Eigen::Vector3d centre = believed_centre(robot, parameters, sum.centre, model);
+  const Eigen::Vector3d centre = effective_centre(robot, parameters, sum.centre, model);
   model.centre_of_gravity_base = plain(centre);
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const WheelModel& wheel : model.wheels) {

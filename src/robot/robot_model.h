@@ -16,7 +16,7 @@
 namespace robot_control {
 
 /// What a user may say about the robot beside its URDF (the `robot:` block). It is what estimator and controller
-/// believe; a simulated plant stays as the URDF says. Where both speak and differ by more than 1 %, a note says so.
+/// use; a simulated plant stays as the URDF says. Where both speak and differ by more than 1 %, a note reports it.
 struct RobotParameters {
   std::vector<std::string> left_wheel_joints;   ///< both empty: found, see drive_wheels.h
   std::vector<std::string> right_wheel_joints;  ///< as many as left ones
@@ -35,11 +35,11 @@ struct RobotParameters {
 
 enum class JointRole {
   kWheel,    ///< driven by the controller
-  kPassive,  ///< nobody drives it: swivel and wheel of a caster, suspension, rocker, follower of a mimic
-  kHeld,     ///< driven by somebody else (arm, lift, gripper): braked, always
+  kPassive,  ///< not driven: swivel and wheel of a caster, suspension, rocker, follower of a mimic
+  kHeld,     ///< driven by another controller (arm, lift, gripper): braked, always
 };
 
-/// s from no torque to the effort limit, where nobody says how fast a wheel's torque may change. That is how long the
+/// s from no torque to the effort limit, if the torque rate of a wheel is not given. That is how long the
 /// current of a motor needs: inductance over resistance is 0.1 … 1 ms for brushed motors of 10 … 200 W (maxon
 /// catalogue, terminal inductance and resistance of the RE series), so no motor gets slower by it.
 inline constexpr double kEffortRise = 0.001;

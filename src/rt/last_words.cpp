@@ -24,7 +24,7 @@ struct Death {
 constexpr std::string_view kBug = "keep its core dump (coredumpctl) and report it, then start the node again";
 constexpr Death kDeaths[] = {
     {SIGBUS, "SIGBUS", "shared memory was truncated, or its file system is full",
-     "look at 'df /dev/shm' and at who writes there, then start the node again"},
+     "look at 'df /dev/shm' and at the processes that write there, then start the node again"},
     {SIGSEGV, "SIGSEGV", "it used an address that is not its own", kBug},
     {SIGILL, "SIGILL", "it came to an instruction that cannot be", kBug},
     {SIGFPE, "SIGFPE", "it divided an integer by zero", kBug},

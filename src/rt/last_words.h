@@ -1,5 +1,5 @@
 #pragma once
-/// A process that dies by its own fault says so, in one line on stderr: who, by which signal, why, what to do.
+/// A process that crashes reports it in one line on stderr: node, signal, reason, remedy.
 ///
 ///   SIGBUS    memory that was mapped is gone: shared memory truncated, or its file system full
 ///   SIGSEGV   an address that is not its own      SIGILL, SIGFPE      an impossible instruction, a division by zero

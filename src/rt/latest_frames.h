@@ -41,7 +41,7 @@ struct ChannelHead {
   std::uint64_t layout_version;                     ///< kLayoutVersion
   std::uint64_t frame_bytes;                        ///< sizeof(Frame)
   std::uint64_t slots;                              ///< number of frames that fit
-  std::atomic<std::uint64_t> retired;               ///< 1: the name now belongs to another object, map anew
+  std::atomic<std::uint64_t> retired;               ///< 1: the name now belongs to another object, map again
   std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
   std::atomic<std::uint64_t> decorated;             ///< 1: the writer of this channel has an OutputDecorator
   std::atomic<std::uint64_t> robot_hash;            ///< RobotModel::hash of the writer's robot; sensors channel only
@@ -65,7 +65,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 /// What a look-up found.
 enum class Lookup { kMissing, kFrame, kToken, kCorrupt };
 
-/// Whom a publication wakes. A loop in one thread, on private memory, saves the system call.
+/// Which waiting threads a publication wakes. A loop in one thread, on private memory, saves the system call.
 enum class Wake { kReaders, kNobody };
 
 template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
@@ -192,7 +192,7 @@ class FrameReader {
   }
 
   /// Waits until `sequence()` differs from `seen`, or the timeout (negative: none) has passed. True if it
-  /// differs, or if the channel was mapped or mapped anew meanwhile: noticed within kRemapNs, also by a
+  /// differs, or if the channel was mapped or mapped again meanwhile: noticed within kRemapNs, also by a
   /// thread that waits for ever. Take `seen` before looking for a frame, not after.
   bool wait(std::uint32_t seen, std::int64_t timeout_ns) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);

@@ -32,7 +32,7 @@ class LatestValue {
     version_.store(version + 2, std::memory_order_release);
   }
 
-  /// Another number after every store: who remembers it need not load what has not changed.
+  /// Another number after every store, so that a reader need not load a value that has not changed.
   std::uint64_t version() const noexcept { return version_.load(std::memory_order_relaxed); }
 
   bool load(Value& out) const noexcept {

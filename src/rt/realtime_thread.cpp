@@ -109,26 +109,6 @@ bool refused(const RealtimeParameters& parameters, const RealtimeReport& report)
   return parameters.policy == RealtimePolicy::kRequired && !report.refusals.empty();
 }
 
-/// Stack of the thread: guard below, pages populated.
-class Stack {
- public:
-  Stack() {
-    const int flags = MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_POPULATE;
-    memory_ = mmap(nullptr, kGuardBytes + RealtimeThread::kStackBytes, PROT_READ | PROT_WRITE, flags, -1, 0);
-    if (memory_ == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap of the loop's stack");
-    mprotect(memory_, kGuardBytes, PROT_NONE);
-    mlock(bottom(), RealtimeThread::kStackBytes);  // fits also where the whole process does not
-  }
-  Stack(const Stack&) = delete;
-  Stack& operator=(const Stack&) = delete;
-  ~Stack() { munmap(memory_, kGuardBytes + RealtimeThread::kStackBytes); }
-
-  void* bottom() const noexcept { return static_cast<char*>(memory_) + kGuardBytes; }
-
- private:
-  void* memory_ = nullptr;
-};
-
 }  // namespace
 
 RealtimeReport prepare_process(RealtimePolicy policy) {
@@ -138,6 +118,26 @@ RealtimeReport prepare_process(RealtimePolicy policy) {
 }
 
 struct RealtimeThread::Thread {
+  /// Stack of the thread: guard below, pages populated.
+  class Stack {
+   public:
+    Stack() {
+      const int flags = MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_POPULATE;
+      memory_ = mmap(nullptr, kGuardBytes + RealtimeThread::kStackBytes, PROT_READ | PROT_WRITE, flags, -1, 0);
+      if (memory_ == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap of the loop's stack");
+      mprotect(memory_, kGuardBytes, PROT_NONE);
+      mlock(bottom(), RealtimeThread::kStackBytes);  // fits also where the whole process does not
+    }
+    Stack(const Stack&) = delete;
+    Stack& operator=(const Stack&) = delete;
+    ~Stack() { munmap(memory_, kGuardBytes + RealtimeThread::kStackBytes); }
+
+    void* bottom() const noexcept { return static_cast<char*>(memory_) + kGuardBytes; }
+
+   private:
+    void* memory_ = nullptr;
+  };
+
   RealtimeParameters parameters;
   std::function<void()> body;
   RealtimeReport report;

@@ -3,7 +3,7 @@
 ///
 /// The ring belongs to the writer, the read position to the reader (RingPositions, an object of its own, so
 /// that neither needs write access to the other's memory). Each slot is a sequence lock as in LatestFrames, except
-/// that `written` alone publishes a row: its version tells whether the row is still there.
+/// that `written` alone publishes a row: its version shows whether the row is still there.
 /// tests/rt/ring_model_test.cpp visits every execution of a small model of this code.
 /// When the ring is full the writer either waits (lockstep, a reader present) or drops the new row and counts
 /// it; with no reader present it overwrites the oldest rows.
@@ -103,7 +103,7 @@ class RingReader {
     for (int tries = 0; tries < kReadTries; ++tries) {
       const std::uint64_t written = memory_->written.load(std::memory_order_acquire);
       if (position_ >= written) {
-        position_ = written;  // an earlier reader's position in an object that was made anew since
+        position_ = written;  // an earlier reader's position in an object that was created again since
         return false;
       }
       if (written - position_ > SlotCount) {

@@ -1,8 +1,8 @@
 #pragma once
 /// POSIX shared memory: the object behind a name, its lock, and a mapping of it.
 ///
-/// A name can be unlinked and given to a new object while the old one is still open: whoever locks an object
-/// asks `still_named()` afterwards and starts over where the answer is no.
+/// A name can be unlinked and given to a new object while the old one is still open: after locking an object,
+/// call `still_named()`, and start over if it returns false.
 /// Failures of the system calls are thrown as std::system_error that names the object.
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class MemoryMapping {
 
 class SharedMemory {
  public:
-  /// The object of this name ("/…"); empty where there is none. Follows no symbolic link, waits for nobody.
+  /// The object of this name ("/…"); empty where there is none. Does not follow symbolic links and does not block.
   static std::optional<SharedMemory> open(const std::string& name, Access access);
 
   /// A new object of no size and mode 0600; empty where the name is taken.
@@ -41,7 +41,7 @@ class SharedMemory {
   SharedMemory& operator=(SharedMemory&& other) noexcept;
   ~SharedMemory();
 
-  /// A plain object that belongs to this process's effective user, whom alone its mode lets in (an access list
+  /// A plain object that belongs to this process's effective user, and is accessible to that user only (an access list
   /// that lets in others shows in the mode's group bits).
   bool is_private() const;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the gate is told: limits from the robot, the rest from the parameters.
+/// The set-up of the gate: limits from the robot, the rest from the parameters.
 ///
 ///   velocity, end stops   the joint's own, as its URDF says or the `robot:` block
 ///   soft zone             kSoftPart of the range, at most kSoftAngle or kSoftLength

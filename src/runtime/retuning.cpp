@@ -54,7 +54,7 @@ std::string sentence(const Retuned& retuned) {
 Retuning::Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox)
     : parameters_(parameters),
       robot_(robot),
-      asked_at_start_(commanded_wheel_speed(parameters.controller, robot)),
+      commanded_at_start_(commanded_wheel_speed(parameters.controller, robot)),
       wheel_speed_(safety_limits(parameters, robot).wheel_speed),
       inbox_(inbox) {}
 
@@ -66,7 +66,7 @@ void Retuning::expect_monitor(const Parameters& monitor) {
 std::string Retuning::monitor_problem(const DriveControllerParameters& wanted) const {
   const double asked = commanded_wheel_speed(wanted, robot_);
   const double needed = least_wheel_speed_limit(asked);
-  if (!stops(wheel_speed_) || asked <= asked_at_start_) return "";
+  if (!stops(wheel_speed_) || asked <= commanded_at_start_) return "";
   if (needed <= *wheel_speed_.limit) return "";
   std::ostringstream text;
   text.precision(4);

@@ -35,7 +35,7 @@ std::string sentence(const Retuned& retuned);
 
 class Retuning {
  public:
-  /// `parameters` with which the controller starts; the cycle takes `inbox` over. The monitor is believed to run with
+  /// `parameters` with which the controller starts; the cycle takes `inbox` over. The monitor is assumed to run with
   /// the same parameters.
   Retuning(const Parameters& parameters, const RobotModel& robot, LatestValue<DriveTuning>& inbox);
 
@@ -58,8 +58,8 @@ class Retuning {
   mutable std::mutex mutex_;
   Parameters parameters_;  ///< in force
   RobotModel robot_;
-  double asked_at_start_;  ///< rad/s of a wheel
-  Condition wheel_speed_;  ///< the monitor's
+  double commanded_at_start_;  ///< rad/s of a wheel
+  Condition wheel_speed_;      ///< the monitor's
   LatestValue<DriveTuning>& inbox_;
   std::uint64_t count_ = 0;
 };

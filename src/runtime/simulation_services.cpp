@@ -13,7 +13,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kPatience = 2'000'000'000;    // ns; a loop that has not stopped by then waits for somebody
+constexpr std::int64_t kPatience = 2'000'000'000;    // ns; a loop that has not stopped by then waits for another node
 constexpr std::int64_t kStandstill = 5'000'000'000;  // ns without a cycle; a period is 10 ms at most
 constexpr std::int64_t kLook = 500'000;              // ns
 
@@ -55,16 +55,16 @@ SimulationServices::SimulationServices(LoopHold& hold, Driver& driver, DriverCyc
       missing_(std::move(missing)),
       takes_faults_(std::move(takes_faults)) {}
 
-/// With `asking_` held.
+/// With `request_mutex_` held.
 std::uint64_t SimulationServices::ask() {
-  asked_.number = hold_.ask(asked_);
-  return asked_.number;
+  request_.number = hold_.ask(request_);
+  return request_.number;
 }
 
 std::uint64_t SimulationServices::ask_pause(bool pause) {
-  const std::lock_guard lock(asking_);
-  asked_.paused = pause ? 1 : 0;
-  asked_.step_until = 0;
+  const std::lock_guard lock(request_mutex_);
+  request_.paused = pause ? 1 : 0;
+  request_.step_until = 0;
   return ask();
 }
 
@@ -88,12 +88,12 @@ ServiceAnswer SimulationServices::step(std::uint64_t cycles) {
   const std::int64_t end_ns = monotonic_ns() + kPatience;
   for (;;) {
     {
-      const std::lock_guard lock(asking_);
-      if (asked_.paused == 0) return {false, "only while paused: call set_pause with true first"};
-      if (hold_.stands(asked_.number)) {  // and does so until somebody else gets this lock
+      const std::lock_guard lock(request_mutex_);
+      if (request_.paused == 0) return {false, "only while paused: call set_pause with true first"};
+      if (hold_.stands(request_.number)) {  // and stands until another thread gets this lock
         const std::uint64_t first = hold_.next_cycle();
-        asked_.step_until = first + std::min(cycles, std::numeric_limits<std::uint64_t>::max() - first);
-        steps = {.number = ask(), .first = first, .target = asked_.step_until};
+        request_.step_until = first + std::min(cycles, std::numeric_limits<std::uint64_t>::max() - first);
+        steps = {.number = ask(), .first = first, .target = request_.step_until};
         break;
       }
     }
@@ -116,8 +116,8 @@ ServiceAnswer SimulationServices::await_steps(const Steps& steps) {
       ask_pause(true);
       return {false, "time stands still " + before(next) + waiting_for()};
     }
-    const std::lock_guard lock(asking_);
-    if (asked_.paused == 0) return {false, "resumed meanwhile"};
+    const std::lock_guard lock(request_mutex_);
+    if (request_.paused == 0) return {false, "resumed meanwhile"};
   }
   const std::uint64_t reached = hold_.next_cycle();
   const std::string done = std::to_string(reached - steps.first) + " cycles done, paused " + before(reached);
@@ -129,13 +129,13 @@ ServiceAnswer SimulationServices::reset() {
   if (!exclusive.owns_lock()) return busy();
   std::uint64_t number = 0;
   {
-    const std::lock_guard lock(asking_);
-    asked_.parked = hold_.looping() ? 1 : 0;
-    asked_.step_until = 0;
-    asked_.faults = {};
+    const std::lock_guard lock(request_mutex_);
+    request_.parked = hold_.looping() ? 1 : 0;
+    request_.step_until = 0;
+    request_.faults = {};
     number = ask();
-    if (asked_.parked == 0 && hold_.next_cycle() > 0) return ended();
-    if (asked_.parked == 0) return {true, "no cycle has run yet" + waiting_for()};
+    if (request_.parked == 0 && hold_.next_cycle() > 0) return ended();
+    if (request_.parked == 0) return {true, "no cycle has run yet" + waiting_for()};
   }
   ServiceAnswer answer{true, "a new run begins at cycle 0"};
   if (!hold_.await_stand(number, kPatience)) {
@@ -150,28 +150,28 @@ ServiceAnswer SimulationServices::reset() {
       answer = {false, error.what()};
     }
   }
-  const std::lock_guard lock(asking_);
-  asked_.parked = 0;
-  if (answer.success && asked_.paused != 0) answer.message += ", paused";
+  const std::lock_guard lock(request_mutex_);
+  request_.parked = 0;
+  if (answer.success && request_.paused != 0) answer.message += ", paused";
   ask();
   return answer;
 }
 
 ServiceAnswer SimulationServices::inject_fault(const std::string& component, const std::string& kind) {
-  const std::lock_guard lock(asking_);
-  InjectedFaults faults = asked_.faults;
+  const std::lock_guard lock(request_mutex_);
+  InjectedFaults faults = request_.faults;
   if (std::string problem = set_fault(faults, component, kind); !problem.empty()) return {false, problem};
   for (const FaultyNode& node : kFaultyNodes) {
-    const FaultKind wanted = fault_of(faults, node.component);
-    if (wanted == fault_of(asked_.faults, node.component) || wanted == FaultKind::kOk) continue;
+    const FaultKind kind_of_node = fault_of(faults, node.component);
+    if (kind_of_node == fault_of(request_.faults, node.component) || kind_of_node == FaultKind::kOk) continue;
     if (takes_faults_(node.component)) continue;
     const std::string name = node.node;
     return {false, component + ": not possible in this " + name +
                        "; launch sim.launch with faults:=true, which starts " + name + "_with_faults"};
   }
-  asked_.faults = faults;
+  request_.faults = faults;
   ask();
-  return {true, "injected: " + names_of(asked_.faults)};
+  return {true, "injected: " + names_of(request_.faults)};
 }
 
 }  // namespace robot_control

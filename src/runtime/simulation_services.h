@@ -26,7 +26,7 @@ std::uint64_t mint_number();
 
 class SimulationServices {
  public:
-  /// Any thread asks: `missing`, which nodes the loop waits for; `takes_faults`, whether a node's program is one into
+  /// Called by any thread: `missing`, the nodes that the loop waits for; `takes_faults`, whether a node's program is one into
   /// which faults can be injected.
   SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
                      std::function<std::vector<std::string>()> missing,
@@ -39,18 +39,18 @@ class SimulationServices {
   /// While paused: runs exactly so many cycles, then stands again.
   ServiceAnswer step(std::uint64_t cycles);
 
-  /// The machine is set down anew, without faults, and a new run begins at cycle 0, one period after the last
-  /// stamp: estimator, controller and counters begin anew, a latched stop stays. Paused stays paused. Does not
+  /// The machine returns to its initial pose, without faults, and a new run begins at cycle 0, one period after the
+  /// last stamp: estimator, controller and counters restart, a latched stop stays. Paused stays paused. Does not
   /// succeed where the machine does not start; then the old run goes on, with the driver's fault.
   ServiceAnswer reset();
 
-  /// From the next cycle on; words of names.h, "ok" heals. Unknown ones are answered with the list. A fault of a node
+  /// From the next cycle on; words of names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a node
   /// is refused unless the program that runs is the one for it.
   ServiceAnswer inject_fault(const std::string& component, const std::string& kind);
 
  private:
   struct Steps {
-    std::uint64_t number = 0;  ///< of the asking
+    std::uint64_t number = 0;  ///< of the request
     std::uint64_t first = 0;
     std::uint64_t target = 0;  ///< the cycle behind the last one
   };
@@ -65,9 +65,9 @@ class SimulationServices {
   DriverCycle& cycle_;
   std::function<std::vector<std::string>()> missing_;
   std::function<bool(FaultComponent)> takes_faults_;
-  std::mutex asking_;     ///< guards `asked_`
-  std::mutex exclusive_;  ///< held by step and reset
-  LoopHold::Asked asked_;
+  std::mutex request_mutex_;  ///< guards `request_`
+  std::mutex exclusive_;      ///< held by step and reset
+  LoopHold::Asked request_;
 };
 
 }  // namespace robot_control

@@ -1,46 +1,47 @@
 #pragma once
-/// Limits that a user leaves out, from the robot and from what its controller may ask of it. What is given stays.
+/// Limits that the user left out, derived from the robot and from the speed limits of its controller. Given limits
+/// stay.
 ///
-/// With ω = commanded_wheel_speed, the fastest that the controller's speed limits ask of any wheel, but no more than
-/// the slowest wheel's own velocity limit ω_m, of which the controller uses kUsableWheelSpeed (control/kinematics.h;
-/// ω_m is left out where the robot knows none); τ a wheel's effort limit, J its inertia, T = 20 ms the window over
-/// which wheel speeds are measured:
+/// ω = commanded_wheel_speed: the largest speed that the controller's speed limits command to any wheel, at most the
+/// velocity limit ω_m of the slowest wheel, of which the controller uses kUsableWheelSpeed (control/kinematics.h; terms
+/// with ω_m are omitted if the robot has no velocity limit). τ: a wheel's effort limit, J: its inertia, T = 20 ms: the
+/// window over which wheel speeds are measured.
 ///
 ///   wheel_speed         Ω = max(1.1 ω, ω + kSpeedMargin, min(1.25 ω, ω_m))
-///                       a quarter for overshoot, slopes and wheels that spin for a moment, where the wheel bears it
+///                       a quarter more for overshoot, slopes and short wheel spin, if the wheel may turn so fast
 ///   wheel_acceleration  max over wheels of 2 τ/J + Ω/T
-///                       τ/J is what motor or brake give the wheel in the air, where it is lightest; twice, for
-///                       friction that helps to brake and an inertia that is not known well. The ground can stop a
-///                       wheel at once (a wall, a kerb, a landing): Ω within one window
-///   power               Σ τ Ω: every motor at both its limits
-///   stall               kStall; with several wheels a side kScrubbingStall: in a turn that begins, those of one side
-///                       are dragged along by the others until their torque has grown, for 0.6 rad of way. Below 1
-///                       kHz in proportion to the period: the loops' gains shrink so, and by as much more angle grows
-///                       the torque that takes a wheel over a bump (seen at 100 Hz: more than 3 rad)
-///   not_stopping        kNotStopping; with a period above kSlowLoop in proportion: at 100 Hz a wheel loop that was
-///                       pushed swings back for 3.5 s, at 2 cm/s
-///   runaway             max(0.2 Ω, kLeastRunaway); with a period above kSlowLoop in proportion, as a slow loop
-///                       that has pushed a wheel up a bump lets it shoot down
-///                       kLeastRunaway: a wheel loop that is being pushed, and 20 quanta of a wheel speed measured with
+///                       τ/J is the acceleration of the lifted wheel under full torque of motor or brake. The factor 2
+///                       covers friction, which adds to braking, and an inertia that is not known well. The ground can
+///                       stop a wheel at once (wall, kerb, landing): Ω within one window
+///   power               Σ τ Ω: every motor at its effort limit and at its speed limit
+///   stall               kStall; with several wheels a side kScrubbingStall: when a turn begins, some wheels of a side
+///                       are dragged by the others until their torque has grown. With a period above 1 ms in proportion
+///                       to the period, because the gains become smaller and so more angle error is needed for the same
+///                       torque
+///   not_stopping        kNotStopping; with a period above kSlowLoop in proportion: a slow wheel loop that was pushed
+///                       takes longer to settle
+///   runaway             max(0.2 Ω, kLeastRunaway); with a period above kSlowLoop in proportion: a slow loop that
+///                       pushed a wheel up a bump lets it overspeed on the way down.
+///                       kLeastRunaway covers a wheel loop that is pushed, and 20 quanta of a wheel speed measured with
 ///                       4096 counts over T (0.077 rad/s)
 ///
-/// Battery limits stay absent: no URDF tells a battery.
+/// Battery limits are never derived: a URDF does not describe the battery. Measured values: docs/derivations.md.
 
 #include "robot/robot_model.h"
 #include "safety/safety_parameters.h"
 
 namespace robot_control {
 
-inline constexpr double kSpeedMargin = 1.0;     ///< rad/s, 13 quanta as above: for robots that are driven slowly
+inline constexpr double kSpeedMargin = 1.0;     ///< rad/s, 13 quanta as above; for slow robots
 inline constexpr double kLeastRunaway = 2.0;    ///< rad/s
-inline constexpr double kStall = 0.5;           ///< rad, 5 cm of way; driving over bumps and ice needs 0.13
-inline constexpr double kScrubbingStall = 1.2;  ///< rad
-inline constexpr double kNotStopping = 2.0;     ///< s; light robots need 1.2 at 1 kHz
+inline constexpr double kStall = 0.5;           ///< rad; docs/derivations.md
+inline constexpr double kScrubbingStall = 1.2;  ///< rad; docs/derivations.md
+inline constexpr double kNotStopping = 2.0;     ///< s; docs/derivations.md
 inline constexpr double kSlowLoop = 0.005;      ///< s
 inline constexpr double kSpeedWindow = 0.02;    ///< s, T
 
-/// rad/s: the least wheel_speed limit that lets wheels run at `commanded`, max(1.1 ω, ω + kSpeedMargin); and its
-/// inverse.
+/// rad/s: the smallest wheel_speed limit with which wheels may run at `commanded`, max(1.1 ω, ω + kSpeedMargin); and
+/// the inverse function.
 double least_wheel_speed_limit(double commanded) noexcept;
 double fastest_within(double wheel_speed_limit) noexcept;
 

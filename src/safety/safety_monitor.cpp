@@ -9,11 +9,11 @@
 namespace robot_control {
 namespace {
 
-bool asks_for_motion(const CommandFrame* command) noexcept {
+bool requests_motion(const CommandFrame* command) noexcept {
   return command != nullptr && !zero(command->twist_requested);
 }
 
-Finding counted(double count) noexcept {
+ConditionMeasurement counted(double count) noexcept {
   return {.beyond = true, .value = count, .limit = count};
 }
 
@@ -23,7 +23,7 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
     : slow_speed_(checked(parameters, period).slow_speed),
       presence_(parameters.loss_cycles),
       sensor_presence_(parameters, robot.wheels.size(), period),
-      operator_facts_(parameters.heartbeat_timeout, period),
+      operator_conditions_(parameters.heartbeat_timeout, period),
       clearance_(parameters),
       motion_(robot.wheels.size(), period),
       standstill_(parameters.standstill_speed, period),
@@ -33,17 +33,17 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
       wheel_following_(parameters, robot, period),
       torque_oscillation_(parameters, robot, period),
       yaw_agreement_(parameters.yaw_rate, robot, period),
-      gate_facts_(parameters.loss_cycles, period),
-      machine_facts_(parameters, period),
-      body_facts_(parameters, robot, period),
+      gate_conditions_(parameters.loss_cycles, period),
+      machine_conditions_(parameters, period),
+      body_conditions_(parameters, robot, period),
       warnings_(period),
       supervisor_(static_cast<std::uint64_t>(std::llround(parameters.ramp_time / period))) {}
 
 void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
   presence_.enter_run();
   sensor_presence_.enter_run();
-  frame_facts_.enter_run();
-  operator_facts_.enter_run(operator_input);
+  frame_conditions_.enter_run();
+  operator_conditions_.enter_run(operator_input);
   motion_.enter_run();
   standstill_.enter_run();
   slide_.enter_run();
@@ -52,9 +52,9 @@ void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
   wheel_following_.enter_run();
   torque_oscillation_.enter_run();
   yaw_agreement_.enter_run();
-  gate_facts_.enter_run();
-  machine_facts_.enter_run();
-  body_facts_.enter_run();
+  gate_conditions_.enter_run();
+  machine_conditions_.enter_run();
+  body_conditions_.enter_run();
   release_.enter_run();
   active_.clear();
   warnings_.enter_run();
@@ -65,10 +65,10 @@ void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
 }
 
 void SafetyMonitor::restore(const Permit& last) noexcept {
-  earlier_boot_ = last.boot;
+  earlier_driver_instance_ = last.driver_instance;
   supervisor_.restore(last.causes, last.first_cause);
   evidence_.restore(last);
-  if ((last.active & kCauseEmergencyStopTopic) != 0) operator_facts_.hold_e_stop();
+  if ((last.active & kCauseEmergencyStopTopic) != 0) operator_conditions_.hold_e_stop();
 }
 
 void SafetyMonitor::restore(std::uint64_t causes, std::uint64_t first_cause) noexcept {
@@ -96,26 +96,26 @@ void SafetyMonitor::refuse_reset(const OperatorInput& operator_input, ResetRefus
 }
 
 bool SafetyMonitor::note_emergency_stop(const OperatorInput& operator_input) noexcept {
-  const std::uint64_t stops = operator_facts_.emergency_stops(operator_input) & ~active_.stopping();
+  const std::uint64_t stops = operator_conditions_.emergency_stops(operator_input) & ~active_.stopping();
   pending_ |= stops;
   return stops != 0;
 }
 
-void SafetyMonitor::decide_restart(const SensorFrame& sensors) noexcept {
-  const bool continued = earlier_boot_ == sensors.boot;
-  earlier_boot_.reset();
-  if (begun_) release_.begin(*begun_);
+void SafetyMonitor::detect_monitor_restart(const SensorFrame& sensors) noexcept {
+  const bool continued = earlier_driver_instance_ == sensors.driver_instance;
+  earlier_driver_instance_.reset();
+  if (first_cycle_) release_.begin(*first_cycle_);
   if (continued || sensors.gate.permit_cycle != 0) pending_ |= kCauseMonitorRestarted;
 }
 
-void SafetyMonitor::meet_driver(const SensorFrame& sensors) noexcept {
-  if (!driver_) decide_restart(sensors);
-  if (driver_ && *driver_ != sensors.boot) pending_ |= kCauseDriverLost;
-  driver_ = sensors.boot;
+void SafetyMonitor::check_driver_instance(const SensorFrame& sensors) noexcept {
+  if (!driver_) detect_monitor_restart(sensors);
+  if (driver_ && *driver_ != sensors.driver_instance) pending_ |= kCauseDriverLost;
+  driver_ = sensors.driver_instance;
   driver_paused_ = sensors.driver_state == DriverState::kPaused || sensors.driver_state == DriverState::kEnded;
 }
 
-void SafetyMonitor::look(const MonitorInput& input) noexcept {
+void SafetyMonitor::evaluate_conditions(const MonitorInput& input) noexcept {
   const SensorFrame& sensors = *input.sensors;
   const std::uint64_t cycle = sensors.head.cycle;
   const std::uint64_t elapsed = cycle_ ? cycle - *cycle_ : 1;
@@ -123,15 +123,15 @@ void SafetyMonitor::look(const MonitorInput& input) noexcept {
   presence_.step(input, elapsed, active_);
   release_.step(input, elapsed);
   sensor_presence_.step(sensors, elapsed, active_);
-  frame_facts_.step(input, active_);
-  operator_facts_.step(input, supervisor_.state() == SupervisorState::kDrive, active_);
-  machine_facts_.step(sensors, elapsed, active_);
-  gate_facts_.step(sensors, elapsed, active_);
-  look_at_motion(input, elapsed);
+  frame_conditions_.step(input, active_);
+  operator_conditions_.step(input, supervisor_.state() == SupervisorState::kDrive, active_);
+  machine_conditions_.step(sensors, elapsed, active_);
+  gate_conditions_.step(sensors, elapsed, active_);
+  evaluate_motion(input, elapsed);
   warnings_.step(active_, cycle, elapsed);
 }
 
-void SafetyMonitor::look_at_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept {
+void SafetyMonitor::evaluate_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept {
   const SensorFrame& sensors = *input.sensors;
   motion_.step(sensors);
   standstill_.step(motion_, sensors.head.cycle);
@@ -141,38 +141,38 @@ void SafetyMonitor::look_at_motion(const MonitorInput& input, std::uint64_t elap
   wheel_following_.step(sensors, targets_, motion_, standstill_, elapsed, active_);
   torque_oscillation_.step(input, targets_, motion_, elapsed, active_);
   yaw_agreement_.step(sensors, motion_, elapsed, active_);
-  body_facts_.step(sensors, elapsed, standstill_.moving(), active_);
+  body_conditions_.step(sensors, elapsed, standstill_.moving(), active_);
 }
 
 void SafetyMonitor::add_pending() noexcept {
-  constexpr auto kCorrupt = static_cast<double>(FrameFacts::kPersistence);
+  constexpr auto kCorrupt = static_cast<double>(FrameConditions::kPersistence);
   for (std::uint64_t rest = pending_; rest != 0; rest &= rest - 1) {
     const auto cause = static_cast<StopCause>(rest & (~rest + 1));
-    Finding finding{.beyond = true};
-    if (cause == kCauseCorruptFrame) finding = counted(kCorrupt);
-    active_.add(cause, Reaction::kBrake, finding);
+    ConditionMeasurement measurement{.beyond = true};
+    if (cause == kCauseCorruptFrame) measurement = counted(kCorrupt);
+    active_.add(cause, Reaction::kBrake, measurement);
   }
   pending_ = 0;
 }
 
-void SafetyMonitor::supervise(const MonitorInput& input, bool again) noexcept {
+void SafetyMonitor::supervise(const MonitorInput& input, bool repeated) noexcept {
   const std::uint64_t cycle = input.sensors->head.cycle;
   const std::uint64_t brake = active_.with(Reaction::kBrake);
-  SupervisorInput facts;
-  facts.cycle = cycle;
-  facts.repair = for_repair(brake);
-  facts.brake = brake & ~facts.repair;
-  facts.ramp = active_.with(Reaction::kRamp);
-  facts.missing = presence_.missing();
-  facts.released = release_.released();
-  facts.requested = asks_for_motion(input.command);
-  facts.no_motion_requested = release_.no_motion_requested();
-  facts.moving = standstill_.moving();
-  facts.standing = standstill_.standing();
-  facts.sliding = standstill_.standing() && slide_.possible();
-  facts.reset_requested = !again && input.operator_input.resets != resets_handled_;
-  supervisor_.step(facts);
-  if (facts.reset_requested) {
+  SupervisorInput supervised;
+  supervised.cycle = cycle;
+  supervised.repair = for_repair(brake);
+  supervised.brake = brake & ~supervised.repair;
+  supervised.ramp = active_.with(Reaction::kRamp);
+  supervised.missing = presence_.missing();
+  supervised.released = release_.released();
+  supervised.requested = requests_motion(input.command);
+  supervised.no_motion_requested = release_.no_motion_requested();
+  supervised.moving = standstill_.moving();
+  supervised.standing = standstill_.standing();
+  supervised.sliding = standstill_.standing() && slide_.possible();
+  supervised.reset_requested = !repeated && input.operator_input.resets != resets_handled_;
+  supervisor_.step(supervised);
+  if (supervised.reset_requested) {
     resets_handled_ = input.operator_input.resets;
     reset_refusal_ = supervisor_.reset_refusal();
   }
@@ -187,15 +187,15 @@ double SafetyMonitor::speed_limit(const OperatorInput& operator_input) const noe
 
 void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {
   const SensorFrame& sensors = *input.sensors;
-  meet_driver(sensors);
-  const bool again = cycle_ == sensors.head.cycle;
-  if (!again) look(input);
+  check_driver_instance(sensors);
+  const bool repeated = cycle_ == sensors.head.cycle;
+  if (!repeated) evaluate_conditions(input);
   cycle_ = sensors.head.cycle;
   add_pending();
-  supervise(input, again);
+  supervise(input, repeated);
   last_speed_limit_ = speed_limit(input.operator_input);
-  write(sensors.head.cycle, sensors.boot, out);
-  if (!again) gate_facts_.remember(out, sensors.head.cycle);
+  write(sensors.head.cycle, sensors.driver_instance, out);
+  if (!repeated) gate_conditions_.remember(out, sensors.head.cycle);
 }
 
 void SafetyMonitor::step_without_sensors(const OperatorInput& operator_input, Permit& out) noexcept {
@@ -204,10 +204,10 @@ void SafetyMonitor::step_without_sensors(const OperatorInput& operator_input, Pe
   supervisor_.step({.brake = active_.with(Reaction::kBrake), .missing = presence_.missing()});
   evidence_.latch(active_, 0);
   last_speed_limit_ = speed_limit(operator_input);
-  write(0, earlier_boot_.value_or(0), out);
+  write(0, earlier_driver_instance_.value_or(0), out);
 }
 
-void SafetyMonitor::write(std::uint64_t cycle, std::uint64_t boot, Permit& out) const noexcept {
+void SafetyMonitor::write(std::uint64_t cycle, std::uint64_t driver_instance, Permit& out) const noexcept {
   out.state = supervisor_.state();
   out.action = action_in(out.state);
   out.ramp_until = supervisor_.ramp_until();
@@ -219,7 +219,7 @@ void SafetyMonitor::write(std::uint64_t cycle, std::uint64_t boot, Permit& out) 
   out.since_cycle = supervisor_.since_cycle();
   out.missing = presence_.missing();
   out.unreleased = release_.released() ? 0 : 1;
-  out.boot = boot;
+  out.driver_instance = driver_instance;
   out.resets_handled = resets_handled_;
   out.reset_refusal = reset_refusal_;
   out.speed_limit = last_speed_limit_;

@@ -1,40 +1,44 @@
 #pragma once
-/// safety_monitor's law: facts of one cycle → permit of that cycle.
+/// The law of safety_monitor: conditions of one cycle → permit of that cycle.
 ///
-///   facts ─► causes by reaction ─► warnings: told, slowed down for        ─► Permit
-///            (ActiveCauses)    └─► Supervisor: latch, table ─► action
+///   conditions ─► active causes, by reaction ─► Warnings: reported, may limit the speed    ─► Permit
+///                 (ActiveCauses)            └─► Supervisor: latch, state table ─► action
 ///
-///   presence.h, sensor_presence.h, frame_facts.h    what is missing, what cannot be trusted
-///   motion_release.h                                was a zero velocity requested since the last start
-///   operator_facts.h, clearance.h                   what the operator says
-///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, torque_oscillation.h, yaw_agreement.h, standstill.h,
-///                      slide.h
-///   gate_facts.h, machine_facts.h, body_facts.h     does the machine obey, is it well, what happens to its body
+///   presence.h, sensor_presence.h, frame_conditions.h    which input is missing or cannot be trusted
+///   motion_release.h                                     was a zero velocity requested since the last start
+///   operator_conditions.h, clearance.h                   what the operator commands
+///   wheel_motion.h ─► wheel_limits.h, wheel_following.h, torque_oscillation.h, yaw_agreement.h, joint_standstill.h,
+///                     slide.h                            how the wheels move, compared with limits and targets
+///   gate_conditions.h, machine_conditions.h,
+///   body_conditions.h                                    does the gate obey, does the driver report a fault, does the
+///                                                        body tilt, fall or collide
 ///
-/// INIT until sensors, state and command of this run were each seen and motion is released; then READY or DRIVE permit
-/// motion until a node is started again or a cause latches a stop (stop_category.h, SafetyParameters). The permit of
-/// cycle k is alive until k + kPermitLife: a monitor that makes no progress permits nothing.
+/// States: INIT until sensors, state and command of this run were each received once and motion is released
+/// (motion_release.h). READY and DRIVE permit motion until a node is restarted or a cause latches a stop
+/// (stop_category.h, SafetyParameters). The permit of cycle k expires after cycle k + kPermitLife, so a monitor that
+/// makes no progress permits no motion.
 ///
-/// The driver is lost when no current sensor frame comes (wall clock), and when a frame carries another
-/// SensorFrame::boot than the one before it (any clock): a driver that was restarted is lost however soon it came back,
-/// whatever it last reported. A simulation that is reset keeps its boot. A driver that reports its end
-/// (DriverState::kEnded) is missing, not lost: INIT, or what is latched.
+/// Driver lost: latched when no current sensor frame arrives (wall clock), and when a frame carries another
+/// SensorFrame::driver_instance than the frame before it (any clock). A restarted driver therefore counts as lost,
+/// however short the interruption was and whatever the driver reported last. A reset of the simulation keeps the driver
+/// instance. A driver that reports its end (DriverState::kEnded) is missing, not lost: the state becomes INIT, or a
+/// latched stop stays.
 ///
-/// A latch outlives its processes: a monitor that starts restores the causes of the last permit of the channel,
-/// whichever driver it was issued for, and those of latch_file; only an accepted reset clears them.
+/// A latch outlives all processes: a restarted monitor restores the causes of the last permit in the channel, for any
+/// driver instance, and those of latch_file. Only an accepted reset clears them.
 ///
-/// The speed limit of a permit is the least of slow_speed, where a cause slows the robot down, and of what the
-/// clearance allows; it latches nothing.
+/// The speed limit of a permit is the smaller of slow_speed, while a cause with Reaction::kSlow is active, and of the
+/// limit that the clearance gives. A speed limit never latches.
 
 #include <cstdint>
 #include <optional>
 
 #include "robot/robot_model.h"
-#include "safety/conditions/body_facts.h"
-#include "safety/conditions/frame_facts.h"
-#include "safety/conditions/gate_facts.h"
-#include "safety/conditions/machine_facts.h"
-#include "safety/conditions/operator_facts.h"
+#include "safety/conditions/body_conditions.h"
+#include "safety/conditions/frame_conditions.h"
+#include "safety/conditions/gate_conditions.h"
+#include "safety/conditions/machine_conditions.h"
+#include "safety/conditions/operator_conditions.h"
 #include "safety/conditions/presence.h"
 #include "safety/conditions/sensor_presence.h"
 #include "safety/conditions/torque_oscillation.h"
@@ -65,63 +69,66 @@ class SafetyMonitor {
   /// parameter_check.h refuses.
   SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
-  /// A new run: sightings and counts begin anew; latched causes stay. `operator_input` is the inbox now:
-  /// resets and heartbeats in it are dropped, emergency stops that were not yet acted on are not.
+  /// A new run: counters and "was received" flags restart; latched causes stay. `operator_input` is the current inbox:
+  /// resets and heartbeats in it are dropped; emergency stops that were not yet processed are kept.
   void reset(const OperatorInput& operator_input) noexcept;
 
-  /// After a restart of the monitor: `last` is what the channel still holds. Its causes are latched at once. If the
-  /// driver that `last` was issued for still runs at the first step, kCauseMonitorRestarted is added. Without a
-  /// readable `last` the gate shows it: one that has used a permit of this run was served by an earlier monitor.
+  /// After a restart of the monitor: `last` is the permit that the channel still holds. Its causes are latched at once.
+  /// If the driver instance that `last` was issued for still runs at the first step, kCauseMonitorRestarted is added.
+  /// If `last` is not readable, the gate report decides: a gate that has already used a permit of this run was served
+  /// by an earlier monitor.
   void restore(const Permit& last) noexcept;
 
-  /// Latches `causes` at once, as found in another record of an earlier stop.
+  /// Latches `causes` at once, as read from another record of an earlier stop (latch_file).
   void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept;
 
   /// This monitor was started in this cycle of a run that was already going on. Before the first step of that run.
-  void begin(std::uint64_t cycle) noexcept { begun_ = cycle; }
+  void begin(std::uint64_t cycle) noexcept { first_cycle_ = cycle; }
 
   /// No current sensor frame has come for loss_cycles periods (wall clock only): latches kCauseDriverLost from the next
-  /// step on. No effect before the first step (a driver that was never there is missing, not lost) or while the
-  /// driver's last frame reported that it is paused or has ended.
+  /// step on. No effect before the first step (a driver that never ran is missing, not lost) or while the driver's last
+  /// frame reported that it is paused or has ended.
   void driver_lost() noexcept;
 
   /// The driver reported its end: it is missing until a new run.
   void driver_ended() noexcept;
 
-  /// FrameFacts::kPersistence sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step on.
+  /// FrameConditions::kPersistence sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step
+  /// on.
   void sensors_corrupt() noexcept;
 
-  /// No frame comes, so nothing can be judged: a reset asked for meanwhile is answered with `why` and does not
-  /// release anything later.
+  /// While no sensor frame arrives no condition can be evaluated: a reset that is requested meanwhile is refused with
+  /// `why`, and has no effect later.
   void refuse_reset(const OperatorInput& operator_input, ResetRefusal why = kRefusalSilent) noexcept;
 
-  /// No frame comes, but an emergency stop may: true when it did. It latches with the next step.
+  /// While no sensor frame arrives an emergency stop may still be requested; returns true if it was. It latches with
+  /// the next step.
   bool note_emergency_stop(const OperatorInput& operator_input) noexcept;
 
-  /// Fills everything but `out.head`. A second step in the same cycle counts nothing twice.
+  /// Fills everything but `out.head`. A second step in the same cycle is allowed and counts nothing twice.
   void step(const MonitorInput& input, Permit& out) noexcept;
 
-  /// The same before the first sensor frame: latches what came from outside, judges nothing.
+  /// The same before the first sensor frame: latches pending causes, evaluates no condition.
   void step_without_sensors(const OperatorInput& operator_input, Permit& out) noexcept;
 
   /// Latched causes.
   std::uint64_t causes() const noexcept { return supervisor_.causes(); }
 
  private:
-  void write(std::uint64_t cycle, std::uint64_t boot, Permit& out) const noexcept;
-  void decide_restart(const SensorFrame& sensors) noexcept;
-  void meet_driver(const SensorFrame& sensors) noexcept;
-  void look(const MonitorInput& input) noexcept;
-  void look_at_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept;
+  void write(std::uint64_t cycle, std::uint64_t driver_instance, Permit& out) const noexcept;
+  void detect_monitor_restart(const SensorFrame& sensors) noexcept;
+  void check_driver_instance(const SensorFrame& sensors) noexcept;
+  void evaluate_conditions(const MonitorInput& input) noexcept;
+  void evaluate_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept;
   void add_pending() noexcept;
-  void supervise(const MonitorInput& input, bool again) noexcept;
+  void supervise(const MonitorInput& input, bool repeated) noexcept;
   double speed_limit(const OperatorInput& operator_input) const noexcept;
 
   double slow_speed_;
   Presence presence_;
   SensorPresence sensor_presence_;
-  FrameFacts frame_facts_;
-  OperatorFacts operator_facts_;
+  FrameConditions frame_conditions_;
+  OperatorConditions operator_conditions_;
   Clearance clearance_;
   WheelMotion motion_;
   JointStandstill standstill_;
@@ -131,20 +138,21 @@ class SafetyMonitor {
   WheelFollowing wheel_following_;
   TorqueOscillation torque_oscillation_;
   YawAgreement yaw_agreement_;
-  GateFacts gate_facts_;
-  MachineFacts machine_facts_;
-  BodyFacts body_facts_;
+  GateConditions gate_conditions_;
+  MachineConditions machine_conditions_;
+  BodyConditions body_conditions_;
   ActiveCauses active_;  ///< of the last step
   Warnings warnings_;
   Evidence evidence_;
   Supervisor supervisor_;
   MotionRelease release_;
-  std::optional<std::uint64_t> earlier_boot_;  ///< Permit::boot of an earlier monitor, until the first step
-  std::optional<std::uint64_t> begun_;         ///< see `begin`, until the first step
-  std::optional<std::uint64_t> cycle_;         ///< of the last step in this run
+  std::optional<std::uint64_t>
+      earlier_driver_instance_;               ///< Permit::driver_instance of an earlier monitor, until the first step
+  std::optional<std::uint64_t> first_cycle_;  ///< see `begin`, until the first step
+  std::optional<std::uint64_t> cycle_;        ///< of the last step in this run
   double last_speed_limit_ = kNoSpeedLimit;
-  std::uint64_t pending_ = 0;            ///< causes from outside a step
-  std::optional<std::uint64_t> driver_;  ///< SensorFrame::boot of the last step
+  std::uint64_t pending_ = 0;            ///< causes that were reported between two steps
+  std::optional<std::uint64_t> driver_;  ///< SensorFrame::driver_instance of the last step
   bool driver_paused_ = false;
   std::uint64_t resets_handled_ = 0;
   std::uint64_t reset_refusal_ = 0;

@@ -1,9 +1,10 @@
 #pragma once
-/// What a user sets of the safety monitor.
+/// The user's parameters of the safety monitor.
 ///
-/// A condition: a fact, measured from raw sensors and the command, beyond `limit` without a break for `persistence`
-/// → a reaction. What each limit means stands with its fact: wheel_limits.h, wheel_following.h,
-/// yaw_agreement.h, body_facts.h, sensor_presence.h, machine_facts.h.
+/// A condition is active when a quantity measured from raw sensors and the command is beyond `limit` without
+/// interruption for `persistence`. An active condition is a cause, and `reaction` says what the monitor does. The
+/// quantities are defined in wheel_limits.h, wheel_following.h, yaw_agreement.h, torque_oscillation.h,
+/// body_conditions.h, sensor_presence.h and machine_conditions.h.
 
 #include <array>
 #include <cstdint>
@@ -13,11 +14,11 @@
 
 namespace robot_control {
 
-/// From mild to severe; the severest of all that are true wins.
+/// From mild to severe; the severest reaction of all active conditions wins.
 enum class Reaction : std::uint8_t {
-  kOff,    ///< not even looked at
-  kWarn,   ///< told
-  kSlow,   ///< told, and no rim faster than slow_speed as long as it is true, and kWarningHold after
+  kOff,    ///< the condition is not evaluated
+  kWarn,   ///< reported
+  kSlow,   ///< reported; rim speeds limited to slow_speed while the condition is active and for kWarningHold after it
   kRamp,   ///< latched, stop category 1 of IEC 60204-1: ramp under supervision, then brake
   kBrake,  ///< latched, stop category 0: brake at once
 };
@@ -30,15 +31,15 @@ struct Condition {
 };
 
 struct SafetyParameters {
-  std::uint64_t loss_cycles = 20;  ///< cycles without a command or a state before the stop latches
-  double heartbeat_timeout = 0;    ///< s; 0 = no operator heartbeat is asked for
+  std::uint64_t loss_cycles = 20;  ///< cycles without a command or a state after which the stop latches
+  double heartbeat_timeout = 0;    ///< s; 0 = no operator heartbeat is required
   double ramp_time = 2.0;          ///< s, longest category-1 ramp before the brake
   double standstill_speed = 0.05;  ///< rad/s, wheels slower than this are standing
 
-  double slow_speed = 0.3;   ///< m/s, of the rims, under Reaction::kSlow
-  double clearance = 0;      ///< m, free way ahead from the start on, until the topic says otherwise; 0: unlimited
-  double stop_delay = 0.03;  ///< s, from the fact to the brake torque
-  double stop_deceleration = 0.5;  ///< m/s², that braking or ramping reaches on any ground the robot drives on
+  double slow_speed = 0.3;         ///< m/s, of the rims, under Reaction::kSlow
+  double clearance = 0;            ///< m, free distance ahead until the first message on the topic; 0: unlimited
+  double stop_delay = 0.03;        ///< s, from the event to the brake torque
+  double stop_deceleration = 0.5;  ///< m/s², which braking and ramping reach on every ground the robot drives on
 
   Condition wheel_speed{{}, 0.15, Reaction::kBrake};         ///< rad/s; derived
   Condition wheel_acceleration{{}, 0.01, Reaction::kBrake};  ///< rad/s²; derived
@@ -62,8 +63,8 @@ struct SafetyParameters {
   Condition battery_low{{}, 1.0, Reaction::kSlow};           ///< V
   Condition battery_empty{{}, 1.0, Reaction::kRamp};         ///< V
 
-  /// N·m/rad, of each wheel: RMS of the torque that derived gains make of an encoder's counts, by the size of a count.
-  /// No user sets it: it follows from robot and rate (runtime/safety_limits.h).
+  /// N·m/rad, of each wheel: RMS of the torque that the derived gains produce from encoder quantisation, divided by the
+  /// size of a count. Not a user parameter: it follows from robot and rate (runtime/safety_limits.h).
   std::array<double, kMaxWheels> count_ripple{};
 };
 

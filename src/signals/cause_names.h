@@ -1,9 +1,9 @@
 #pragma once
-/// Stop causes in words: what is the case, what is done about it, by whom.
+/// Stop causes in words: the condition, its remedy, and the person who can apply it.
 ///
-///   operator     who drives the robot now
-///   integrator   who set it up: nodes, parameters, URDF, network
-///   technician   who repairs the machine: sensors, motors, cables, battery
+///   operator     drives the robot
+///   integrator   sets the robot up: nodes, parameters, URDF, network
+///   technician   repairs the machine: sensors, motors, cables, battery
 
 #include <array>
 
@@ -54,14 +54,14 @@ inline constexpr auto kStopCauseNames = std::to_array<BitName>({
      "look at the drive of that wheel, then call e_stop_reset", "technician", "of its limit"},
     {kCausePower, "power", "the motors draw more mechanical power than allowed",
      "look at load and drives, then call e_stop_reset", "technician", "W"},
-    {kCauseStall, "stall", "a wheel stands though it was told to turn",
+    {kCauseStall, "stall", "a wheel stands although its target is not zero",
      "free the wheel, or look at its motor and encoder, then call e_stop_reset", "technician", "rad"},
-    {kCauseRunaway, "runaway", "a wheel is faster than it was told",
+    {kCauseRunaway, "runaway", "a wheel is faster than its target",
      "look at slope and load, motor and encoder of that wheel, then call e_stop_reset", "technician", "rad/s"},
-    {kCauseWrongDirection, "wrong_direction", "a wheel turns against what it was told",
+    {kCauseWrongDirection, "wrong_direction", "a wheel turns against its target",
      "look at the wiring of its motor and encoder, then call e_stop_reset", "technician", "rad/s"},
-    {kCauseNotStopping, "not_stopping", "the robot still moves though it was told to stand",
-     "look who pushes it, at slope, motors and encoders, then call e_stop_reset", "technician", "s"},
+    {kCauseNotStopping, "not_stopping", "the robot still moves although it is commanded to stand",
+     "find out what pushes it; check slope, motors and encoders, then call e_stop_reset", "technician", "s"},
     {kCauseYawRate, "yaw_rate", "gyro and wheels disagree on how fast the robot turns",
      "look at gyro, encoders and grip of the wheels", "technician", "rad/s"},
     {kCauseTilt, "tilt", "the robot is tilted too far",

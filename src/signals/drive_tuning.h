@@ -1,6 +1,7 @@
 #pragma once
 /// The limits and gains with which a drive controller runs, as numbers: what the user left out is derived. Handed to it
-/// between two cycles (~set_parameter_map), and in every row of its trace, so that a log tells which values held when.
+/// between two cycles (~set_parameter_map), and in every row of its trace, so that a log shows which values were in
+/// force when.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +20,7 @@ struct AxisTuning {
   double jerk = 0;  ///< 0: no limit
 };
 
-/// Of one wheel: its loop, and what feed-forward believes of it.
+/// Of one wheel: the parameters of its loop, and those of feed-forward.
 struct WheelTuning {
   double kp = 0;             ///< N·m·s/rad
   double ki = 0;             ///< N·m/rad
@@ -37,7 +38,7 @@ struct DriveTuning {
   std::uint64_t keep_curvature = 0;                ///< 1: kept
   double cmd_vel_timeout = 0;                      ///< s; 0: never
   double tracking_bandwidth = 0;                   ///< Hz
-  double mass = 0;                                 ///< kg, of feed-forward, as is
+  double mass = 0;                                 ///< kg, of feed-forward
   double yaw_inertia = 0;                          ///< kg·m²
   std::array<WheelTuning, kTunedWheels> wheels{};  ///< in the order of RobotModel::wheels, which is that of the joints
 };

@@ -15,7 +15,7 @@ namespace robot_control {
 /// What stands behind a head.
 enum class FrameKind : std::uint64_t {
   kFrame = 1,  ///< A frame with content.
-  kToken = 2,  ///< "Cycle k has passed here, without a frame": of a node told to be silent. Content is zero.
+  kToken = 2,  ///< Cycle k was processed without a frame, because an injected fault suppresses it. Content is zero.
 };
 
 struct FrameHead {

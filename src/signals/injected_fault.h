@@ -1,5 +1,5 @@
 #pragma once
-/// Faults that a simulated machine is told to have, in PX4's words: which component fails, and how.
+/// Faults that are injected into a simulated machine, in the terms of PX4: which component fails, and how.
 /// (PX4 user guide, "System Failure Injection".)
 
 #include <array>

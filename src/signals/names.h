@@ -34,7 +34,7 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalSilent, "silent", "no sensor frame comes", "look whether the driver node runs, then ask again"},
     {kRefusalPaused, "paused", "the simulation is paused", "let it run (mujoco_plant/set_pause), then ask again"},
     {kRefusalSliding, "sliding", "the wheels stand, but the robot may still slide",
-     "ask again: from speed v it is believed to stand after v/stop_deceleration"},
+     "ask again: from speed v it is assumed to stand after v/stop_deceleration"},
 });
 
 inline constexpr auto kMissingNodeNames = std::to_array<BitName>({
@@ -114,8 +114,8 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
     {kStateNoGyro, "no_gyro", "yaw comes from the wheels alone", "look at the IMU"},
     {kStateBadSample, "bad_sample", "a sample was missing, not finite or impossible and was not used",
      "look at the driver's faults"},
-    {kStateNoLeftEncoder, "no_left_encoder", "the left wheels are not heard", "look at the left encoder"},
-    {kStateNoRightEncoder, "no_right_encoder", "the right wheels are not heard", "look at the right encoder"},
+    {kStateNoLeftEncoder, "no_left_encoder", "no valid readings of the left encoders", "look at the left encoder"},
+    {kStateNoRightEncoder, "no_right_encoder", "no valid readings of the right encoders", "look at the right encoder"},
     {kStateNoAccelerometer, "no_accelerometer", "tilt, and slip of all wheels together, are not noticed",
      "look at the IMU"},
 });

@@ -28,7 +28,7 @@ enum class SupervisorState : std::uint64_t {
   kDrive = 2,     ///< Permit to drive, motion asked or going on.
   kStopping = 3,  ///< Ramp under supervision (category 1).
   kStopped = 4,   ///< Latched brake; leaves by an accepted reset.
-  kFault = 5,     ///< Latched brake whose cause needs a repair (driver fault).
+  kFault = 5,     ///< Latched brake; the cause needs repair (driver fault).
 };
 
 /// Bits of Permit::causes, active and warnings; what each means, from which fact and by which limit: safety/.
@@ -53,10 +53,10 @@ enum StopCause : std::uint64_t {
   kCauseWheelAcceleration = 1u << 17,
   kCauseWheelEffort = 1u << 18,
   kCausePower = 1u << 19,
-  kCauseStall = 1u << 20,           ///< A wheel stands though it was told to turn.
-  kCauseRunaway = 1u << 21,         ///< A wheel is faster than it was told.
-  kCauseWrongDirection = 1u << 22,  ///< A wheel turns against what it was told.
-  kCauseNotStopping = 1u << 23,     ///< Told to stand, the robot still moves.
+  kCauseStall = 1u << 20,           ///< A wheel stands although its target is not zero.
+  kCauseRunaway = 1u << 21,         ///< A wheel is faster than its target.
+  kCauseWrongDirection = 1u << 22,  ///< A wheel turns against its target.
+  kCauseNotStopping = 1u << 23,     ///< The robot still moves although it is commanded to stand.
   kCauseYawRate = 1u << 24,         ///< Gyro and wheels disagree on how fast the robot turns.
   kCauseTilt = 1u << 25,
   kCauseTipOver = 1u << 26,  ///< Tilted, and tilting further fast.
@@ -73,7 +73,7 @@ enum StopCause : std::uint64_t {
 };
 inline constexpr std::size_t kStopCauses = 37;
 
-/// By what a cause was told: `value` beyond `limit`, in the unit of its row in cause_names.h.
+/// The measurement that made a cause active: `value` beyond `limit`, in the unit of its row in cause_names.h.
 struct CauseEvidence {
   std::uint64_t cause = 0;           ///< one bit; 0: unused
   std::uint64_t cycle = 0;           ///< in which it became active
@@ -106,14 +106,14 @@ struct Permit {
   std::uint64_t causes = 0;       ///< latched since the last accepted reset
   std::uint64_t active = 0;       ///< true in this very cycle
   std::uint64_t first_cause = 0;  ///< one bit: what stopped the robot first
-  std::uint64_t warnings = 0;     ///< true now or a moment ago, told or slowed down for, not latched
+  std::uint64_t warnings = 0;     ///< active now or within the last second, reported or with a speed limit, not latched
   std::uint64_t since_cycle = 0;  ///< in which `state` was entered (of this run; 0 after a new run)
   std::uint64_t missing = 0;      ///< nodes that were not seen in this run
   std::uint64_t unreleased = 0;   ///< 1: since a start, no zero velocity was requested (safety/latch/motion_release.h)
-  std::uint64_t boot = 0;         ///< SensorFrame::boot of the driver it was issued for
-  std::uint64_t resets_handled = 0;  ///< counter of the last reset request that was answered
-  std::uint64_t reset_refusal = 0;   ///< why that one was refused; 0 = accepted
-  double speed_limit = 0;            ///< m/s, of every wheel's rim over the ground; kNoSpeedLimit: none
+  std::uint64_t driver_instance = 0;  ///< SensorFrame::driver_instance of the driver it was issued for
+  std::uint64_t resets_handled = 0;   ///< counter of the last reset request that was answered
+  std::uint64_t reset_refusal = 0;    ///< why that one was refused; 0 = accepted
+  double speed_limit = 0;             ///< m/s, of every wheel's rim over the ground; kNoSpeedLimit: none
   std::array<CauseEvidence, kMaxEvidence> evidence{};  ///< latched causes in the order they came, then warnings
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Driver → everybody: the sensors of cycle k, the driver's health, and the gate's verdict of tick k-1.
+/// Driver → all nodes: the sensors of cycle k, the driver's state, and the gate's verdict of tick k-1.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxContacts = 8;
 struct ImuSample {
   Vector3 angular_velocity{};     ///< rad/s
   Vector3 linear_acceleration{};  ///< m/s²
-  Quaternion orientation{};       ///< all zero where the device has none
+  Quaternion orientation{};       ///< all zero if the device has none
 };
 
 enum class DriverState : std::uint64_t {
@@ -54,7 +54,7 @@ enum DigitalInput : std::uint64_t { kInputEmergencyStop = 1u << 0 };
 
 struct SensorFrame {
   FrameHead head;
-  std::uint64_t boot = 0;  ///< Random number of the driver process; outlives a reset, not a restart.
+  std::uint64_t driver_instance = 0;  ///< Random number of the driver process; outlives a reset, not a restart.
   DriverState driver_state = DriverState::kStarting;
   std::uint64_t faults = 0;
   std::uint64_t valid = 0;
@@ -71,7 +71,7 @@ struct SensorFrame {
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
   InjectedFaults injected{};     ///< of a simulator, for the log and the programs NODE_with_faults
   std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
-  std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or set down anew. Outlives a reset.
+  std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or reset. Outlives a reset.
 };
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// state_estimator → everybody: where the robot is, how fast, and how sure that is.
+/// state_estimator → all nodes: pose and twist of the robot, with covariances.
 
 #include <array>
 #include <cstdint>
@@ -32,12 +32,12 @@ enum StateFlag : std::uint64_t {
   kStateSkipped = 1u << 4,          ///< At least one cycle of sensors was never seen since the last frame.
   kStateNoGyro = 1u << 5,           ///< Yaw from the wheels alone.
   kStateBadSample = 1u << 6,        ///< A sample of this cycle was missing or not finite and was not used.
-  kStateNoLeftEncoder = 1u << 7,    ///< The left wheels are not heard.
-  kStateNoRightEncoder = 1u << 8,   ///< The right wheels are not heard.
+  kStateNoLeftEncoder = 1u << 7,    ///< No valid readings of the left encoders.
+  kStateNoRightEncoder = 1u << 8,   ///< No valid readings of the right encoders.
   kStateNoAccelerometer = 1u << 9,  ///< Tilt and slip of all wheels together are not noticed.
 };
 
-/// Bits of StateFrame::slip: which contact is not believed, and what contradicts it.
+/// Bits of StateFrame::slip: which contact is not trusted, and what contradicts it.
 enum SlipReason : std::uint64_t {
   kSlipLeft = 1u << 0,      ///< The left wheels do not roll.
   kSlipRight = 1u << 1,     ///< The right wheels do not roll.
@@ -48,7 +48,7 @@ enum SlipReason : std::uint64_t {
   kSlipLifted = 1u << 6,    ///< The robot moves up or down: lifted, or over a kerb.
 };
 
-/// What the estimator believes of the wheels beyond RobotModel, and how well it knows it.
+/// The estimated calibration of wheels and gyro relative to RobotModel, with standard deviations.
 struct WheelCalibration {
   double radius_ratio = 1;            ///< right over left radius, relative to the model's
   double wheel_base_factor = 1;       ///< effective wheel base over the model's

@@ -1,5 +1,5 @@
 #pragma once
-/// What enters the loop from outside: a wished motion, and an operator's requests.
+/// The inputs of the loop: a velocity command, and an operator's requests.
 
 #include <cstdint>
 
@@ -8,8 +8,8 @@
 namespace robot_control {
 
 /// The last command on `cmd_vel` or `cmd_vel_stamped` that may be used, and how many may not. `count` grows by one with
-/// every usable one: that, not a clock, tells a new command from an old one. A stamp becomes an age once, when the
-/// message arrives (bridge/inputs/command_input.h); from then on only cycles count, which no clock moves.
+/// every usable one: that, not a clock, distinguishes a new command from an old one. A stamp becomes an age once, when
+/// the message arrives (bridge/inputs/command_input.h); from then on only cycles count, which no clock moves.
 struct VelocityCommand {
   Twist twist;  ///< base axes; NaN and infinity are passed on, the controller refuses them
   std::uint64_t count = 0;

@@ -18,7 +18,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kBoot = 1;  // any number but 0, as for a run: nobody else is on these channels
+constexpr std::uint64_t kDriverInstance = 1;  // any number but 0, as for a run: no other process uses these channels
 
 /// ClosedLoop is the only sender of commands: each run begins with a zero request.
 CommandScript script_of(const Parameters& parameters) {
@@ -26,14 +26,6 @@ CommandScript script_of(const Parameters& parameters) {
   script.begin_with_zero();
   return script;
 }
-
-/// A channel in private memory, with its two ends.
-template <class Frame>
-struct Channel {
-  std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
-  FrameWriter<Frame> writer{memory.get(), Wake::kNobody};
-  FrameReader<Frame> reader{memory.get()};
-};
 
 RobotModel load_robot(const Parameters& parameters) {
   RobotModel robot = read_robot(load_description(parameters.urdf), parameters.robot);
@@ -44,6 +36,14 @@ RobotModel load_robot(const Parameters& parameters) {
 }  // namespace
 
 struct ClosedLoop::Parts {
+  /// A channel in private memory, with its two ends.
+  template <class Frame>
+  struct Channel {
+    std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
+    FrameWriter<Frame> writer{memory.get(), Wake::kNobody};
+    FrameReader<Frame> reader{memory.get()};
+  };
+
   explicit Parts(const Parameters& given)
       : parameters(given),
         robot(load_robot(given)),
@@ -60,7 +60,7 @@ struct ClosedLoop::Parts {
                 load_script(given.loop.command_script), nullptr, faulty_monitor_output()),
         retuning(given, robot, controller.tunings()) {
     plant.start();
-    driver.set_boot(kBoot);
+    driver.set_driver_instance(kDriverInstance);
     driver.begin_run(1);
   }
 

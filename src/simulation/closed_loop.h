@@ -37,8 +37,8 @@ class ClosedLoop {
   /// One cycle. Time stands still between two steps: that is this loop's pause.
   void step() noexcept;
 
-  /// As `~reset` of mujoco_plant: the robot is set down anew, without injected faults, and a new run begins at
-  /// cycle 0. Estimator, controller and counters begin anew, commands received before are dropped, latched stops
+  /// As `~reset` of mujoco_plant: the robot returns to its initial pose, without injected faults, and a new run begins
+  /// at cycle 0. Estimator, controller and counters restart, commands received before are dropped, latched stops
   /// stay. Apart from `run` and from such a stop its rows are those of a new ClosedLoop, bit for bit. Throws
   /// DriverError.
   void reset();

@@ -7,7 +7,7 @@
 /// the attitude against gravity, wheel_odom_… the wheels alone by the model's numbers. NaN: there is none (no speed
 /// limit, no battery). `tuning` counts the sets of live parameters; behind it stands what held in this cycle, derived
 /// values among them (signals/drive_tuning.h): a joint that no loop drives has gains 0. `evidence_…`: by what the first
-/// cause was told, else the first warning; unit by its row in signals/cause_names.h.
+/// cause became active, else the first warning; unit by its row in signals/cause_names.h.
 
 #include <cstdint>
 #include <string>

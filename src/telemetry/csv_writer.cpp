@@ -50,7 +50,7 @@ CsvWriter::~CsvWriter() {
   try {
     close();
   } catch (const LogError&) {
-    // Whoever needs to know has called close().
+    // A caller that needs to know the result has called close().
   }
 }
 

@@ -39,7 +39,7 @@ class CsvWriter {
   /// are ignored.
   void write(const JoinedRow& row);
 
-  /// Hands what is buffered to the system, for those who read along. Throws LogError.
+  /// Hands what is buffered to the system, for processes that read the file meanwhile. Throws LogError.
   void flush();
 
   /// flush, fsync, close. Throws LogError.

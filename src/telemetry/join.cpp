@@ -73,9 +73,9 @@ std::array<const FrameHead*, 4> Join::fronts() const {
 }
 
 bool Join::may_proceed(const std::array<const FrameHead*, 4>& fronts) const {
-  const bool everybody = std::all_of(fronts.begin(), fronts.end(), [](const auto* head) { return head != nullptr; });
+  const bool complete = std::all_of(fronts.begin(), fronts.end(), [](const auto* head) { return head != nullptr; });
   const auto longest = std::apply([](const auto&... queue) { return std::max({queue.size()...}); }, queues_);
-  return everybody || longest > window_;
+  return complete || longest > window_;
 }
 
 void Join::drain(bool force) {

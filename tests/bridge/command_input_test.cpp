@@ -17,10 +17,10 @@ using testing::IsEmpty;
 /// One node sends every 0.1 s, on the robot's clock.
 class CommandInputTest : public testing::Test {
  protected:
-  void hear(const std::string& sender, double linear, std::int64_t stamp_ns = 0) {
+  void add(const std::string& sender, double linear, std::int64_t stamp_ns = 0) {
     ArrivedCommand arrived{.sender = sender, .twist = {}, .stamp_ns = stamp_ns};
     arrived.twist.linear[0] = linear;
-    input_.hear(arrived, now_);
+    input_.receive(arrived, now_);
   }
 
   void hear_stamped(const std::string& sender, double linear, std::int64_t age_ns = 0) {
@@ -141,7 +141,7 @@ TEST_F(CommandInputTest, SimulatedTimeIsAClockLikeAnyOther) {
 }
 
 TEST_F(CommandInputTest, WithoutATimeoutNoStampIsLookedAt) {
-  input_.limit(0);
+  input_.set_timeout(0);
   hear_stamped("/teleop", 0.5, kHour);
   EXPECT_EQ(value().count, 1u);
   EXPECT_EQ(value().age_ns, 0);

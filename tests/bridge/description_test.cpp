@@ -14,8 +14,8 @@ class ChosenDescription : public testing::Test {
  protected:
   ChosenDescription() { parameters_.urdf = PROJECT_DIRECTORY "/urdf/diffbot.urdf"; }
 
-  RobotDescription chosen(bool urdf_asked_for, const std::string& published) const {
-    return chosen_description(parameters_, urdf_asked_for, published, "/robot_description");
+  RobotDescription chosen(bool urdf_requested, const std::string& published) const {
+    return chosen_description(parameters_, urdf_requested, published, "/robot_description");
   }
 
   Parameters parameters_;

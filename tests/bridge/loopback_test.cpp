@@ -17,7 +17,7 @@ namespace {
 class LoopbackTest : public testing::Test {
  protected:
   LoopbackTest() {
-    bind_as_ros_is_told();
+    bind_as_ros_is_configured();
     unsetenv("ROS_HOSTNAME");
     setenv("ROS_IP", "127.0.0.1", 1);
   }

@@ -80,9 +80,10 @@ TEST_F(StopLogTest, SaysOnceThatTheRobotIsReady) {
 
 TEST_F(StopLogTest, SaysStateCauseValueLimitAndRemedyOfAStop) {
   permit_.evidence[0] = {.cause = kCauseStall, .joint = 0, .value = 0.6, .limit = 0.5};
-  EXPECT_EQ(stop(kCauseStall),
-            "W STOPPED: stall: a wheel stands though it was told to turn (0.6 rad, limit 0.5 rad, left_wheel_joint). "
-            "To drive again: free the wheel, or look at its motor and encoder, then call e_stop_reset\n");
+  EXPECT_EQ(
+      stop(kCauseStall),
+      "W STOPPED: stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint). "
+      "To drive again: free the wheel, or look at its motor and encoder, then call e_stop_reset\n");
   EXPECT_EQ(look(), "");
 }
 
@@ -102,7 +103,7 @@ TEST_F(StopLogTest, SeveralCausesAtOnceAreOneLineWithTheFirstInFront) {
   permit_.causes = kCauseStall | kCauseEmergencyStopService;
   EXPECT_EQ(
       enter(SupervisorState::kStopped),
-      "W STOPPED: stall: a wheel stands though it was told to turn; e_stop_service: e_stop_trigger was called. To "
+      "W STOPPED: stall: a wheel stands although its target is not zero; e_stop_service: e_stop_trigger was called. To "
       "drive again: free the wheel, or look at its motor and encoder, then call e_stop_reset\n");
 }
 

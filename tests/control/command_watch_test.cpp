@@ -157,12 +157,12 @@ TEST_F(CommandWatchTest, ManySendersEndTheCommandUntilANewOneComesFromTheOneThat
 TEST_F(CommandWatchTest, AnotherTimeoutHoldsForTheCommandThatStands) {
   send(0.5);
   watch.step(request, 0);
-  watch.limit(0.1);
+  watch.set_timeout(0.1);
   EXPECT_EQ(watch.step(request, 100).linear[0], 0.5);
   EXPECT_EQ(watch.step(request, 101).linear[0], 0);
   send(0.5);
   watch.step(request, 200);
-  watch.limit(0);
+  watch.set_timeout(0);
   EXPECT_EQ(watch.step(request, 100'000).linear[0], 0.5);
 }
 
@@ -218,7 +218,7 @@ TEST_F(CommandWatchTest, SilenceCountsFromTheLastMessageAcceptedOrRefused) {
   watch.step(request, 160);
   EXPECT_EQ(watch.silent_cycles(161), 1u);
   EXPECT_EQ(watch.silence_needed(), 1250u);
-  watch.limit(0);
+  watch.set_timeout(0);
   EXPECT_EQ(watch.silence_needed(), 1000u) << "without a timeout one second";
 }
 

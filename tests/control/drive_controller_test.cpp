@@ -338,14 +338,14 @@ TEST_F(DriveControllerTest, StartsANewRunFromNothing) {
 TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFaults) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> wish(-3, 3);
+    std::uniform_real_distribution<double> requested(-3, 3);
     std::uniform_int_distribution<int> event(0, 400);
     bench = ControlBench(make_test_robot(), straight_ramps());
     bench.plant.counts = 4096;
     int brake = 0;
     for (int k = 0; k < 8000; ++k) {
       const int what = event(random);
-      if (what < 3) bench.send(wish(random), wish(random));
+      if (what < 3) bench.send(requested(random), requested(random));
       if (what == 3) bench.send(INFINITY, 0);
       if (what == 4) brake = 50;
       bench.permit.action = brake-- > 0 ? PermitAction::kBrake : PermitAction::kDrive;

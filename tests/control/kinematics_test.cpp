@@ -76,8 +76,8 @@ TEST(DriveKinematics, ScalesBothAxesUntilTheFastestWheelIsAtNineTenthsOfItsLimit
     std::uniform_real_distribution<double> any(-8, 8);
     const PlanarTwist twist{any(random), any(random)};
     const double scale = kinematics.wheel_speed_scale(twist);
-    const WheelValues wish = kinematics.joint_speeds(twist);
-    const double fastest = std::fmax(std::abs(wish[0]), std::abs(wish[1]));
+    const WheelValues requested = kinematics.joint_speeds(twist);
+    const double fastest = std::fmax(std::abs(requested[0]), std::abs(requested[1]));
     EXPECT_NEAR(scale, fastest > 27 ? 27 / fastest : 1, kRounding) << "seed " << seed;
   }
 }

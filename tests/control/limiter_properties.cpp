@@ -146,11 +146,12 @@ class Trial {
     const std::array<double, 2> speeds{next.linear, next.angular};
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const Axis before = axes_[i];
-      if (const char* violated = axes_[i].go(speeds[i], emergency_, yielded)) return told(violated, before, speeds[i]);
+      if (const char* violated = axes_[i].go(speeds[i], emergency_, yielded))
+        return report(violated, before, speeds[i]);
     }
-    if (beside_the_line(next)) return told("curvature", axes_[1], next.angular);
+    if (beside_the_line(next)) return report("curvature", axes_[1], next.angular);
     if (next.linear != -mirrored.linear || next.angular != -mirrored.angular) {
-      return told("reverse", axes_[0], mirrored.linear);
+      return report("reverse", axes_[0], mirrored.linear);
     }
     return {};
   }
@@ -159,19 +160,19 @@ class Trial {
     // Together they take as long as the slower one, scaled up by the ratio of their ways.
     const double patience = 3 * (axes_[0].patience() + axes_[1].patience());
     for (; !arrived(); ++cycle_) {
-      if (cycle_ > patience + kLimiterCycles) return told("arrival", axes_[0], axes_[0].speed);
+      if (cycle_ > patience + kLimiterCycles) return report("arrival", axes_[0], axes_[0].speed);
       if (auto violated = step()) return violated;
     }
     for (int more = 0; more < 3; ++more, ++cycle_) {
       if (auto violated = step()) return violated;
-      if (!arrived()) return told("arrival", axes_[0], axes_[0].speed);
+      if (!arrived()) return report("arrival", axes_[0], axes_[0].speed);
     }
     return {};
   }
 
   bool arrived() const { return axes_[0].speed == axes_[0].goal && axes_[1].speed == axes_[1].goal; }
 
-  std::string told(const char* violated, const Axis& axis, double next) const {
+  std::string report(const char* violated, const Axis& axis, double next) const {
     std::ostringstream text;
     text << violated << " in cycle " << cycle_ << ", " << axis.speed << " to " << next << " for " << axis.goal
          << ", acceleration before " << axis.acceleration << "; limits " << axis.limits.acceleration << ", "

@@ -129,10 +129,10 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     ControlBench bench(robot, parameters);
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> wish(-1, 1);
+    std::uniform_real_distribution<double> requested(-1, 1);
     bench.run(0.3);
     for (int change = 0; change < 40; ++change) {
-      const PlanarTwist target{wish(random), 2 * wish(random)};
+      const PlanarTwist target{requested(random), 2 * requested(random)};
       bench.send(target.linear, target.angular);
       for (int k = 0; k < 150; ++k) {
         bench.step();

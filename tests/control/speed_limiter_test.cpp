@@ -39,11 +39,11 @@ TEST(SpeedLimiter, ReachesOneMetrePerSecondInExactlyOneSecond) {
 TEST(SpeedLimiter, NeverExceedsALimitNorOvershoots) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> wish(-4, 4);
+    std::uniform_real_distribution<double> requested(-4, 4);
     std::uniform_int_distribution<int> hold(1, 800);
     SpeedLimiter limiter(kLimits);
     for (int change = 0; change < 40; ++change) {
-      const PlanarTwist target{wish(random), wish(random)};
+      const PlanarTwist target{requested(random), requested(random)};
       const int cycles = hold(random);
       for (int k = 0; k < cycles; ++k) {
         const PlanarTwist before = limiter.value();
@@ -67,12 +67,12 @@ TEST(SpeedLimiter, NeverExceedsALimitNorOvershoots) {
 TEST(SpeedLimiter, DoesTheSameInReverseBitForBit) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> wish(-3, 3);
+    std::uniform_real_distribution<double> requested(-3, 3);
     SpeedLimiter forward(kLimits);
     SpeedLimiter reverse(kLimits);
     PlanarTwist target;
     for (int k = 0; k < 5000; ++k) {
-      if (k % 250 == 0) target = {wish(random), wish(random)};
+      if (k % 250 == 0) target = {requested(random), requested(random)};
       const PlanarTwist ahead = forward.step(target, kDt);
       const PlanarTwist back = reverse.step({-target.linear, -target.angular}, kDt);
       ASSERT_EQ(ahead.linear, -back.linear) << "seed " << seed << " cycle " << k;
@@ -103,7 +103,7 @@ TEST(SpeedLimiter, KeepsTheCurvatureOfATooFastCommandAndSaysSo) {
 
 TEST(SpeedLimiter, ContinuesFromTheSeedAndReturnsFromAboveTheLimit) {
   SpeedLimiter limiter(kLimits);
-  limiter.seed({1.5, 0});
+  limiter.restart_from({1.5, 0});
   EXPECT_NEAR(limiter.step({2, 0}, kDt).linear, 1.499, 1e-15);
   for (int k = 0; k < 500; ++k) limiter.step({2, 0}, kDt);
   EXPECT_EQ(limiter.value().linear, 1.0);
@@ -221,7 +221,7 @@ TEST(SpeedLimiter, ReturnsFromLimitsThatWereLowered) {
   cycles_to(limiter, {1, 0});
   SpeedLimits lower = kSmooth;
   lower.linear.speed = 0.4;
-  limiter.limit(lower);
+  limiter.set_limits(lower);
   double before = 1;
   for (int k = 0; k < 2000; ++k) {
     const double now = limiter.step({1, 0}, kDt).linear;
@@ -255,7 +255,7 @@ TEST(SpeedLimiter, HalfOfTheLimitsTakesTwiceAsLong) {
   SpeedLimiter limiter(kLimits);
   for (int k = 1; k <= 2000; ++k) limiter.step({1, 0}, kDt, false, 0.5);
   EXPECT_NEAR(limiter.value().linear, 1, 1e-12);  // 2000 roundings
-  EXPECT_NEAR(limiter.used_part(), 0.5, 1e-9);
+  EXPECT_NEAR(limiter.used_acceleration_scale(), 0.5, 1e-9);
 }
 
 // 1 m/s² grew under 10 m/s³: it fades as fast, and carries the speed on by 0.05 m/s, whatever the limit is now.
@@ -265,7 +265,7 @@ TEST(SpeedLimiter, AJerkLimitLoweredDuringARampHoldsUpNoStop) {
     while (limiter.value().linear < 0.2) limiter.step({1, 0}, kDt);
     SpeedLimits lower = kSmooth;
     lower.linear.jerk = jerk;
-    limiter.limit(lower);
+    limiter.set_limits(lower);
     double fastest = 0;
     for (int k = 0; k < 20'000; ++k) {
       const double before = limiter.value().linear;

@@ -33,10 +33,10 @@ struct Recording {
   std::vector<VelocityCommand> requests;
 };
 
-Recording record(ControlBench& bench, const std::function<PlanarTwist(std::size_t)>& wish) {
+Recording record(ControlBench& bench, const std::function<PlanarTwist(std::size_t)>& requested) {
   Recording recording;
   for (std::size_t k = 0; k < kCycles; ++k) {
-    if (k % 20 == 0) bench.send(wish(k).linear, wish(k).angular);
+    if (k % 20 == 0) bench.send(requested(k).linear, requested(k).angular);
     bench.step();
     recording.sensors.push_back(bench.sensors);
     recording.requests.push_back(bench.request);

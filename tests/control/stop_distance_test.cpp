@@ -40,7 +40,7 @@ TEST(StopDistance, IsWhatTheLimiterTakes) {
     const bool emergency = trial % 2 == 0;
     const double speed = of_scale(0.02, 2);
     SpeedLimiter limiter(limits);
-    limiter.seed({speed, 0});
+    limiter.restart_from({speed, 0});
     double way = 0;
     for (double before = speed; before > 0; before = limiter.value().linear) {
       way += 0.5 * (before + limiter.step({}, kPeriod, emergency).linear) * kPeriod;

@@ -18,7 +18,7 @@ struct Errors {
 };
 Errors track(double v, double a, double j, double dt, double seconds, double known = 0) {
   TrackingLoop loop(kBandwidth, dt);
-  loop.seed(0, 0);
+  loop.restart_from(0, 0);
   double t = 0;
   const int cycles = static_cast<int>(seconds / dt + 0.5);
   for (int k = 1; k <= cycles; ++k) {
@@ -50,7 +50,7 @@ TEST_P(TrackingLoopRates, FadesWithTheTriplePoleItPromises) {
   const double dt = 1 / GetParam();
   const double p = std::exp(-kW * dt);
   TrackingLoop loop(kBandwidth, dt);
-  loop.seed(0, 0);
+  loop.restart_from(0, 0);
   double scaled[4] = {};
   for (int n = 1; n <= 12; ++n) {
     loop.step(1, 0, 1);
@@ -81,7 +81,7 @@ TEST(TrackingLoop, MovesTheSpeedOfOneEncoderCountByNoMoreThanItsGain) {
   const double jump = 1.5 * (1 - p) * (1 - p) * (1 + p) / dt * count;
   EXPECT_NEAR(jump, 0.060, 0.0005);  // the header's figure
   TrackingLoop loop(kBandwidth, dt);
-  loop.seed(0, 0);
+  loop.restart_from(0, 0);
   loop.step(count, 0, 1);
   EXPECT_NEAR(loop.velocity(), jump, 1e-15);
 }
@@ -93,7 +93,7 @@ TEST(TrackingLoop, StaysWithinATwentiethOfTheQuantumOfDifferencing) {
     std::mt19937 random(seed);
     const double speed = std::uniform_real_distribution<double>(2, 10)(random);
     TrackingLoop loop(kBandwidth, dt);
-    loop.seed(0, speed);
+    loop.restart_from(0, speed);
     double tracked = 0;
     for (int k = 1; k <= 5000; ++k) {
       const double angle = std::floor(speed * k * dt / count) * count;
@@ -109,7 +109,7 @@ TEST(TrackingLoop, StaysWithinATwentiethOfTheQuantumOfDifferencing) {
 TEST(TrackingLoop, PredictsOverSkippedSamples) {
   const double dt = 1e-3;
   TrackingLoop loop(kBandwidth, dt);
-  loop.seed(0, 5);
+  loop.restart_from(0, 5);
   double t = 0;
   for (const int periods : {1, 3, 1, 7, 2}) {
     t += periods * dt;

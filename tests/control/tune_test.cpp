@@ -140,8 +140,8 @@ TEST_F(Tune, BeforeAHandOverLeavesItTheTorqueThatTheBrakeHeld) {
   for (int k = 0; k < 5; ++k) loop.measure({.position = 1e-4 * k * k}, 1, false);
   loop.tune({.kp = 1, .ki = 10, .kd = 0.01}, 20, 0);
   loop.measure({.position = 1e-4 * 25}, 1, false);
-  loop.resume();
-  loop.carry(1.5);
+  loop.reset_to_measured();
+  loop.preload_integrator(1.5);
   EXPECT_NEAR(loop.step({.velocity = loop.velocity()}, 1), 1.5, kTuneRounding);
 }
 

@@ -36,9 +36,9 @@ TEST(WheelLoop, GivesTheCarriedEffortFirst) {
   for (int k = 1; k <= 50; ++k) {
     const double t = k * kPeriod;
     loop.measure({.position = 5 * t * t, .effort = 1.3}, 1, false);
-    loop.resume();
+    loop.reset_to_measured();
   }
-  loop.carry(1.3);
+  loop.preload_integrator(1.3);
   EXPECT_NEAR(loop.step({.velocity = loop.velocity()}, 1), 1.3, 1e-14);
 }
 
@@ -46,14 +46,14 @@ TEST(WheelLoop, TakesNoBrakeTorqueForAnAcceleration) {
   WheelLoop loop = seeded();
   for (int k = 0; k < 100; ++k) {
     loop.measure({.effort = k < 50 ? 1.3 : -2}, 1, false);
-    loop.resume();
+    loop.reset_to_measured();
     ASSERT_EQ(loop.velocity(), 0);
   }
 }
 
 TEST(WheelLoop, TakesTheLoadAtTheHandOverForNoAcceleration) {
   WheelLoop loop = seeded();
-  loop.carry(1.3);
+  loop.preload_integrator(1.3);
   for (int k = 0; k < 100; ++k) {
     ASSERT_EQ(loop.step({}, 1), 1.3);
     loop.measure({.effort = 1.3}, 1, true);
@@ -90,7 +90,7 @@ TEST(WheelLoop, DoesNotWindUpWhileTheGateClamps) {
 
 TEST(WheelLoop, UnwindsWhileTheGateClamps) {
   WheelLoop loop = seeded(0);
-  loop.carry(1);
+  loop.preload_integrator(1);
   for (int k = 0; k < 3; ++k) loop.step({.velocity = -0.4}, 1, true);  // 1 − 0.8 N·m: still upwards
   EXPECT_LT(loop.integral(), 1);
 }
@@ -118,7 +118,7 @@ TEST(WheelLoop, HoldsAnIntegralWithinTheEffortLimit) {
     ASSERT_LE(loop.integral(), kLimit);
   }
   // And leaves the limit at once when the error turns.
-  loop.resume();
+  loop.reset_to_measured();
   loop.step({.velocity = -10}, 1);
   loop.step({.velocity = -10}, 1);
   loop.step({.velocity = -10}, 1);
@@ -138,7 +138,7 @@ TEST(WheelLoop, DoesNotAllocate) {
 
 TEST(WheelLoop, WithoutAnIntegratorForgetsWhatItCarried) {
   WheelLoop loop = seeded(0, {.ki = 0});
-  loop.carry(1.3);
+  loop.preload_integrator(1.3);
   EXPECT_NEAR(loop.step({}, 1), 1.3, 0.02) << "no jump";
   double angle = 0;
   for (int k = 0; k < 1000; ++k) {

@@ -286,12 +286,12 @@ TEST_F(MujocoPlantTest, ReadAndTruthLeaveTheRestOfTheFrameAlone) {
   auto plant = started();
   SensorFrame frame;
   frame.head.cycle = 7;
-  frame.boot = 8;
+  frame.driver_instance = 8;
   frame.overruns = 9;
   frame.gate.missed = 10;
   plant->read(frame);
   EXPECT_EQ(frame.head.cycle, 7u);
-  EXPECT_EQ(frame.boot, 8u);
+  EXPECT_EQ(frame.driver_instance, 8u);
   EXPECT_EQ(frame.overruns, 9u);
   EXPECT_EQ(frame.gate.missed, 10u);
   TruthFrame real;

@@ -127,7 +127,7 @@ TEST(FilterProperties, RandomStepsLeaveTheCovariancePositive) {
           filter.anchor_travel(side, normal(random));
           break;
         case 6:
-          filter.doubt_velocity(axis, 0.1, 0.1);
+          filter.inflate_velocity(axis, 0.1, 0.1);
           break;
         case 7:
           filter.halt(0.01);
@@ -328,7 +328,7 @@ TEST_F(FilterUpdate, AnAnchoredTravelIsAsGoodAsAReading) {
 // δ m/s along an axis for t s: position is off by δ t/2 along it in the mean, fully correlated.
 TEST_F(FilterUpdate, ADoubtedVelocityIsAWayGoneWrong) {
   const Filter before = filter_;
-  filter_.doubt_velocity(0, 0.3, 2.0);
+  filter_.inflate_velocity(0, 0.3, 2.0);
   const Filter::Covariance grown = filter_.covariance - before.covariance;
   const int v = Filter::kVelocity;
   EXPECT_NEAR(grown(v, v), 0.09, 1e-12);
@@ -350,7 +350,7 @@ TEST_F(FilterUpdate, StepsWithoutAllocating) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   const AllocationGuard guard;
   drive(100);
-  filter_.doubt_velocity(0, 0.1, 0.1);
+  filter_.inflate_velocity(0, 0.1, 0.1);
   filter_.halt(0.01);
   filter_.stand(0.01);
   static_cast<void>(filter_.acceleration_deviation());

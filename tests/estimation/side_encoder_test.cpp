@@ -28,7 +28,7 @@ class SideEncoderTest : public testing::Test {
 TEST_F(SideEncoderTest, TakesTheFirstReadingAsOffset) {
   EXPECT_EQ(encoder_.travel(), 0);
   EXPECT_TRUE(encoder_.known());
-  EXPECT_TRUE(encoder_.heard());
+  EXPECT_TRUE(encoder_.received());
 }
 
 TEST_F(SideEncoderTest, TurnsAnglesIntoTravel) {
@@ -93,13 +93,13 @@ TEST_F(SideEncoderOfFourWheels, NeedsNoVelocityLimit) {
 TEST_F(SideEncoderTest, BringsTheTravelOfAGapWithTheNextGoodReading) {
   EXPECT_EQ(read(kNaN), EncoderReading::kRejected);
   EXPECT_EQ(encoder_.travel(), 0);
-  EXPECT_FALSE(encoder_.heard());
+  EXPECT_FALSE(encoder_.received());
   EXPECT_EQ(encoder_.waiting(), kPeriod);
   EXPECT_EQ(read(12.52), EncoderReading::kTravel);
   EXPECT_NEAR(encoder_.travel(), 0.002, 1e-15);
   EXPECT_EQ(encoder_.time(), 2 * kPeriod);
   EXPECT_EQ(encoder_.gap(), 2 * kPeriod);
-  EXPECT_TRUE(encoder_.heard());
+  EXPECT_TRUE(encoder_.received());
 }
 
 TEST_F(SideEncoderTest, RemembersNoGapBeyondItsBound) {

@@ -44,13 +44,13 @@ class SlipWatchTest : public testing::Test {
       filter_.predict(motion);
       travel_ += Eigen::Vector2d(left, right) * kPeriod;
       for (const int side : {0, 1}) {
-        const bool believed = watch_.believed(side == 0 ? Contact::kLeft : Contact::kRight);
-        if (believed && !before_[side]) filter_.anchor_travel(side, travel_[side]);
-        before_[side] = believed;
-        if (believed && heard_) filter_.correct_travel(side, travel_[side]);
+        const bool trusted = watch_.trusts(side == 0 ? Contact::kLeft : Contact::kRight);
+        if (trusted && !before_[side]) filter_.anchor_travel(side, travel_[side]);
+        before_[side] = trusted;
+        if (trusted && heard_) filter_.correct_travel(side, travel_[side]);
       }
-      if (watch_.believed(Contact::kLateral)) filter_.correct_lateral(kPeriod);
-      if (watch_.believed(Contact::kVertical)) filter_.correct_vertical(kPeriod);
+      if (watch_.trusts(Contact::kLateral)) filter_.correct_lateral(kPeriod);
+      if (watch_.trusts(Contact::kVertical)) filter_.correct_vertical(kPeriod);
       constexpr double kSilent = std::numeric_limits<double>::quiet_NaN();
       watch_.step({.dt = kPeriod,
                    .left = heard_ ? left * kPeriod : kSilent,
@@ -60,8 +60,8 @@ class SlipWatchTest : public testing::Test {
     }
   }
   bool all_believed() const {
-    return watch_.believed(Contact::kLeft) && watch_.believed(Contact::kRight) && watch_.believed(Contact::kLateral) &&
-           watch_.believed(Contact::kVertical);
+    return watch_.trusts(Contact::kLeft) && watch_.trusts(Contact::kRight) && watch_.trusts(Contact::kLateral) &&
+           watch_.trusts(Contact::kVertical);
   }
   double deviation() const { return std::sqrt(filter_.covariance(Filter::kVelocity, Filter::kVelocity)); }
 
@@ -85,8 +85,8 @@ TEST_F(SlipWatchTest, BelievesWheelsThatRoll) {
 // 1 m/s too fast is 4 cm in the 40 ms in which the shortest window speaks for the first time.
 TEST_F(SlipWatchTest, NoticesBothWheelsSpinningWithinAWindow) {
   go(100, 1.5, 1.5);
-  EXPECT_FALSE(watch_.believed(Contact::kLeft));
-  EXPECT_FALSE(watch_.believed(Contact::kRight));
+  EXPECT_FALSE(watch_.trusts(Contact::kLeft));
+  EXPECT_FALSE(watch_.trusts(Contact::kRight));
   EXPECT_EQ(watch_.reasons() & (kSlipLeft | kSlipRight | kSlipSpinning | kSlipStalled),
             std::uint64_t{kSlipLeft | kSlipRight | kSlipSpinning});
 }
@@ -94,7 +94,7 @@ TEST_F(SlipWatchTest, NoticesBothWheelsSpinningWithinAWindow) {
 // Had the wheels been believed the velocity would be theirs; it is the inertial one, as well as it says.
 TEST_F(SlipWatchTest, TakesBackWhatWasBelieved) {
   int cycles = 0;
-  while (watch_.believed(Contact::kLeft) && cycles++ < 200) go(1, 1.0, 1.0);
+  while (watch_.trusts(Contact::kLeft) && cycles++ < 200) go(1, 1.0, 1.0);
   EXPECT_NEAR(filter_.velocity.x(), kWheelSpeed, 3 * deviation());
   EXPECT_GT(deviation(), 1e-3) << "and it says that it has been in doubt";
   go(1000, 1.0, 1.0);
@@ -103,17 +103,17 @@ TEST_F(SlipWatchTest, TakesBackWhatWasBelieved) {
 
 TEST_F(SlipWatchTest, ALockedWheelStalls) {
   go(200, 0, kWheelSpeed);
-  EXPECT_FALSE(watch_.believed(Contact::kLeft));
+  EXPECT_FALSE(watch_.trusts(Contact::kLeft));
   EXPECT_EQ(watch_.reasons() & (kSlipLeft | kSlipSpinning | kSlipStalled), std::uint64_t{kSlipLeft | kSlipStalled});
   go(800, 0, kWheelSpeed);
-  EXPECT_TRUE(watch_.believed(Contact::kRight)) << "it rolls, and is believed again";
+  EXPECT_TRUE(watch_.trusts(Contact::kRight)) << "it rolls, and is believed again";
   EXPECT_NE(watch_.reasons() & kSlipTurn, 0u);
 }
 
 TEST_F(SlipWatchTest, SlidingSidewaysIsTheLateralContactsMatter) {
   side_force_ = 1.0;
   go(500);
-  EXPECT_FALSE(watch_.believed(Contact::kLateral));
+  EXPECT_FALSE(watch_.trusts(Contact::kLateral));
   EXPECT_NE(watch_.reasons() & kSlipSideways, 0u);
   EXPECT_NEAR(filter_.velocity.y(), 0.5, 0.1);
 }
@@ -121,19 +121,19 @@ TEST_F(SlipWatchTest, SlidingSidewaysIsTheLateralContactsMatter) {
 TEST_F(SlipWatchTest, BeingLiftedIsTheVerticalContactsMatter) {
   lift_ = 1.0;
   go(500);
-  EXPECT_FALSE(watch_.believed(Contact::kVertical));
+  EXPECT_FALSE(watch_.trusts(Contact::kVertical));
   EXPECT_NE(watch_.reasons() & kSlipLifted, 0u);
 }
 
 TEST_F(SlipWatchTest, CreepIsNotSlip) {
   go(5000, kWheelSpeed * (1 + 0.9 * SlipWatch::kCreep), kWheelSpeed * (1 + 0.9 * SlipWatch::kCreep));
-  EXPECT_TRUE(watch_.believed(Contact::kLeft));
-  EXPECT_TRUE(watch_.believed(Contact::kRight));
+  EXPECT_TRUE(watch_.trusts(Contact::kLeft));
+  EXPECT_TRUE(watch_.trusts(Contact::kRight));
 }
 
 TEST_F(SlipWatchTest, BelievesAgainWhenTheSpeedsAgree) {
   go(500, 1.5, 1.5);
-  ASSERT_FALSE(watch_.believed(Contact::kLeft));
+  ASSERT_FALSE(watch_.trusts(Contact::kLeft));
   go(1000);
   EXPECT_TRUE(all_believed());
   EXPECT_EQ(watch_.reasons(), 0u);
@@ -148,7 +148,7 @@ TEST_F(SlipWatchTest, BelievesLaterWhereTheVelocityIsUnknown) {
   for (int i = 1; i <= 1000 && believed == 0; ++i) {
     go(1, filter_.velocity.x(), filter_.velocity.x());
     if (told == 0 && (watch_.reasons() & kSlipLeft) == 0) told = i;
-    if (watch_.believed(Contact::kLeft)) believed = i;
+    if (watch_.trusts(Contact::kLeft)) believed = i;
   }
   EXPECT_GT(told, 0);
   EXPECT_LE(told, 200);
@@ -158,15 +158,15 @@ TEST_F(SlipWatchTest, BelievesLaterWhereTheVelocityIsUnknown) {
 // What was believed in vain has told nothing of the velocity.
 TEST_F(SlipWatchTest, DoubtedAgainTheVelocityIsKnownNoBetter) {
   go(100, 1.5, 1.5);
-  ASSERT_FALSE(watch_.believed(Contact::kLeft));
+  ASSERT_FALSE(watch_.trusts(Contact::kLeft));
   filter_.covariance(Filter::kVelocity, Filter::kVelocity) = 0.3 * 0.3;
   const double speed = filter_.velocity.x();
   for (int i = 0; i < 1000 && !all_believed(); ++i) go(1, speed, speed);
   ASSERT_TRUE(all_believed());
   go(30, speed, speed);
   ASSERT_LT(deviation(), 0.01);
-  for (int i = 0; i < 200 && watch_.believed(Contact::kLeft); ++i) go(1, speed + 1, speed + 1);
-  ASSERT_FALSE(watch_.believed(Contact::kLeft));
+  for (int i = 0; i < 200 && watch_.trusts(Contact::kLeft); ++i) go(1, speed + 1, speed + 1);
+  ASSERT_FALSE(watch_.trusts(Contact::kLeft));
   EXPECT_GT(deviation(), 0.2);
 }
 

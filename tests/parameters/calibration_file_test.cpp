@@ -108,11 +108,11 @@ TEST_F(CalibrationFile, OfAnotherRobotIsRefusedWithAllThatDiffers) {
   robot_.name = "other";
   robot_.wheels[1].radius = 0.12;
   robot_.wheel_base = 0.6;
-  EXPECT_THAT(
-      refusal(),
-      AllOf(HasSubstr("3 problems"), HasSubstr("calibration.robot = diff\"bot\\: was learned of another robot"),
-            HasSubstr("other holds here"), HasSubstr("calibration.wheel_radius = 0.1:"), HasSubstr("0.11 holds here"),
-            HasSubstr("calibration.wheel_base = 0.55"), HasSubstr(path()), HasSubstr("delete it to begin anew")));
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("3 problems"), HasSubstr("calibration.robot = diff\"bot\\: was learned of another robot"),
+                    HasSubstr("other holds here"), HasSubstr("calibration.wheel_radius = 0.1:"),
+                    HasSubstr("0.11 holds here"), HasSubstr("calibration.wheel_base = 0.55"), HasSubstr(path()),
+                    HasSubstr("delete it to restart the calibration")));
 }
 
 // Who measured and set radius_ratio anew means it: an old file must not override it in silence.

@@ -113,7 +113,7 @@ TEST_F(BlindMonitor, ADriverThatEndedIsMissingAndNotLost) {
 TEST_F(BlindMonitor, ADriverThatEndedAndIsStartedAgainIsLost) {
   loop.driver.publish_ended();
   loop.monitor->step();
-  loop.driver.set_boot(100);
+  loop.driver.set_driver_instance(100);
   loop.driver.begin_run(2);
   cycles(3);
   EXPECT_EQ(causes(), std::uint64_t{kCauseDriverLost});
@@ -168,7 +168,7 @@ class LatchedLoop : public BlindMonitor {
   }
 
   void restart_driver_and_monitor() {
-    loop.driver.set_boot(100);
+    loop.driver.set_driver_instance(100);
     loop.driver.begin_run(2);
     loop.monitor = make_monitor();
     cycles(5);

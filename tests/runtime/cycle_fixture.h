@@ -1,5 +1,5 @@
 #pragma once
-/// Four cycles on channels in private memory, around a machine that only remembers what it was told.
+/// Four cycles on channels in private memory, around a machine that only remembers what it was reported.
 
 #include <memory>
 #include <string>
@@ -35,7 +35,7 @@ inline RobotModel two_wheels() {
   return robot;
 }
 
-/// Stands still whatever it is told.
+/// Stands still whatever it is reported.
 class StandingMachine final : public Driver {
  public:
   void start() override {}
@@ -77,7 +77,7 @@ enum class Nodes { kOfTheRobot, kWithFaults };
 
 struct Loop {
   explicit Loop(Nodes nodes = Nodes::kOfTheRobot) : with_faults(nodes == Nodes::kWithFaults) {
-    driver.set_boot(99);
+    driver.set_driver_instance(99);
     driver.begin_run(1);
     restart_estimator();
     restart_controller();

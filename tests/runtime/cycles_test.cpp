@@ -84,7 +84,7 @@ TEST_F(RunningLoop, StopsWhenTheMonitorIsRestarted) {
 }
 
 TEST_F(RunningLoop, BeginsInInitWhenDriverAndMonitorBothStartAnew) {
-  loop.driver.set_boot(100);
+  loop.driver.set_driver_instance(100);
   loop.driver.begin_run(2);
   loop.restart_monitor();
   loop.step();
@@ -197,7 +197,7 @@ TEST_F(RunningLoop, LatchesTheLossOfTheDriverOnceItIsSilent) {
 }
 
 TEST_F(RunningLoop, LatchesTheLossOfADriverThatIsBackBeforeSilenceTold) {
-  loop.driver.set_boot(100);
+  loop.driver.set_driver_instance(100);
   loop.driver.begin_run(2);
   loop.steps(5);
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);

@@ -70,7 +70,7 @@ class Sequence {
         driver_ = std::make_unique<DriverCycle>(
             machine_, robot_, DriverCycle::Channels{sensors_.writer, truth_.writer, &command_.reader, &permit_.reader},
             kPeriodNs, nullptr);
-        driver_->set_boot(random_());
+        driver_->set_driver_instance(random_());
         driver_->begin_run(random_() | 1);
         break;
       case kEstimatorNode:

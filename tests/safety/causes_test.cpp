@@ -36,7 +36,7 @@ TEST_F(CausesTest, HealthyDrivingIsPermittedForFourCyclesAtATime) {
   }
   expect_driving();
   EXPECT_EQ(permit_.expiry, cycle() + 4);
-  EXPECT_EQ(permit_.boot, 77u);
+  EXPECT_EQ(permit_.driver_instance, 77u);
   EXPECT_EQ(permit_.ramp_until, 0u);
 }
 

@@ -35,7 +35,7 @@ struct Row {
   double persistence;
   std::uint64_t seen;
   std::function<void(Robot&)> onset;
-  bool told_to_stand = false;
+  bool commanded_to_stand = false;
 };
 
 const std::vector<Row>& rows() {
@@ -128,7 +128,7 @@ class Conditions : public MonitorTest, public testing::WithParamInterface<std::t
   template <class Told>
   std::uint64_t break_until(std::uint64_t patience, Told told) {
     Robot robot{sensors_, command_, speed_, noisy_gyro_};
-    for (JointCommand& joint : command_.joints) joint.velocity *= row_.told_to_stand ? 0 : 1;
+    for (JointCommand& joint : command_.joints) joint.velocity *= row_.commanded_to_stand ? 0 : 1;
     for (std::uint64_t k = 0; k < patience; ++k) {
       robot.t = static_cast<double>(k) * kPeriod;
       row_.onset(robot);

@@ -55,10 +55,10 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<StopR
         return 1;
       case kCauseCorruptFrame:
         input_.corrupt = true;
-        return FrameFacts::kPersistence;
+        return FrameConditions::kPersistence;
       case kCauseNotFinite:
         sensors_.imu.angular_velocity[1] = std::numeric_limits<double>::quiet_NaN();
-        return FrameFacts::kPersistence;
+        return FrameConditions::kPersistence;
       case kCauseMonitorLate:
         skip(kLoss);
         return 1;

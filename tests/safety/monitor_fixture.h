@@ -37,7 +37,7 @@ class MonitorTest : public testing::Test {
 
   MonitorTest() {
     sensors_.head.run = 1;
-    sensors_.boot = 77;
+    sensors_.driver_instance = 77;
     sensors_.driver_state = DriverState::kRunning;
     sensors_.valid = kValidJoints | kValidGyro | kValidAccelerometer;
     sensors_.imu.linear_acceleration = {0, 0, 9.81};

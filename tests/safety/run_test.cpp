@@ -168,7 +168,7 @@ TEST_F(RunTest, HeartbeatsOfTheLastRunAreNotAwaited) {
 
 TEST_F(RunTest, ADriverStartedAgainIsLostHoweverSoonItIsBack) {
   drive();
-  sensors_.boot = 78;
+  sensors_.driver_instance = 78;
   new_run();
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
@@ -184,20 +184,20 @@ TEST_F(RunTest, ADriverStartedAgainIsLostWhateverItsLastWordWas) {
   sensors_.driver_state = DriverState::kPaused;
   step();
   sensors_.driver_state = DriverState::kRunning;
-  sensors_.boot = 78;
+  sensors_.driver_instance = 78;
   new_run();
   step();
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseDriverLost});
 }
 
 TEST_F(RunTest, EachRestartOfTheDriverIsAnother) {
-  for (const std::uint64_t boot : {78U, 79U, 77U}) {
-    sensors_.boot = boot;
+  for (const std::uint64_t driver_instance : {78U, 79U, 77U}) {
+    sensors_.driver_instance = driver_instance;
     new_run();
     step();
-    EXPECT_EQ(permit_.causes, std::uint64_t{kCauseDriverLost}) << boot;
+    EXPECT_EQ(permit_.causes, std::uint64_t{kCauseDriverLost}) << driver_instance;
     stand();
-    ASSERT_EQ(reset(), 0u) << boot;
+    ASSERT_EQ(reset(), 0u) << driver_instance;
   }
 }
 
@@ -274,7 +274,7 @@ TEST_F(RestartTest, TheDriversResetInBetweenChangesNothing) {
 TEST_F(RestartTest, BesideANewDriverKeepsWhatWasLatched) {
   e_stop();
   restart();
-  sensors_.boot = 78;
+  sensors_.driver_instance = 78;
   new_run();
   steps(5);
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
@@ -284,13 +284,13 @@ TEST_F(RestartTest, BesideANewDriverKeepsWhatWasLatched) {
 
 TEST_F(RestartTest, BesideANewDriverBeginsInInitWhereNothingWasLatched) {
   restart();
-  sensors_.boot = 78;
+  sensors_.driver_instance = 78;
   new_run();
   input_.command = nullptr;
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kInit);
   EXPECT_EQ(permit_.causes, 0u);
-  EXPECT_EQ(permit_.boot, 78u);
+  EXPECT_EQ(permit_.driver_instance, 78u);
 }
 
 TEST_F(RestartTest, WithoutItsLastPermitTheGateIsTheWitness) {
@@ -315,7 +315,7 @@ TEST_F(RestartTest, ATopicThatSaidTrueIsTrueUntilItsNextMessage) {
 
 TEST_F(RestartTest, ANewDriverBesideARunningMonitorClearsNothing) {
   e_stop();
-  sensors_.boot = 78;
+  sensors_.driver_instance = 78;
   new_run();
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);

@@ -8,7 +8,7 @@ from robot_control.drive.release import GONE, NO_MONITOR, PATIENCE, Phase, Relea
 READY, DRIVE, INIT = Status("READY"), Status("DRIVE"), Status("INIT", missing=("state_estimator",))
 STOPPED = Status(
     "STOPPED",
-    sentence="a wheel stands though it was told to turn",
+    sentence="a wheel stands although its target is not zero",
     detail="0.6 rad, limit 0.5 rad",
     remedy="free the wheel, then call e_stop_reset",
     causes=1,
@@ -47,7 +47,7 @@ def test_a_stop_ends_the_command_for_good_and_says_why_and_what_to_do(sending, s
     assert sending.phase is Phase.STOPPED
     assert len(lines) == 1
     for words in (
-        f"{state}: a wheel stands though it was told to turn (0.6 rad, limit 0.5 rad)",
+        f"{state}: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad)",
         "has no effect",
         "zeros are sent",
         "free the wheel, then call e_stop_reset, then start send_cmd.py again",
@@ -72,7 +72,7 @@ def test_a_robot_that_was_started_again_does_not_get_the_old_command(sending) ->
 
 def test_a_stop_before_the_first_permit_is_waited_for_and_named(release) -> None:
     lines = release.look(0.1, STOPPED)
-    assert "a wheel stands though it was told to turn (0.6 rad, limit 0.5 rad): free the wheel" in texts(lines)
+    assert "a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad): free the wheel" in texts(lines)
     assert release.look(5.0, STOPPED) == []
     release.look(6.0, READY)
     assert release.phase is Phase.SENDING

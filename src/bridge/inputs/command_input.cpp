@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "bridge/reports/joined.h"
+#include "bridge/reports/name_list.h"
 
 namespace robot_control {
 namespace {
@@ -30,33 +30,33 @@ CommandInput::CommandInput(double timeout, bool one_sender) : one_sender_(one_se
   limit(timeout);
 }
 
-void CommandInput::limit(double timeout) {
+void CommandInput::set_timeout(double timeout) {
   timeout_ = timeout;
   timeout_ns_ = nanoseconds(timeout);
-  senders_.limit(nanoseconds(std::max(timeout, kSenderWindow)));
-  moving_.limit(timeout > 0 ? timeout_ns_ : nanoseconds(1));
+  senders_.set_window(nanoseconds(std::max(timeout, kSenderWindow)));
+  moving_.set_window(timeout > 0 ? timeout_ns_ : nanoseconds(1));
 }
 
-void CommandInput::hear(const ArrivedCommand& arrived, const ArrivalTime& time) {
+void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& time) {
   const JudgedStamp stamp = judge_stamp(arrived.stamp_ns, time.ros_ns, timeout_ns_);
   if (stamp.verdict != StampVerdict::kUsable) {
     ++value_.stale;
-    moving_.hear(arrived.sender, time.loop_ns);
+    moving_.add(arrived.sender, time.loop_ns);
     refuse_stamp(arrived.sender, stamp, time.loop_ns);
     return;
   }
-  told_wrong_.erase(arrived.sender);
-  senders_.hear(arrived.sender, time.loop_ns);
+  reported_stamps_.erase(arrived.sender);
+  senders_.add(arrived.sender, time.loop_ns);
   look(time.loop_ns);
   if (value_.many_senders != 0) {
     ++value_.crowded;
-    moving_.hear(arrived.sender, time.loop_ns);
+    moving_.add(arrived.sender, time.loop_ns);
     return;
   }
   if (zero(arrived.twist)) {
     moving_.drop(arrived.sender);
   } else {
-    moving_.hear(arrived.sender, time.loop_ns);
+    moving_.add(arrived.sender, time.loop_ns);
   }
   value_.contested = zero(arrived.twist) && moving_.count(time.loop_ns) > 0 ? 1 : 0;
   value_.twist = arrived.twist;
@@ -65,7 +65,7 @@ void CommandInput::hear(const ArrivedCommand& arrived, const ArrivalTime& time) 
 }
 
 bool CommandInput::look(std::int64_t loop_ns) {
-  tell_crowd(loop_ns);
+  report_senders(loop_ns);
   const std::uint64_t many = one_sender_ && senders_.count(loop_ns) > 1 ? 1 : 0;
   return std::exchange(value_.many_senders, many) != many;
 }
@@ -76,11 +76,11 @@ std::vector<ReportLine> CommandInput::lines() {
 
 void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns) {
   const bool too_old = stamp.verdict == StampVerdict::kTooOld;
-  const auto told = told_wrong_.find(sender);
-  if (told != told_wrong_.end() && told->second == stamp.verdict) return;
-  if (!may_tell(sender + (too_old ? " behind" : " ahead"), loop_ns)) return;
-  if (told_wrong_.size() >= kMostNames) told_wrong_.clear();
-  told_wrong_[sender] = stamp.verdict;
+  const auto reported = reported_stamps_.find(sender);
+  if (reported != reported_stamps_.end() && reported->second == stamp.verdict) return;
+  if (!may_report(sender + (too_old ? " behind" : " ahead"), loop_ns)) return;
+  if (reported_stamps_.size() >= kMostNames) reported_stamps_.clear();
+  reported_stamps_[sender] = stamp.verdict;
   const double age = 1.0e-9 * static_cast<double>(stamp.age_ns);
   const std::string remedy =
       "; synchronise it (chrony), or let it publish on cmd_vel, whose age counts from its arrival";
@@ -95,26 +95,26 @@ void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& st
   }
 }
 
-void CommandInput::tell_crowd(std::int64_t loop_ns) {
+void CommandInput::report_senders(std::int64_t loop_ns) {
   const std::vector<std::string> names = senders_.at(loop_ns);
   if (names.size() < 2) {
-    if (crowd_.empty()) return;
-    lines_.push_back(
-        {false, names.empty() ? "nobody sends commands any more" : "one sender of commands is left: " + names.front()});
-    crowd_.clear();
+    if (reported_senders_.empty()) return;
+    lines_.push_back({false, names.empty() ? "no node sends commands any more"
+                                           : "one sender of commands is left: " + names.front()});
+    reported_senders_.clear();
     return;
   }
-  if (std::ranges::includes(crowd_, names) || !may_tell(joined(names), loop_ns)) return;
+  if (std::ranges::includes(reported_senders_, names) || !may_report(joined(names), loop_ns)) return;
   const std::string consequence = one_sender_ ? "refused (one_sender), ramping down to standstill until one is left"
                                               : "each message overrides the one before (one_sender: true refuses them)";
   lines_.push_back(
       {true, std::to_string(names.size()) + " nodes send commands: " + joined(names) + "; " + consequence});
-  crowd_ = names;
+  reported_senders_ = names;
 }
 
-bool CommandInput::may_tell(const std::string& what, std::int64_t loop_ns) {
-  std::erase_if(told_ns_, [&](const auto& told) { return std::abs(loop_ns - told.second) >= kToldAgain; });
-  return told_ns_.size() < kMostNames && told_ns_.emplace(what, loop_ns).second;
+bool CommandInput::may_report(const std::string& what, std::int64_t loop_ns) {
+  std::erase_if(reported_ns_, [&](const auto& reported) { return std::abs(loop_ns - entry.second) >= kRepeatAfter; });
+  return reported_ns_.size() < kMostNames && reported_ns_.emplace(what, loop_ns).second;
 }
 
 }  // namespace robot_control

@@ -1,20 +1,22 @@
 #pragma once
-/// Messages on `cmd_vel` and `cmd_vel_stamped` → the controller's inbox, and what is to be told about them. Pure.
+/// Messages on `cmd_vel` and `cmd_vel_stamped` → the controller's inbox, and the reports about them. Pure.
 ///
-/// A message passes in this order:
-///   1. its stamp (command_stamp.h): refused where it is too old or of the future; the command before it stands, as
-///      long as it lives, and whoever sent it is no sender;
-///   2. its sender (command_senders.h): with `one_sender`, while two or more were heard within cmd_vel_timeout, but no
-///      less than kSenderWindow, messages of all of them are refused, and the robot ramps to rest until one is left.
-///      Without, each message overrides the one before, and that is told;
-///   3. NaN and infinity are the controller's to refuse (control/command_watch.h).
+/// A message passes these checks:
+///   1. its stamp (command_stamp.h): refused if it is too old or in the future. The last command stays in force until
+///   its
+///      timeout, and the sender of the refused message does not count as a sender;
+///   2. its sender (command_senders.h): with `one_sender`, while messages of two or more senders arrived within
+///      cmd_vel_timeout, but no less than kSenderWindow, the messages of all of them are refused, and the robot ramps
+///      to rest until one sender is left. Without it each message overrides the one before, and that is reported;
+///   3. NaN and infinity are refused by the controller (control/command_watch.h).
 ///
 /// A sender requests motion from a message that is refused or not of zero velocity until its next accepted zero
-/// velocity, or for cmd_vel_timeout (1 s where that is 0). A zero velocity that arrives while another sender requests
-/// motion is contested (VelocityCommand::contested): it is obeyed, and proves nothing (safety/latch/motion_release.h).
+/// velocity, or for cmd_vel_timeout (1 s if that is 0). A zero velocity that arrives while another sender requests
+/// motion is contested (VelocityCommand::contested): it is executed, but is no evidence
+/// (safety/latch/motion_release.h).
 ///
-/// Told: one warning per sender whose stamps are wrong, one per crowd and newcomer; again after kToldAgain at the
-/// earliest, in the loop's time.
+/// Reports: one warning per sender with wrong stamps, one per set of competing senders; repeated after kRepeatAfter at
+/// the earliest, in the loop's time.
 
 #include <cstdint>
 #include <map>
@@ -31,7 +33,7 @@ namespace robot_control {
 /// s; the default of cmd_vel_timeout. A shorter timeout may lie below the senders' periods, and would then show no two
 /// of them at once.
 inline constexpr double kSenderWindow = 1.25;
-inline constexpr std::int64_t kToldAgain = 10'000'000'000;  ///< ns
+inline constexpr std::int64_t kRepeatAfter = 10'000'000'000;  ///< ns
 
 struct ArrivedCommand {
   std::string sender;  ///< the publisher's node
@@ -51,17 +53,17 @@ class CommandInput {
   CommandInput(double timeout, bool one_sender);
 
   /// Another timeout, s, from the next message on.
-  void limit(double timeout);
+  void set_timeout(double timeout);
 
-  void hear(const ArrivedCommand& arrived, const ArrivalTime& time);
+  void receive(const ArrivedCommand& arrived, const ArrivalTime& time);
 
-  /// When nothing arrived: who fell silent is no sender any more. True where that changed what the inbox shall hold.
+  /// If nothing arrived: removes senders that have become silent. True if that changed the value of the inbox.
   bool look(std::int64_t loop_ns);
 
-  /// What the inbox shall hold.
+  /// The value for the inbox.
   const VelocityCommand& value() const noexcept { return value_; }
 
-  /// What is new to tell since the last call.
+  /// The new reports since the last call.
   std::vector<ReportLine> lines();
 
   /// Sorted by name.
@@ -69,8 +71,8 @@ class CommandInput {
 
  private:
   void refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns);
-  void tell_crowd(std::int64_t loop_ns);
-  bool may_tell(const std::string& what, std::int64_t loop_ns);
+  void report_senders(std::int64_t loop_ns);
+  bool may_report(const std::string& what, std::int64_t loop_ns);
 
   bool one_sender_;
   double timeout_ = 0;  ///< s
@@ -78,9 +80,9 @@ class CommandInput {
   CommandSenders senders_;
   CommandSenders moving_;  ///< those that request motion
   VelocityCommand value_;
-  std::map<std::string, StampVerdict> told_wrong_;  ///< of senders whose stamps are wrong, as last told
-  std::map<std::string, std::int64_t> told_ns_;     ///< by sender and verdict, or by the names of a crowd
-  std::vector<std::string> crowd_;                  ///< as last told; empty: one sender, or none
+  std::map<std::string, StampVerdict> reported_stamps_;  ///< of senders with wrong stamps, as last reported
+  std::map<std::string, std::int64_t> reported_ns_;      ///< by sender and verdict, or by the names of a crowd
+  std::vector<std::string> reported_senders_;            ///< as last reported; empty: one sender, or none
   std::vector<ReportLine> lines_;
 };
 

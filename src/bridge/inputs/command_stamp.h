@@ -4,7 +4,7 @@
 ///   age = arrival − stamp   both on the sender's clock, the time of day or /clock; a stamp of 0 is none: age 0
 ///
 /// Usable: −kClockSkew ≤ age ≤ timeout; an age below zero counts as zero, so that no command outlives the timeout.
-/// Older: it has timed out on its way. Of the future: the two clocks differ, and nobody knows how old it is.
+/// Older: it timed out in transport. In the future: the two clocks differ, and its age is not known.
 /// With timeout 0 no command is ever too old: no stamp is looked at.
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace robot_control {
 
 /// ns. Far above what NTP leaves between the machines of one network (RFC 5905, abstract: down to tens of
-/// microseconds), far below any usual cmd_vel_timeout: a clock that nobody synchronises is told, one that somebody does
-/// is not.
+/// microseconds), far below any usual cmd_vel_timeout: a clock that is not synchronised is reported, one that is
+/// synchronised is not.
 inline constexpr std::int64_t kClockSkew = 100'000'000;
 
 enum class StampVerdict { kUsable, kTooOld, kFuture };

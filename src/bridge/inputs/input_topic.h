@@ -1,8 +1,8 @@
 #pragma once
 /// A topic into the loop: sent without delay, its queue bounded, its messages of the right length.
 ///
-/// A flood costs the ordinary threads of ROS time and nobody else: the queue drops its oldest message, and what is
-/// heard goes into an inbox that keeps the latest value alone (rt/latest_value.h).
+/// A flood of messages delays only the ordinary threads of ROS: the queue drops its oldest message, and a received
+/// value goes into an inbox that keeps the latest one only (rt/latest_value.h).
 
 #include <ros/ros.h>
 
@@ -25,43 +25,44 @@ class InputTopic {
   InputTopic(const InputTopic&) = delete;
   InputTopic& operator=(const InputTopic&) = delete;
 
-  /// `malformed`: called instead of `hear` for what cannot be a message of this type. That is told every 10 s at most.
+  /// `malformed`: called instead of `receive` for data that is no message of this type, with a warning every 10 s at
+  /// most.
   void connect(
-      ros::NodeHandle& handle, const std::function<void(const Message&)>& hear,
+      ros::NodeHandle& handle, const std::function<void(const Message&)>& receive,
       const std::function<void()>& malformed = [] {}) {
     connect_with_sender(
-        handle, [hear](const Message& message, const std::string&) { hear(message); }, malformed);
+        handle, [receive](const Message& message, const std::string&) { receive(message); }, malformed);
   }
 
   /// The same with the name of the node that published it.
   void connect_with_sender(
-      ros::NodeHandle& handle, const std::function<void(const Message&, const std::string&)>& hear,
+      ros::NodeHandle& handle, const std::function<void(const Message&, const std::string&)>& receive,
       const std::function<void()>& malformed = [] {}) {
     using Event = ros::MessageEvent<const BoundedMessage>;
-    const boost::function<void(const Event&)> callback = [this, hear, malformed](const Event& event) {
-      const BoundedMessage& heard = *event.getConstMessage();
-      if (heard.accepted) return hear(heard.message, event.getPublisherName());
+    const boost::function<void(const Event&)> callback = [this, receive, malformed](const Event& event) {
+      const BoundedMessage& received = *event.getConstMessage();
+      if (received.accepted) return receive(received.message, event.getPublisherName());
       malformed();
-      tell();
+      warn();
     };
     subscriber_ = handle.subscribe<BoundedMessage, const Event&>(name_, queue_, callback, nullptr,
                                                                  ros::TransportHints().tcpNoDelay());
   }
 
  private:
-  void tell() {
+  void warn() {
     constexpr std::int64_t kSilence = 10'000'000'000;  // ns
     const std::int64_t now_ns = monotonic_ns();
-    if (told_ns_ != 0 && now_ns - told_ns_ < kSilence) return;
-    told_ns_ = now_ns;
-    ROS_WARN("%s: a message of the wrong length was refused; look who publishes it: rostopic info %s", name_.c_str(),
+    if (reported_ns_ != 0 && now_ns - reported_ns_ < kSilence) return;
+    reported_ns_ = now_ns;
+    ROS_WARN("%s: a message of the wrong length was refused; find its publisher: rostopic info %s", name_.c_str(),
              subscriber_.getTopic().c_str());
   }
 
   std::string name_;
   std::uint32_t queue_;
   ros::Subscriber subscriber_;
-  std::atomic<std::int64_t> told_ns_{0};
+  std::atomic<std::int64_t> reported_ns_{0};
 };
 
 }  // namespace robot_control

@@ -1,6 +1,6 @@
 #pragma once
-/// Accepted live values → this node's overrides on the parameter server: `rosparam get` tells what holds, and a node
-/// that is started again reads them as any override (overlays.h). They outlive the node in roscore, as those do.
+/// Accepted live values → this node's overrides on the parameter server: `rosparam get` shows the values in force, and
+/// a node that is started again reads them as any override (overlays.h). They outlive the node in roscore, as those do.
 
 #include <string>
 #include <vector>

@@ -25,7 +25,7 @@ struct Bounded {
   bool accepted = false;
 };
 
-/// A frame_id is a name: nobody's is longer than this.
+/// The longest accepted frame_id.
 inline constexpr std::uint32_t kLongestFrameId = 256;
 
 using BoundedBool = Bounded<msg::Bool, 1>;

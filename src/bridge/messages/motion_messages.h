@@ -31,12 +31,12 @@ msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, c
 /// odom_frame → base_frame.
 msg::TransformStamped transform(const msg::Odometry& odometry);
 
-/// The wheels alone, in the same form. Nobody estimates how well they know it: both covariances are all zero, "unknown"
-/// as in sensor_msgs.
+/// Odometry from the wheels alone. Its uncertainty is not estimated: both covariances are all zero, "unknown" as in
+/// sensor_msgs.
 msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
                              ros::Time stamp);
 
-/// What really happens, in the same form; covariances are zero, because truth has none.
+/// The true motion, in the same form; covariances are zero, because truth has none.
 msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
                            ros::Time stamp);
 
@@ -50,8 +50,8 @@ msg::Imu imu(const SensorFrame& sensors, const RobotModel& robot, ros::Time stam
 msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const RobotModel& robot,
                   const EstimatorParameters& parameters, double period, ros::Time stamp);
 
-/// Nothing of the above is made up: gyro and accelerometer were measured in this cycle and are believed, the state is
-/// valid.
+/// True if all of imu_data is available: gyro and accelerometer were measured in this cycle and are trusted, and the
+/// state is valid.
 bool has_imu_data(const SensorFrame& sensors, const StateFrame& state);
 
 /// Velocity targets of the wheels [rad/s] in the order of RobotModel::wheels; dim[0].label is "wheel".

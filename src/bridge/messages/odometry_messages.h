@@ -5,7 +5,7 @@
 #include <robot_control/SetOdometryResponse.h>
 
 #include "bridge/messages/messages.h"
-#include "bridge/messages/service_word.h"
+#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 namespace msg {
@@ -27,13 +27,13 @@ struct SetOdometryName {
 namespace ros::service_traits {
 
 template <>
-struct MD5Sum<robot_control::msg::SetOdometryRequest> : robot_control::ServiceWord<robot_control::SetOdometryHash> {};
+struct MD5Sum<robot_control::msg::SetOdometryRequest> : robot_control::ServiceText<robot_control::SetOdometryHash> {};
 template <>
-struct MD5Sum<robot_control::msg::SetOdometryResponse> : robot_control::ServiceWord<robot_control::SetOdometryHash> {};
+struct MD5Sum<robot_control::msg::SetOdometryResponse> : robot_control::ServiceText<robot_control::SetOdometryHash> {};
 template <>
-struct DataType<robot_control::msg::SetOdometryRequest> : robot_control::ServiceWord<robot_control::SetOdometryName> {};
+struct DataType<robot_control::msg::SetOdometryRequest> : robot_control::ServiceText<robot_control::SetOdometryName> {};
 template <>
-struct DataType<robot_control::msg::SetOdometryResponse> : robot_control::ServiceWord<robot_control::SetOdometryName> {
+struct DataType<robot_control::msg::SetOdometryResponse> : robot_control::ServiceText<robot_control::SetOdometryName> {
 };
 
 }  // namespace ros::service_traits

@@ -7,7 +7,7 @@
 #include <dynamic_reconfigure/ReconfigureResponse.h>
 
 #include "bridge/messages/messages.h"
-#include "bridge/messages/service_word.h"
+#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 namespace msg {
@@ -36,13 +36,13 @@ struct ReconfigureName {
 namespace ros::service_traits {
 
 template <>
-struct MD5Sum<robot_control::msg::ReconfigureRequest> : robot_control::ServiceWord<robot_control::ReconfigureHash> {};
+struct MD5Sum<robot_control::msg::ReconfigureRequest> : robot_control::ServiceText<robot_control::ReconfigureHash> {};
 template <>
-struct MD5Sum<robot_control::msg::ReconfigureResponse> : robot_control::ServiceWord<robot_control::ReconfigureHash> {};
+struct MD5Sum<robot_control::msg::ReconfigureResponse> : robot_control::ServiceText<robot_control::ReconfigureHash> {};
 template <>
-struct DataType<robot_control::msg::ReconfigureRequest> : robot_control::ServiceWord<robot_control::ReconfigureName> {};
+struct DataType<robot_control::msg::ReconfigureRequest> : robot_control::ServiceText<robot_control::ReconfigureName> {};
 template <>
-struct DataType<robot_control::msg::ReconfigureResponse> : robot_control::ServiceWord<robot_control::ReconfigureName> {
+struct DataType<robot_control::msg::ReconfigureResponse> : robot_control::ServiceText<robot_control::ReconfigureName> {
 };
 
 }  // namespace ros::service_traits

@@ -10,7 +10,7 @@
 #include <std_srvs/SetBoolResponse.h>
 
 #include "bridge/messages/messages.h"
-#include "bridge/messages/service_word.h"
+#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 namespace msg {
@@ -48,31 +48,31 @@ struct InjectFaultName {
 namespace ros::service_traits {
 
 template <>
-struct MD5Sum<robot_control::msg::SetBoolRequest> : robot_control::ServiceWord<robot_control::SetBoolHash> {};
+struct MD5Sum<robot_control::msg::SetBoolRequest> : robot_control::ServiceText<robot_control::SetBoolHash> {};
 template <>
-struct MD5Sum<robot_control::msg::SetBoolResponse> : robot_control::ServiceWord<robot_control::SetBoolHash> {};
+struct MD5Sum<robot_control::msg::SetBoolResponse> : robot_control::ServiceText<robot_control::SetBoolHash> {};
 template <>
-struct DataType<robot_control::msg::SetBoolRequest> : robot_control::ServiceWord<robot_control::SetBoolName> {};
+struct DataType<robot_control::msg::SetBoolRequest> : robot_control::ServiceText<robot_control::SetBoolName> {};
 template <>
-struct DataType<robot_control::msg::SetBoolResponse> : robot_control::ServiceWord<robot_control::SetBoolName> {};
+struct DataType<robot_control::msg::SetBoolResponse> : robot_control::ServiceText<robot_control::SetBoolName> {};
 
 template <>
-struct MD5Sum<robot_control::msg::StepRequest> : robot_control::ServiceWord<robot_control::StepHash> {};
+struct MD5Sum<robot_control::msg::StepRequest> : robot_control::ServiceText<robot_control::StepHash> {};
 template <>
-struct MD5Sum<robot_control::msg::StepResponse> : robot_control::ServiceWord<robot_control::StepHash> {};
+struct MD5Sum<robot_control::msg::StepResponse> : robot_control::ServiceText<robot_control::StepHash> {};
 template <>
-struct DataType<robot_control::msg::StepRequest> : robot_control::ServiceWord<robot_control::StepName> {};
+struct DataType<robot_control::msg::StepRequest> : robot_control::ServiceText<robot_control::StepName> {};
 template <>
-struct DataType<robot_control::msg::StepResponse> : robot_control::ServiceWord<robot_control::StepName> {};
+struct DataType<robot_control::msg::StepResponse> : robot_control::ServiceText<robot_control::StepName> {};
 
 template <>
-struct MD5Sum<robot_control::msg::InjectFaultRequest> : robot_control::ServiceWord<robot_control::InjectFaultHash> {};
+struct MD5Sum<robot_control::msg::InjectFaultRequest> : robot_control::ServiceText<robot_control::InjectFaultHash> {};
 template <>
-struct MD5Sum<robot_control::msg::InjectFaultResponse> : robot_control::ServiceWord<robot_control::InjectFaultHash> {};
+struct MD5Sum<robot_control::msg::InjectFaultResponse> : robot_control::ServiceText<robot_control::InjectFaultHash> {};
 template <>
-struct DataType<robot_control::msg::InjectFaultRequest> : robot_control::ServiceWord<robot_control::InjectFaultName> {};
+struct DataType<robot_control::msg::InjectFaultRequest> : robot_control::ServiceText<robot_control::InjectFaultName> {};
 template <>
-struct DataType<robot_control::msg::InjectFaultResponse> : robot_control::ServiceWord<robot_control::InjectFaultName> {
+struct DataType<robot_control::msg::InjectFaultResponse> : robot_control::ServiceText<robot_control::InjectFaultName> {
 };
 
 }  // namespace ros::service_traits

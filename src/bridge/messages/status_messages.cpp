@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "bridge/reports/ascii.h"
-#include "bridge/reports/joined.h"
+#include "bridge/reports/name_list.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -19,10 +19,10 @@ msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, c
 /// What was measured of one cause: "17.3 rad/s, limit 15 rad/s, left_wheel_joint"; empty where nothing was.
 std::string detail(const Permit& permit, std::uint64_t cause, const RobotModel& robot);
 
-/// What is told before there is any permit: INIT, waiting for these nodes.
+/// The status before the first permit: INIT, waiting for these nodes.
 msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);
 
-/// Does `now` tell anything that `last` did not? (Cycle, stamp and measured values alone are no news.)
+/// Does `now` differ from `last` in more than cycle, stamp and measured values?
 bool news(const Permit& last, const Permit& now);
 
 /// The answer to e_stop_reset: what it released, or why it was refused and what to do. `before`: the last permit

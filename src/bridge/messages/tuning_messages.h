@@ -5,7 +5,7 @@
 #include <robot_control/SetParametersResponse.h>
 
 #include "bridge/messages/messages.h"
-#include "bridge/messages/service_word.h"
+#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 namespace msg {
@@ -27,16 +27,16 @@ struct SetParametersName {
 namespace ros::service_traits {
 
 template <>
-struct MD5Sum<robot_control::msg::SetParametersRequest> : robot_control::ServiceWord<robot_control::SetParametersHash> {
+struct MD5Sum<robot_control::msg::SetParametersRequest> : robot_control::ServiceText<robot_control::SetParametersHash> {
 };
 template <>
 struct MD5Sum<robot_control::msg::SetParametersResponse>
-    : robot_control::ServiceWord<robot_control::SetParametersHash> {};
+    : robot_control::ServiceText<robot_control::SetParametersHash> {};
 template <>
 struct DataType<robot_control::msg::SetParametersRequest>
-    : robot_control::ServiceWord<robot_control::SetParametersName> {};
+    : robot_control::ServiceText<robot_control::SetParametersName> {};
 template <>
 struct DataType<robot_control::msg::SetParametersResponse>
-    : robot_control::ServiceWord<robot_control::SetParametersName> {};
+    : robot_control::ServiceText<robot_control::SetParametersName> {};
 
 }  // namespace ros::service_traits

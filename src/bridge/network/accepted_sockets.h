@@ -11,7 +11,7 @@
 ///     of those that never sent a byte the oldest, if it is older than 200 ms or there are more than 16;
 ///     else of those that are younger than 200 ms the oldest, if there are more than 16;
 ///     else of the others the youngest.
-///   So who floods displaces himself: a call has 200 ms for itself, and observers from before the flood stay.
+///   So a flood of connections displaces itself: a call has 200 ms, and observers from before the flood stay.
 ///   roscpp then closes it as if the peer had.
 ///
 /// A connection that this process makes, too, takes a descriptor, and XML-RPC's publisherUpdate makes it connect to

@@ -36,7 +36,7 @@ bool listens_on_the_loopback_alone() {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
-void bind_as_ros_is_told() {
+void bind_as_ros_is_configured() {
   asked.store(true);
 }
 

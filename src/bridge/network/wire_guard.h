@@ -1,7 +1,7 @@
 #pragma once
 /// What arrives at the ports of this process is checked before roscpp trusts it.
 ///
-/// Debian's roscpp (1.15) believes every length that a peer names. These functions of it are replaced by checked ones,
+/// Debian's roscpp (1.15) trusts every length that a peer sends. These functions of it are replaced by checked ones,
 /// which call the originals for what is sound (wire_guard.cpp; interposition.h says how that works):
 ///
 ///   ros::Header::parse           the original reads beyond the header where a field names a length that exceeds it:

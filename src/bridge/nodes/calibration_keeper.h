@@ -24,7 +24,7 @@ class CalibrationKeeper {
   /// Any time; begins to write when it is due.
   void look(const StateFrame& state, std::int64_t now_ns);
 
-  /// Until what was begun is written, or was not: that is told once.
+  /// Waits until a write that has begun ends; a failure is reported once.
   void wait();
 
   /// At the end: writes and waits.

@@ -73,7 +73,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
     drive_state_.publish(drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp));
     if (report_outdated_.exchange(false)) command_report_.limit(process().retuning().in_force());
-    tell(command_report_.look(command_));
+    write_log(command_report_.look(command_));
   }
 
   void diagnose(DiagnosticReport& report) override {
@@ -89,7 +89,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     tell_dropped(arrived.sender);
     ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
     time.ros_ns = lockstep ? time.loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-    input_.hear(arrived, time);
+    input_.receive(arrived, time);
     process().cycle().inbox().store(input_.value());
   }
 
@@ -146,8 +146,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
   /// Takes a set as a whole or refuses it; says so in the log.
   Answer retune(const std::string& request) {
-    // One set at a time: what the server is told last is what holds. Nobody waits for it: the master may hang, and a
-    // callback thread has to be left for the commands.
+    // One set at a time, so that the server holds the set that was applied last. A second caller does not wait: the
+    // master may hang, and a callback thread must stay free for commands.
     const std::unique_lock lock(tuning_mutex_, std::try_to_lock);
     Answer answer;
     if (!lock) {
@@ -174,7 +174,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   /// What beside the controller goes by its limits.
   void follow(const DriveControllerParameters& parameters) {
     const std::lock_guard lock(input_mutex_);
-    input_.limit(parameters.cmd_vel_timeout);
+    input_.set_timeout(parameters.cmd_vel_timeout);
     report_outdated_.store(true);
   }
 
@@ -185,7 +185,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
       if (input_.look(loop_ns())) process().cycle().inbox().store(input_.value());
       lines = input_.lines();
     }
-    tell(lines);
+    write_log(lines);
   }
 
   /// What the wheels do now was planned two cycles ago; while that is not known, nothing was.

@@ -3,7 +3,7 @@
 /// ~set_parameters (dynamic_reconfigure, with ~parameter_descriptions and ~parameter_updates) and ~set_parameter_map.
 ///
 /// A command's stamp is compared with the clock that senders stamp with, at its arrival: the time of day, in lockstep
-/// the stamp of the newest sensor frame, which is what /clock tells. (TimeMap, which never turns back, would take all
+/// the stamp of the newest sensor frame, which is the time of /clock. (TimeMap, which never turns back, would take all
 /// commands for old ones after the time of day was set back.)
 
 #include <memory>

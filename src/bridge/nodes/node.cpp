@@ -29,8 +29,8 @@ namespace {
 
 constexpr std::int64_t kPollPeriod = 100'000'000;          // ns
 constexpr std::int64_t kDiagnosticPeriod = 1'000'000'000;  // ns
-constexpr std::int64_t kSilentWait = 2'000'000'000;        // ns; who waits longer says for whom
-constexpr unsigned kCallbackThreads = 2;                   // one may wait in a service while the other hears e_stop
+constexpr std::int64_t kSilentWait = 2'000'000'000;        // ns; a node that waits longer reports for which nodes
+constexpr unsigned kCallbackThreads = 2;                   // one may wait in a service while the other receives e_stop
 
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // as a signal handler needs
@@ -47,41 +47,41 @@ void catch_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/// Tells once for whom this node waits, when that has lasted, and once that it is over.
+/// Reports once which nodes this node waits for, after kSilentWait, and once that all of them run.
 class WaitingNote {
  public:
   void look(const std::vector<std::string>& missing, std::int64_t now_ns) {
     if (missing.empty()) {
-      if (told_) ROS_INFO("everybody is there");
-      told_ = false;
+      if (reported_) ROS_INFO("all required nodes are running");
+      reported_ = false;
       since_ns_ = now_ns;
       return;
     }
-    if (told_ || now_ns - since_ns_ < kSilentWait) return;
+    if (reported_ || now_ns - since_ns_ < kSilentWait) return;
     std::string names;
     for (const std::string& name : missing) names += (names.empty() ? "" : ", ") + name;
     ROS_WARN("waiting for %s", names.c_str());
-    told_ = true;
+    reported_ = true;
   }
 
  private:
-  bool told_ = false;
+  bool reported_ = false;
   std::int64_t since_ns_ = monotonic_ns();
 };
 
 /// Without a master no parameter could be read: waits for it, and says so once. False when interrupted.
 bool await_master(const std::string& name) {
   constexpr std::int64_t kRetry = 200'000'000;  // ns
-  for (bool told = false; !ros::master::check(); told = true) {
+  for (bool reported = false; !ros::master::check(); reported = true) {
     if (interrupted.load()) return false;
-    if (!told)
+    if (!reported)
       std::fprintf(stderr, "%s: waiting for the ROS master at %s\n", name.c_str(), ros::master::getURI().c_str());
     sleep_ns(kRetry);
   }
   return true;
 }
 
-/// Tells of connections that were closed, every 10 s at most.
+/// Reports closed connections, every 10 s at most.
 class ConnectionNote {
  public:
   void look(std::int64_t now_ns) {
@@ -188,7 +188,7 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
     std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), problem.c_str());
     return 1;
   }
-  bind_as_ros_is_told();
+  bind_as_ros_is_configured();
   try {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
     catch_signals();

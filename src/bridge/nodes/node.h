@@ -3,8 +3,8 @@
 ///
 ///   ros::init → read_setup → Process (takes the locks) → NodeHandle → topics → ordinary thread
 ///
-/// Until the locks are taken ROS has not heard of this node, so a second instance ends without touching the
-/// first. The ordinary thread polls the process at 10 Hz, publishes, and tells what is missing. Callbacks run in
+/// The node is registered with ROS only after the locks are taken, so a second instance ends without affecting the
+/// first. The ordinary thread polls the process at 10 Hz, publishes, and reports missing nodes. Callbacks run in
 /// two further threads. Nothing here ever waits on ROS time.
 
 #include <cstdint>
@@ -52,7 +52,7 @@ class Node {
 /// Takes the locks; throws BusError and whatever refuses the start.
 using MakeNode = std::unique_ptr<Node> (*)(const Setup&);
 
-/// The body of main. 0: ended by SIGINT, SIGTERM, ROS or by itself. 1: refused, told on stderr.
+/// The body of main. 0: ended by SIGINT, SIGTERM, ROS or by itself. 1: refused, reported on stderr.
 int run_node(int argc, char** argv, const std::string& name, MakeNode make);
 
 /// Publish tick for topics of these rates [Hz], in a loop of this period: a quarter of the shortest interval,

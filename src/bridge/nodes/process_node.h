@@ -1,5 +1,5 @@
 #pragma once
-/// A Node whose work is a Process: everything that the four nodes of the loop have in common.
+/// A Node that runs a Process: the common part of the four nodes of the loop.
 
 #include <string>
 #include <utility>

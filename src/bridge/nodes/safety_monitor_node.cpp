@@ -21,10 +21,10 @@ namespace robot_control {
 namespace {
 
 constexpr std::int64_t kStatusPeriod = 1'000'000'000;  // ns, at the latest
-constexpr std::int64_t kStatusGap = 20'000'000;        // ns, at the earliest: a flickering cause floods nobody
-constexpr std::int64_t kTriggerWait = 500'000'000;     // ns; the other callback thread still hears the topic e_stop
-constexpr std::int64_t kResetWait = 1'000'000'000;     // ns
-constexpr std::int64_t kResetLook = 2'000'000;         // ns
+constexpr std::int64_t kStatusGap = 20'000'000;  // ns, at the earliest: a flickering cause does not flood subscribers
+constexpr std::int64_t kTriggerWait = 500'000'000;  // ns; the other callback thread still receives the topic e_stop
+constexpr std::int64_t kResetWait = 1'000'000'000;  // ns
+constexpr std::int64_t kResetLook = 2'000'000;      // ns
 
 class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
  public:
@@ -33,7 +33,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   void connect(ros::NodeHandle& handle) override {
     command_topics_ = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
     status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
-    // What is no Bool stops, too: who sends it means something by it.
+    // A malformed message stops the robot, too: its sender may have meant a stop.
     e_stop_.connect(
         handle, [this](const msg::Bool& message) { hear_e_stop(message.data != 0); }, [this] { hear_e_stop(true); });
     heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
@@ -50,19 +50,19 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     Permit permit;
     const bool found = seen(permit);
     const std::vector<std::string> absent = missing();
-    const bool changed = found != told_permit_ || absent != told_missing_ || (found && news(told_, permit));
-    const std::int64_t silence_ns = now_ns - told_ns_;
-    if (told_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
+    const bool changed = found != reported_permit_ || absent != reported_missing_ || (found && news(reported_, permit));
+    const std::int64_t silence_ns = now_ns - reported_ns_;
+    if (reported_ns_ != 0 && silence_ns < (changed ? kStatusGap : kStatusPeriod)) return;
     if (SensorFrame sensors; live(sensors)) time().follow(sensors);
     msg::SafetyStatus status =
         found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns()) : waiting_status(absent);
     note_latch_file(status);
     status_.publish(status);
-    tell(stop_log_.look(status));
-    told_permit_ = found;
-    told_missing_ = absent;
-    told_ = permit;
-    told_ns_ = now_ns;
+    write_log(stop_log_.look(status));
+    reported_permit_ = found;
+    reported_missing_ = absent;
+    reported_ = permit;
+    reported_ns_ = now_ns;
   }
 
   void diagnose(DiagnosticReport& report) override {
@@ -126,7 +126,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
 
   bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
     const std::unique_lock one_at_a_time(reset_mutex_, std::try_to_lock);
-    if (!one_at_a_time) {  // waiting here would leave no thread to hear e_stop
+    if (!one_at_a_time) {  // waiting here would leave no thread to receive e_stop
       response.success = 0;
       response.message = "another reset is being answered: ask again";
       return true;
@@ -162,10 +162,10 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   std::mutex reset_mutex_;
   OperatorInput input_;
   StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9, parameters().controller.cmd_vel_timeout};
-  Permit told_;
-  bool told_permit_ = false;
-  std::vector<std::string> told_missing_;
-  std::int64_t told_ns_ = 0;
+  Permit reported_;
+  bool reported_permit_ = false;
+  std::vector<std::string> reported_missing_;
+  std::int64_t reported_ns_ = 0;
 };
 
 }  // namespace

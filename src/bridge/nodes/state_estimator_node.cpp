@@ -111,11 +111,11 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   }
 
   bool set_odometry(msg::SetOdometryRequest& request, msg::SetOdometryResponse& response) {
-    const Vector3 wished{request.x, request.y, request.yaw};
-    const std::string problem = odometry_problem(wished);
-    const std::string refusal = problem.empty() ? take(normalised(wished)) : "not done: " + problem;
+    const Vector3 requested{request.x, request.y, request.yaw};
+    const std::string problem = odometry_problem(requested);
+    const std::string refusal = problem.empty() ? take(normalised(requested)) : "not done: " + problem;
     response.success = refusal.empty();
-    response.message = ascii(refusal.empty() ? taken_sentence(normalised(wished)) : refusal);
+    response.message = ascii(refusal.empty() ? taken_sentence(normalised(requested)) : refusal);
     return true;
   }
 

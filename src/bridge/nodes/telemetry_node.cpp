@@ -31,8 +31,8 @@ class TelemetryNode final : public Node {
     for (const std::string& path : process_.take_removed()) {
       ROS_WARN("removed %s, the oldest log: telemetry.quota = %g GB", path.c_str(), quota_);
     }
-    if (process_.problem().empty() || told_) return;
-    told_ = true;
+    if (process_.problem().empty() || reported_) return;
+    reported_ = true;
     ROS_ERROR("%s. The loop goes on, its rows are counted and lost", process_.problem().c_str());
   }
   std::int64_t tick_ns() const override { return lockstep_ ? kLockstepDrainPeriod : kDrainPeriod; }
@@ -65,7 +65,7 @@ class TelemetryNode final : public Node {
  private:
   bool lockstep_;
   double quota_;  ///< GB
-  bool told_ = false;
+  bool reported_ = false;
   TelemetryProcess process_;
 };
 

@@ -21,7 +21,7 @@ std::string format(const char* pattern, Values... values) {
   return text.data();
 }
 
-PlanarTwist wish_of(const CommandFrame& command) {
+PlanarTwist requested_twist(const CommandFrame& command) {
   return {command.twist_requested.linear[0], command.twist_requested.angular[2]};
 }
 
@@ -39,40 +39,40 @@ void CommandReport::enter_run(const CommandFrame& command) {
   run_ = command.head.run;
   refused_ = timeouts_ = 0;
   refusing_ = false;
-  told_.reset();
+  reported_.reset();
   line_gap_ = timeout_gap_ = refusal_gap_ = {};
 }
 
-CommandReport::Told CommandReport::made_of(const CommandFrame& command) const {
-  const PlanarTwist wish = wish_of(command);
-  const double scale = kinematics_.wheel_speed_scale(wish);
-  const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
+CommandReport::Report CommandReport::made_of(const CommandFrame& command) const {
+  const PlanarTwist requested = requested_twist(command);
+  const double scale = kinematics_.wheel_speed_scale(requested);
+  const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
   return {.rims = kinematics_.rim_speeds(twist),
-          .zero = wish.linear == 0 && wish.angular == 0,
-          .limited = twist.linear != wish.linear || twist.angular != wish.angular,
+          .zero = requested.linear == 0 && requested.angular == 0,
+          .limited = twist.linear != requested.linear || twist.angular != requested.angular,
           .hindrance = command.reasons & kHindrances};
 }
 
-bool CommandReport::same(const Told& one, const Told& other) {
+bool CommandReport::same(const Report& one, const Report& other) {
   if (one.hindrance != other.hindrance || one.zero != other.zero) return false;
   return std::abs(one.rims.left - other.rims.left) < kSpeedStep &&
          std::abs(one.rims.right - other.rims.right) < kSpeedStep && one.limited == other.limited;
 }
 
-std::string CommandReport::text(const Told& told, const CommandFrame& command) const {
-  const PlanarTwist wish = wish_of(command);
-  std::string asked = format("cmd_vel %g m/s, %g rad/s", wish.linear, wish.angular);
-  if ((told.hindrance & kNoEffect) != 0) {
-    const std::uint64_t why = told.hindrance & kNoEffect;
-    return asked + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));
+std::string CommandReport::text(const Report& report, const CommandFrame& command) const {
+  const PlanarTwist requested = requested_twist(command);
+  std::string requested_text = format("cmd_vel %g m/s, %g rad/s", requested.linear, requested.angular);
+  if ((report.hindrance & kNoEffect) != 0) {
+    const std::uint64_t why = report.hindrance & kNoEffect;
+    return requested_text + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));
   }
-  if (told.hindrance != 0) return asked + ", but " + sentences_of(kCommandReasonNames, told.hindrance);
-  if (told.limited) {
-    const double scale = kinematics_.wheel_speed_scale(wish);
-    const PlanarTwist twist = within_speed({scale * wish.linear, scale * wish.angular}, limits_);
-    asked += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
+  if (report.hindrance != 0) return requested_text + ", but " + sentences_of(kCommandReasonNames, report.hindrance);
+  if (report.limited) {
+    const double scale = kinematics_.wheel_speed_scale(requested);
+    const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
+    requested_text += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
   }
-  return format("left %.2f m/s, right %.2f m/s (%s)", told.rims.left, told.rims.right, asked.c_str());
+  return format("left %.2f m/s, right %.2f m/s (%s)", report.rims.left, report.rims.right, requested_text.c_str());
 }
 
 std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
@@ -87,12 +87,12 @@ std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
   refused_ = not_finite;
 
   if (timed_out) {
-    const bool moved = told_ && !told_->zero && !stands;
+    const bool moved = reported_ && !reported_->zero && !stands;
     if (moved && timeout_gap_.over(now_ns)) {
       lines.push_back({true, format("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
       timeout_gap_.begin(now_ns);
     }
-    told_.reset();
+    reported_.reset();
   }
   if (refused) {
     if (!refusing_ && refusal_gap_.over(now_ns)) {
@@ -101,18 +101,18 @@ std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
       refusal_gap_.begin(now_ns);
     }
     refusing_ = true;
-    told_.reset();
+    reported_.reset();
   }
   if ((command.reasons & kNoWish) != 0 || command.requests_received == 0) return lines;
 
   refusing_ = false;
-  const Told made = made_of(command);
+  const Report made = made_of(command);
   if (made.hindrance != hindrance_) hindered_since_ns_ = now_ns;
   hindrance_ = made.hindrance;
-  const bool settled = !told_ || made.hindrance == told_->hindrance || now_ns - hindered_since_ns_ >= kSettle;
-  if ((told_ && same(made, *told_)) || !settled || !line_gap_.over(now_ns)) return lines;
-  const bool stood = !told_ || told_->zero;
-  told_ = made;
+  const bool settled = !reported_ || made.hindrance == reported_->hindrance || now_ns - hindered_since_ns_ >= kSettle;
+  if ((reported_ && same(made, *reported_)) || !settled || !line_gap_.over(now_ns)) return lines;
+  const bool stood = !reported_ || reported_->zero;
+  reported_ = made;
   if (made.zero && (stood || made.hindrance != 0)) return lines;  // it stands, as it shall
   lines.push_back({made.hindrance != 0, text(made, command)});
   line_gap_.begin(now_ns);

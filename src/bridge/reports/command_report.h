@@ -1,14 +1,15 @@
 #pragma once
-/// What the controller tells about the commands it received, and what it makes of them. Pure.
+/// The controller's log lines about received commands and their effect. Pure.
 ///
-///   it drives them        the wheel speeds they lead to, after the speed limits where it lies above them
-///   it brakes or ramps    that the command has no effect, and why
-///   it is slowed down     by the safety monitor, and where the reason stands
+///   normal driving        the wheel speeds that result, after the speed limits if these apply
+///   brake or ramp         that the command has no effect, and why
+///   slowed down           by the safety monitor, and where the reason is shown
 ///   warnings              a timeout that stopped a motion, a series of refused (NaN, infinite) messages
 ///
-/// A line comes when one of these changes, wheel speeds by kSpeedStep or more, and at most once per kGap each; a change
-/// within the gap is told when that has passed. Another effect is told when it has lasted for kSettle: a single late
-/// cycle is none. What is refused for its stamp or its sender is told by command_input.h. Time is that of the frames.
+/// A line is written when one of these changes, wheel speeds by kSpeedStep or more, and at most once per kGap each; a
+/// change within the gap is reported after it. Another effect is reported when it has lasted for kSettle, so a single
+/// late cycle is not. Messages that are refused for stamp or sender are reported by command_input.h. Time is that of
+/// the frames.
 
 #include <cstdint>
 #include <optional>
@@ -39,8 +40,8 @@ class CommandReport {
   std::vector<ReportLine> look(const CommandFrame& command);
 
  private:
-  /// What is told of a command.
-  struct Told {
+  /// The report about a command.
+  struct Report {
     SidePair rims;  ///< m/s, after the speed limits
     bool zero = true;
     bool limited = false;
@@ -58,9 +59,9 @@ class CommandReport {
   };
 
   void enter_run(const CommandFrame& command);
-  Told made_of(const CommandFrame& command) const;
-  std::string text(const Told& told, const CommandFrame& command) const;
-  static bool same(const Told& one, const Told& other);
+  Report made_of(const CommandFrame& command) const;
+  std::string text(const Report& report, const CommandFrame& command) const;
+  static bool same(const Report& one, const Report& other);
 
   DriveKinematics kinematics_;
   SpeedLimits limits_;
@@ -69,8 +70,8 @@ class CommandReport {
   std::uint64_t refused_ = 0;  ///< NaN, infinite
   std::uint64_t timeouts_ = 0;
   bool refusing_ = false;
-  std::optional<Told> told_;     ///< of the motion that goes on
-  std::uint64_t hindrance_ = 0;  ///< of the last frame
+  std::optional<Report> reported_;  ///< of the present motion
+  std::uint64_t hindrance_ = 0;     ///< of the last frame
   std::int64_t hindered_since_ns_ = 0;
   Gap line_gap_;
   Gap timeout_gap_;

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "bridge/reports/ascii.h"
-#include "bridge/reports/joined.h"
+#include "bridge/reports/name_list.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -34,9 +34,9 @@ void DiagnosticReport::value(const std::string& key, double number) {
   value(key, std::string(text.data()));
 }
 
-void DiagnosticReport::reasons(const std::string& whose, std::span<const BitName> table, std::uint64_t bits) {
+void DiagnosticReport::reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits) {
   for (const BitName& row : table) {
-    if ((bits & row.bit) != 0) value(whose + ": " + std::string(row.name), sentences_of({&row, 1}, row.bit));
+    if ((bits & row.bit) != 0) value(subject + ": " + std::string(row.name), sentences_of({&row, 1}, row.bit));
   }
 }
 

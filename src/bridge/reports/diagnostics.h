@@ -27,7 +27,7 @@ class DiagnosticReport {
   void value(const std::string& key, std::uint64_t number) { value(key, std::to_string(number)); }
 
   /// One value per bit set, "gate: command_held" = "the command is older than one cycle and is held".
-  void reasons(const std::string& whose, std::span<const BitName> table, std::uint64_t bits);
+  void reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits);
 
   const msg::DiagnosticStatus& message() const noexcept { return message_; }
 

@@ -12,7 +12,7 @@ class Pacer {
   explicit Pacer(double rate) noexcept : period_ns_(static_cast<std::int64_t>(1.0e9 / rate + 0.5)) {}
 
   /// True at most once per period, exactly `rate` on average while the frames come at least that often. What
-  /// was missed is not made up for. A new run, or a stamp far back, begins anew.
+  /// was missed is not made up for. A new run, or a stamp far back, restarts.
   bool due(std::uint64_t run, std::int64_t stamp_ns) noexcept {
     if (run != run_ || stamp_ns < next_ns_ - 2 * period_ns_) {
       run_ = run;

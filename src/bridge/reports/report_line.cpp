@@ -4,7 +4,7 @@
 
 namespace robot_control {
 
-void tell(const std::vector<ReportLine>& lines) {
+void write_log(const std::vector<ReportLine>& lines) {
   for (const ReportLine& line : lines) {
     if (line.warning) {
       ROS_WARN("%s", line.text.c_str());

@@ -12,6 +12,6 @@ struct ReportLine {
 };
 
 /// Writes them to the log of ROS, at WARN or INFO.
-void tell(const std::vector<ReportLine>& lines);
+void write_log(const std::vector<ReportLine>& lines);
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// What the plant tells once about the robot it was given. Pure.
+/// The plant's log line about its robot. Pure.
 
 #include <string>
 

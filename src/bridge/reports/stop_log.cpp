@@ -15,7 +15,7 @@ bool may_drive(const msg::SafetyStatus& status) {
   return status.state == msg::SafetyStatus::READY || status.state == msg::SafetyStatus::DRIVE;
 }
 
-/// "stall: a wheel stands though it was told to turn (0.6 rad, limit 0.5 rad, left_wheel_joint)"
+/// "stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint)"
 std::string cause_text(const msg::SafetyStatus& status, std::size_t i) {
   std::string text = status.causes[i] + ": " + status.sentences[i];
   if (!status.details[i].empty()) text += " (" + status.details[i] + ")";

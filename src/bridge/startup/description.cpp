@@ -18,9 +18,9 @@ void restore(const char* name, const std::string& before) {
 
 }  // namespace
 
-RobotDescription chosen_description(const Parameters& parameters, bool urdf_asked_for, const std::string& published,
+RobotDescription chosen_description(const Parameters& parameters, bool urdf_requested, const std::string& published,
                                     const std::string& name) {
-  if (urdf_asked_for || published.empty()) return load_description(parameters.urdf);
+  if (urdf_requested || published.empty()) return load_description(parameters.urdf);
   try {
     RobotDescription file = load_description(parameters.urdf);
     if (file.text == published) return file;

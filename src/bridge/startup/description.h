@@ -1,13 +1,13 @@
 #pragma once
-/// Which description of the robot a node reads. All nodes ask in the same order, so that they agree:
+/// Which description of the robot a node reads. All nodes use the same order, so that they agree:
 ///
-///   1. the file of `robot/urdf` or of the plant's `~urdf` on the parameter server: somebody asked for it;
+///   1. the file of `robot/urdf` or of the plant's `~urdf` on the parameter server: explicitly requested;
 ///   2. `robot_description`: the user's, or what a plant published;
 ///   3. the file of the YAML file's `robot.urdf`.
 ///
-/// A plant publishes what it has read as `robot_description` and makes its `~urdf` everybody's `robot/urdf`; when it
-/// ends, the parameter server is as it was. A text from the server has no folder, so meshes named relative to the URDF
-/// are found only where it is the very text of the file in 3; package:// and file:// are found always.
+/// A plant publishes what it has read as `robot_description` and sets `robot/urdf` to its `~urdf` for all nodes; when
+/// it ends, it restores the parameter server. A text from the server has no folder, so meshes named relative to the
+/// URDF are found only where it is the very text of the file in 3; package:// and file:// are found always.
 
 #include <optional>
 #include <string>
@@ -17,9 +17,9 @@
 
 namespace robot_control {
 
-/// `urdf_asked_for`: parameters.urdf came from the server. `published`: the text on the server, or empty;
+/// `urdf_requested`: parameters.urdf came from the server. `published`: the text on the server, or empty;
 /// `name`: its resolved name. Throws RobotError where a file is needed and cannot be read.
-RobotDescription chosen_description(const Parameters& parameters, bool urdf_asked_for, const std::string& published,
+RobotDescription chosen_description(const Parameters& parameters, bool urdf_requested, const std::string& published,
                                     const std::string& name);
 
 /// Says that `asked_for` ("/robot/urdf"), perhaps left over from an earlier launch, went before another description on

@@ -9,16 +9,16 @@ namespace {
 constexpr double kRounding = 1e-12;
 
 /// The largest a with F(a) ≤ distance.
-double fading_from(double distance, double step, double dt) noexcept {
+double max_acceleration_to_reach(double distance, double step, double dt) noexcept {
   const double needed = distance / dt;
   if (needed <= step) return needed;
-  if (!(step > 0)) return 0;  // of a way so short that its share of the jerk underflows
+  if (!(step > 0)) return 0;  // the distance is so short that its share of the jerk underflows
   const double n = std::floor((std::sqrt(1 + 8 * needed / step) - 1) / 2);
   return (needed + step * n * (n + 1) / 2) / (n + 1);
 }
 
 /// The largest a with G(a) ≤ distance.
-double fading_to(double least, double distance, double step, double dt) noexcept {
+double max_acceleration_before_zero(double least, double distance, double step, double dt) noexcept {
   const double needed = distance / dt;
   if (needed <= step) return std::max(least, needed);
   const double slope = 2 * least - step;
@@ -27,14 +27,14 @@ double fading_to(double least, double distance, double step, double dt) noexcept
   return std::min(least + n * step, (needed + step * n * (n - 1) / 2) / n);
 }
 
-/// Seen in the direction of the target, which is ahead by `distance` ≥ 0.
-double wanted(double speed, double distance, const AxisLimits& limits, double dt) noexcept {
+/// All values in the direction of the target, which is ahead by `distance` ≥ 0.
+double largest_acceleration(double speed, double distance, const AxisLimits& limits, double dt) noexcept {
   const double step = limits.jerk * dt;
-  const double reaching = fading_from(distance, step, dt);
+  const double reaching = max_acceleration_to_reach(distance, step, dt);
   if (speed >= 0) return std::min(reaching, limits.acceleration);
   const double bound = std::min(reaching, limits.deceleration);
   if (bound <= limits.acceleration) return bound;
-  return std::min(bound, fading_to(limits.acceleration, -speed, step, dt));
+  return std::min(bound, max_acceleration_before_zero(limits.acceleration, -speed, step, dt));
 }
 
 bool opposite(double a, double b) noexcept {
@@ -51,7 +51,7 @@ AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limi
   const double ahead = std::copysign(1.0, target - state.speed);
   const double distance = std::abs(target - state.speed);
   const double before = ahead * state.acceleration;
-  const double aim = wanted(ahead * state.speed, distance, limits, dt);
+  const double aim = largest_acceleration(ahead * state.speed, distance, limits, dt);
   const double lowest = before - jerk * dt;
   const double highest =
       before < 0 ? std::max(std::min(before + jerk * dt, 0.0), before + limits.jerk * dt) : before + limits.jerk * dt;
@@ -60,7 +60,7 @@ AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limi
   const double arriving = distance / dt;
   AxisStep step;
   step.state.speed = next == arriving ? target : state.speed + ahead * next * dt;
-  // What rounding lifts above the jerk of one step would push it on beyond its target.
+  // An acceleration that rounding lifted above the jerk of one step would lead beyond the target.
   const bool faster = next > jerk * dt * (1 + kRounding);
   step.state.acceleration = ahead * (next == arriving && !faster ? std::min(next, jerk * dt) : next);
   const bool beyond_zero = state.speed == 0 ? step.state.speed != 0 : opposite(state.speed, step.state.speed);

@@ -1,9 +1,9 @@
 #pragma once
-/// A user's limits → those of the limiter: what was left out follows from what was given.
+/// The user's limits → the limits of the limiter. Limits that are left out are derived from the others.
 ///
 ///   deceleration            = acceleration
-///   emergency deceleration  linear: f·deceleration with f = 2, less where that is more than kHalfGrip, but at least 1;
-///                           angular: the factor of the linear one on its own deceleration, so that a curve stays one
+///   emergency deceleration  linear: f·deceleration with f = 2, less if that exceeds kHalfGrip, but at least 1;
+///                           angular: the same factor f on its own deceleration, which keeps the curvature
 ///   jerk                    = max(acceleration, emergency deceleration / 2) / 0.1 s
 
 #include "control/drive_controller_parameters.h"
@@ -14,7 +14,7 @@ namespace robot_control {
 /// m/s², half of what dry ground of friction 1 carries.
 inline constexpr double kHalfGrip = 4.9;
 
-/// Infinite where `jerk` is 0, which users say for none.
+/// Infinite if `jerk` is 0, which means no limit.
 double jerk_limit(double jerk) noexcept;
 
 /// Within the ranges of the schema.

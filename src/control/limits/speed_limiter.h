@@ -1,23 +1,22 @@
 #pragma once
-/// Speed, acceleration, deceleration and jerk limits of the linear and the angular axis, forwards and backwards alike.
+/// Speed, acceleration, deceleration and jerk limits of the linear and the angular axis, equal in both directions.
 ///
-/// Speed: target* = s·target with the largest s ≤ 1 that meets |v| ≤ linear.speed, |ω| ≤ angular.speed.
-/// On the way there: axis_limiter.h, each axis by itself, or with `keep_curvature` both together: with e = target* − x,
-/// the remaining way of each axis, their limits are scaled down to
+/// Speed: target* = s·target with the largest s ≤ 1 for which |v| ≤ linear.speed and |ω| ≤ angular.speed.
+/// Ramps: axis_limiter.h, for each axis alone, or with `keep_curvature` for both together. Then, with e = target* − x
+/// the remaining distance of each axis, their limits are scaled down to
 ///
 ///   bound_i* = |e_i|·min_k(bound_k/|e_k|),   jerk_i* = |e_i|·min_k(jerk_k/|e_k|)
 ///
-/// so that the output moves on the straight line from where it is to target*, and both axes arrive in the same step.
-/// What follows from the line:
+/// so that the output moves on the straight line from its present value to target*, and both axes arrive in the same
+/// step. From this follows:
 ///   - from standstill and to standstill the commanded curvature ω/v is kept: a ramp stays on the path;
-///   - an output and a target inside a convex set (wheel speed limits) never leave it in between.
-/// A target that changes during a ramp begins a new line, which the output reaches as soon as what was left of the
-/// acceleration has faded; no limit of an axis is exceeded for it.
+///   - an output and a target inside a convex set (wheel speed limits) stay inside it on the way.
+/// A target that changes during a ramp begins a new line, which the output reaches as soon as the earlier acceleration
+/// has ended; no limit of an axis is exceeded for it.
 ///
-/// In an emergency the stronger deceleration holds, and the turn follows the linear axis, but does not hold it up. No
-/// limit depends on the direction of travel:
-/// step(−x, −target) = −step(x, target). Only a seed (a measured speed) and limits that were lowered leave the output
-/// outside the speed limits; from there it returns at `deceleration`.
+/// In an emergency the emergency deceleration applies, and the linear axis does not wait for the angular one. No limit
+/// depends on the direction of travel: step(−x, −target) = −step(x, target). The output is outside the speed limits
+/// only after restart_from (a measured speed) and after limits were lowered; it returns at `deceleration`.
 
 #include <cstdint>
 #include <limits>
@@ -27,7 +26,7 @@
 
 namespace robot_control {
 
-/// Of one axis; m/s or rad/s and its derivatives, all > 0.
+/// Limits of one axis; m/s or rad/s and derivatives, all > 0.
 struct MotionLimits {
   double speed = 1.0;
   double acceleration = 1.0;
@@ -42,45 +41,47 @@ struct SpeedLimits {
   bool keep_curvature = true;
 };
 
-/// target*: what is left of `target` within the speed limits.
+/// target*: `target`, scaled into the speed limits.
 PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) noexcept;
 
 class SpeedLimiter {
  public:
   explicit SpeedLimiter(const SpeedLimits& limits)
-      : limits_(limits), fading_{.linear = limits.linear.jerk, .angular = limits.angular.jerk} {}
+      : limits_(limits), release_jerk_{.linear = limits.linear.jerk, .angular = limits.angular.jerk} {}
 
-  /// Other limits from the next step on. An acceleration that grew under a higher jerk limit may still fade at that:
-  /// a lower one would carry it past its target, and a stop past zero.
-  void limit(const SpeedLimits& limits) noexcept;
+  /// Other limits from the next step on. An acceleration that was built up under a higher jerk limit may still decrease
+  /// at that one: with the lower one it would overshoot its target, and a stop would cross zero.
+  void set_limits(const SpeedLimits& limits) noexcept;
 
-  /// Continue from this motion (the measured one), at zero acceleration.
-  void seed(const PlanarTwist& twist) noexcept;
+  /// Continues from this twist (the measured one), at zero acceleration.
+  void restart_from(const PlanarTwist& twist) noexcept;
 
-  /// `target` finite; `dt` > 0, s. `emergency`: with the emergency deceleration. `part`: of the acceleration limits,
-  /// > 0, ≤ 1, for a machine that cannot follow more; who slows down is never held up. Less than used_part() is
-  /// approached at the jerk limit of the axis whose limit is the tighter, so that the output stays on its line.
-  PlanarTwist step(const PlanarTwist& target, double dt, bool emergency = false, double part = 1) noexcept;
+  /// `target` finite; `dt` > 0, s. `emergency`: use the emergency deceleration. `acceleration_scale`: of the
+  /// acceleration limits, > 0, ≤ 1, for a machine that cannot follow more; decelerations are not scaled. A scale below
+  /// used_acceleration_scale() is approached at the tighter of the axes' jerk limits, so that the output stays on its
+  /// line.
+  PlanarTwist step(const PlanarTwist& target, double dt, bool emergency = false,
+                   double acceleration_scale = 1) noexcept;
 
   PlanarTwist value() const noexcept { return {linear_.speed, angular_.speed}; }
   const PlanarTwist& acceleration() const noexcept { return acceleration_; }  ///< of the last step: m/s², rad/s²
 
-  /// How much of the user's limits the last step took: 1 where an axis was at its acceleration or deceleration limit.
-  double used_part() const noexcept;
+  /// The part of the user's limits that the last step used: 1 if an axis was at its acceleration or deceleration limit.
+  double used_acceleration_scale() const noexcept;
 
   /// CommandReason bits of the last step: kReasonSpeedLimited, kReasonAccelerationLimited, kReasonJerkLimited,
   /// kReasonJerkYielded, kReasonCurvatureKept.
   std::uint64_t reasons() const noexcept { return reasons_; }
 
  private:
-  double allowed_part(double part, double dt) const noexcept;
+  double allowed_acceleration_scale(double acceleration_scale, double dt) const noexcept;
 
   SpeedLimits limits_;
-  PlanarTwist fading_;  ///< m/s³, rad/s³: the jerk at which the acceleration of now may fade
+  PlanarTwist release_jerk_;  ///< m/s³, rad/s³: the jerk at which the present acceleration may decrease
   AxisState linear_;
   AxisState angular_;
   PlanarTwist acceleration_;
-  PlanarTwist bound_{.linear = 1, .angular = 1};  ///< the user's, of the last step's accelerations
+  PlanarTwist bound_{.linear = 1, .angular = 1};  ///< the user's limits of the last step's accelerations
   std::uint64_t reasons_ = 0;
 };
 

@@ -1,25 +1,26 @@
 #pragma once
-/// The torque that a planned motion needs: Newton and Euler for a body on driven wheels, h on either side.
+/// The torque for a planned motion: Newton-Euler equations of a body on driven wheels, h on each side.
 ///
 /// Body of mass m (all links), yaw inertia I about the vertical through the middle of the wheels (the point that
 /// v and ω belong to), centre of gravity x_c ahead of it. Force F along x and moment M about z from the wheels, shared
-/// evenly by those of a side; b is the geometric wheel base, for it is the lever of the forces:
+/// evenly by those of a side; b is the geometric wheel base, the lever arm of the forces:
 ///
 ///   F = m·(v̇ − x_c·ω²)        F_left  = (F/2 − M/b)/h
 ///   M = I·ω̇ + m·x_c·v·ω       F_right = (F/2 + M/b)/h
 ///
-/// A wheel of radius r and axle inertia J passes F_wheel to the ground and spins up with its rim's acceleration a,
-/// which kinematics.h has from the effective wheel base b_eff:
+/// A wheel of radius r and axle inertia J passes F_wheel to the ground and is accelerated with its rim's acceleration
+/// a, which kinematics.h computes with the effective wheel base b_eff:
 ///
 ///   τ = r·F_wheel + J·a/r     (times the joint's sign)
 ///
-/// and the joint itself, of damping d and dry friction f, takes d·q̇ + f·tanh(q̇/ε), ε = 0.1 rad/s: the friction of a
-/// wheel that has just begun to turn is not known better than that.
+/// and the joint, with damping d and dry friction f, needs d·q̇ + f·tanh(q̇/ε), ε = 0.1 rad/s, an approximation of the
+/// friction near zero speed.
 ///
-/// So a wheel sees, per rad/s² of its own, the inertia
+/// So the inertia of a wheel, per rad/s² of its joint, is
 ///   straight: J + m·r²/(2·h)      turning: J + 2·I·r²/(h·b·b_eff)      lifted: J
 /// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m, h = 1: 0.065, 0.045 and 0.005 kg·m².
-/// Slopes and the scrubbing of wheels behind each other are left to the integrator: RobotModel does not know them.
+/// Slopes, and the scrubbing of wheels behind each other, are compensated by the integrator: RobotModel does not
+/// describe them.
 
 #include "control/planar_twist.h"
 #include "robot/robot_model.h"

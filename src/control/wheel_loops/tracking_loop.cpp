@@ -16,17 +16,17 @@ double pole(double bandwidth, double dt) noexcept {
 TrackingLoop::TrackingLoop(double bandwidth, double period)
     : bandwidth_(bandwidth), period_(period), nominal_pole_(pole(bandwidth, period)) {}
 
-void TrackingLoop::seed(double position, double velocity) noexcept {
+void TrackingLoop::restart_from(double position, double velocity) noexcept {
   position_ = position;
   velocity_ = velocity;
   residual_ = 0;
   known_ = 0;
 }
 
-void TrackingLoop::tune(double bandwidth, double known_less) noexcept {
+void TrackingLoop::tune(double bandwidth, double known_decrease) noexcept {
   bandwidth_ = bandwidth;
   nominal_pole_ = pole(bandwidth, period_);
-  residual_ += known_less;
+  residual_ += known_decrease;
 }
 
 void TrackingLoop::step(double position_measured, double known_acceleration, double periods) noexcept {

@@ -11,11 +11,11 @@
 /// damped and stable at any rate (the critically damped, "fading memory" α-β-γ filter: Brookner, Tracking and
 /// Kalman Filtering Made Easy, section 2.3). A continuous PLL discretised by Euler is not.
 ///
-/// `known` is the part of the acceleration that the caller can account for (0: the plain PLL); `residual` is what
-/// the loop finds on top of it, and acceleration = known + residual.
+/// `known` is the part of the acceleration that the caller knows (0: the plain PLL), `residual` the part that the loop
+/// estimates, and acceleration = known + residual.
 ///
 /// Steady-state errors, w = 2π·bandwidth: constant position, velocity and acceleration 0. Constant jerk j:
-/// j/w³ in position, 3·j/w² in velocity (both to first order in w·dt), whoever causes the jerk except `known`.
+/// j/w³ in position, 3·j/w² in velocity (both to first order in w·dt), for all jerk that is not in `known`.
 /// One encoder count q moves the velocity by at most 3/2·(1 − p)²·(1 + p)·q/dt ≈ 3·w²·dt·q: at 20 Hz, 1 kHz and
 /// 4096 counts 0.060 rad/s, where differencing jumps by 1.53 rad/s.
 
@@ -26,11 +26,11 @@ class TrackingLoop {
   /// `bandwidth` > 0, Hz; `period` > 0, s.
   TrackingLoop(double bandwidth, double period);
 
-  void seed(double position, double velocity) noexcept;
+  void restart_from(double position, double velocity) noexcept;
 
-  /// Another bandwidth, Hz > 0, from the next sample on; what is tracked stays. `known_less`, rad/s²: by so much less
-  /// will the caller account for than before; the residual has it.
-  void tune(double bandwidth, double known_less) noexcept;
+  /// Another bandwidth, Hz > 0, from the next sample on; the tracked state stays. `known_decrease`, rad/s²: decrease of
+  /// the known acceleration; it is added to the residual.
+  void tune(double bandwidth, double known_decrease) noexcept;
 
   /// The sample `periods` ≥ 1 periods after the last one.
   void step(double position_measured, double known_acceleration, double periods) noexcept;

@@ -6,7 +6,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kForgetting = 0.1;  // s
+constexpr double kIntegralDecayTime = 0.1;  // s
 
 }  // namespace
 
@@ -17,44 +17,44 @@ void WheelLoop::reset() noexcept {
   tracked_ = false;
   integral_ = 0;
   load_ = 0;
-  surprise_ = 0;
+  effort_residual_ = 0;
   last_gains_.reset();
   saturated_ = false;
 }
 
-void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, double feed_forward_less) noexcept {
-  tracking_.tune(bandwidth, surprise_ / gains_.model_inertia - surprise_ / gains.model_inertia);
+void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, double feed_forward_decrease) noexcept {
+  tracking_.tune(bandwidth, effort_residual_ / gains_.model_inertia - effort_residual_ / gains.model_inertia);
   if (!last_gains_ && (gains.kp != gains_.kp || gains.kd != gains_.kd)) last_gains_ = gains_;
   gains_ = gains;
-  integral_ = std::clamp(integral_ + feed_forward_less, -effort_limit_, effort_limit_);
-  // The torques under way were planned with the old feed-forward: without this they would surprise the tracking loop.
-  load_ += feed_forward_less;
-  for (WheelPlan& plan : plans_) plan.feed_forward -= feed_forward_less;
+  integral_ = std::clamp(integral_ + feed_forward_decrease, -effort_limit_, effort_limit_);
+  // The torques under way were planned with the old feed-forward: without this the tracking loop would see a residual.
+  load_ += feed_forward_decrease;
+  for (WheelPlan& plan : plans_) plan.feed_forward -= feed_forward_decrease;
 }
 
 void WheelLoop::measure(const JointSample& sample, double periods, bool driven) noexcept {
   if (!tracked_) {
-    tracking_.seed(sample.position, sample.velocity);
+    tracking_.restart_from(sample.position, sample.velocity);
     tracked_ = true;
-    surprise_ = 0;
-    resume();
+    effort_residual_ = 0;
+    reset_to_measured();
     return;
   }
-  // While commands were skipped the driver held the last one.
+  // While cycles were skipped the driver held the last command.
   if (periods > 1) plans_[1] = plans_[0];
   const WheelPlan& plan = plans_[1];
-  surprise_ = driven ? sample.effort - plan.feed_forward - load_ : 0;
-  tracking_.step(sample.position, driven ? plan.acceleration + surprise_ / gains_.model_inertia : 0.0, periods);
+  effort_residual_ = driven ? sample.effort - plan.feed_forward - load_ : 0;
+  tracking_.step(sample.position, driven ? plan.acceleration + effort_residual_ / gains_.model_inertia : 0.0, periods);
 }
 
-void WheelLoop::resume() noexcept {
+void WheelLoop::reset_to_measured() noexcept {
   plans_.fill({.velocity = velocity()});
   load_ = integral_;
   last_gains_.reset();
   saturated_ = false;
 }
 
-void WheelLoop::carry(double effort) noexcept {
+void WheelLoop::preload_integrator(double effort) noexcept {
   integral_ = std::clamp(effort + gains_.kd * tracking_.acceleration(), -effort_limit_, effort_limit_);
   load_ = integral_;
 }
@@ -70,15 +70,15 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
     integral_ = std::clamp(effort - direct, -effort_limit_, effort_limit_);
     last_gains_.reset();
   }
-  if (gains_.ki == 0) integral_ -= integral_ * std::min(1.0, periods * period_ / kForgetting);
+  if (gains_.ki == 0) integral_ -= integral_ * std::min(1.0, periods * period_ / kIntegralDecayTime);
   const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
   const bool at_limit = clamped || std::abs(direct + integral) > effort_limit_;
   const bool winds_up = at_limit && (direct + integral) * error > 0;
   if (!winds_up) integral_ = integral;
 
-  wanted_ = direct + integral_;
-  const double effort = std::clamp(wanted_, -effort_limit_, effort_limit_);
-  saturated_ = effort != wanted_;
+  unclamped_effort_ = direct + integral_;
+  const double effort = std::clamp(unclamped_effort_, -effort_limit_, effort_limit_);
+  saturated_ = effort != unclamped_effort_;
   plans_[1] = plans_[0];
   plans_[0] = plan;
   return effort;

@@ -1,22 +1,21 @@
 #pragma once
-/// Is the wheel loop stable? The eigenvalues of what really runs: tracking loop, PID and the bus's delay.
+/// Stability of the wheel loop: the eigenvalues of the sampled system of tracking loop, PID and the delay of the bus.
 ///
 /// One wheel of inertia J in a joint of damping d, linear, sampled: the torque τ of cycle k acts over [t_k+1, t_k+2),
-/// in which J·ω̇ = τ − d·ω. State
+/// during which J·ω̇ = τ − d·ω. State
 ///
 ///   x = (θ̂ − θ, ω̂, residual, ω, τ of [t_k, t_k+1), τ of [t_k-1, t_k), integral)
 ///
-/// where θ, ω are the wheel's and θ̂, ω̂, residual the tracking loop's. An actuator that is late by n cycles beyond the
-/// bus' one adds n states, the torques under way; sensors that are late by n, torque and angle together, have the same
-/// eigenvalues. x_k+1 = A·x_k; the loop is stable if and only if
-/// the spectral radius max|λ(A)| < 1. After n cycles a disturbance has faded to about radius^n, so
-/// ln(radius)/period is the slowest decay rate in 1/s.
+/// θ, ω of the wheel; θ̂, ω̂, residual of the tracking loop. An actuator with a delay of n cycles beyond that of the
+/// bus adds n states, the torques under way; sensors with a delay of n cycles, torque and angle together, have the same
+/// eigenvalues. x_k+1 = A·x_k; the loop is stable if and only if the spectral radius max|λ(A)| < 1. After n cycles a
+/// disturbance has decayed to about radius^n, so ln(radius)/period is the slowest decay rate in 1/s.
 
 #include "control/wheel_loops/wheel_loop.h"
 
 namespace robot_control {
 
-/// What the wheel really drives.
+/// The load of the wheel.
 struct WheelLoad {
   double inertia = 0;  ///< kg·m², > 0
   double damping = 0;  ///< N·m·s/rad, ≥ 0
@@ -25,15 +24,15 @@ struct WheelLoad {
 };
 
 /// The smallest damping ratio of all modes: with s = ln(λ)/period, ζ = −Re(s)/|s|. 1: no mode oscillates; ≤ 0:
-/// unstable. Each half swing of a mode is e^(−πζ/√(1−ζ²)) of the one before: 0.37 for ζ = 0.3.
+/// unstable. Each half oscillation of a mode is e^(−πζ/√(1−ζ²)) of the one before: 0.37 for ζ = 0.3.
 double wheel_loop_damping_ratio(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth);
 
-/// `period` s, `bandwidth` Hz of the tracking loop; both > 0. `delay`: cycles beyond the bus' one.
+/// `period` s, `bandwidth` Hz of the tracking loop; both > 0. `delay`: cycles beyond that of the bus.
 double wheel_loop_spectral_radius(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth,
                                   unsigned delay = 0);
 
-/// kp·dt/model_inertia: the quick rule. With kd = 0 and a tracking loop that is slow against the period
-/// (2π·bandwidth·dt ≤ 0.25) the loop is unstable above 1 whatever the wheel drives; aim at ≤ 0.5. The spectral radius
+/// kp·dt/model_inertia: a rule of thumb. With kd = 0 and a tracking loop that is slow against the period
+/// (2π·bandwidth·dt ≤ 0.25) the loop is unstable above 1 for any load; recommended are ≤ 0.5. The spectral radius
 /// is the criterion.
 double stability_number(const WheelLoopGains& gains, double period) noexcept;
 

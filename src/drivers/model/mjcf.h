@@ -16,7 +16,7 @@
 ///
 /// Joints. Limits, damping and friction are the URDF's; a wheel has no stops. A wheel's rotor is its `armature`,
 /// and motor_damping · gear_ratio², motor_friction · gear_ratio add to its losses. A suspension's spring pulls
-/// towards q₀ = load / stiffness. A mimic joint is tied to what it follows by an equality. A joint that somebody
+/// towards q₀ = load / stiffness. A mimic joint is tied to what it follows by an equality. A joint that another device
 /// else drives (JointRole::kHeld) is held by dry friction of its effort limit, or the robot's weight times 1 m where
 /// that is unknown: unconditionally stable, whatever it carries. A caster's swivel gets an armature of 2 % of
 /// (a quarter of the robot) · r²: the stiffness of the wheel's tyre is bound by the inertia behind it (tyre.h).

@@ -7,17 +7,17 @@
 namespace robot_control {
 namespace {
 
-RobotModel as_described(const RobotModel& believed) {
+RobotModel as_described(const RobotModel& described) {
   RobotParameters names;
-  for (const WheelModel& wheel : believed.wheels) {
+  for (const WheelModel& wheel : described.wheels) {
     auto& side = wheel.side == Side::kLeft ? names.left_wheel_joints : names.right_wheel_joints;
-    side.push_back(believed.joints[wheel.joint].name);
+    side.push_back(described.joints[wheel.joint].name);
   }
-  names.imu_link = believed.imu_link;
-  RobotModel robot = read_robot({believed.urdf, believed.source}, names);
+  names.imu_link = described.imu_link;
+  RobotModel robot = read_robot({described.urdf, described.source}, names);
   for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
-    robot.joints[joint].effort_limit = believed.joints[joint].effort_limit;
-    robot.joints[joint].velocity_limit = believed.joints[joint].velocity_limit;
+    robot.joints[joint].effort_limit = described.joints[joint].effort_limit;
+    robot.joints[joint].velocity_limit = described.joints[joint].velocity_limit;
   }
   return robot;
 }
@@ -44,8 +44,8 @@ void load(RobotModel& robot, double mass, const Vector3& place) {
 
 }  // namespace
 
-RobotModel true_robot(const RobotModel& believed, const MujocoPlantParameters& parameters) {
-  RobotModel robot = as_described(believed);
+RobotModel true_robot(const RobotModel& described, const MujocoPlantParameters& parameters) {
+  RobotModel robot = as_described(described);
   auto bodies = std::make_shared<RigidBodies>(*robot.bodies);
   const double widening = parameters.wheel_base_error * robot.wheel_base / 2;
   for (WheelModel& wheel : robot.wheels) {

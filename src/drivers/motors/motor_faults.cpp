@@ -35,7 +35,7 @@ void MotorFaults::step(Motors& side, FaultKind kind, std::uint64_t cycle) noexce
   for (std::size_t i = 0; i < side.joints.size(); ++i) commands[i] = received_[side.joints[i]];
   State state = State::kHealthy;
   if (kind == FaultKind::kStuck) state = State::kBlocked;
-  if (kind == FaultKind::kGarbage) state = State::kMad;
+  if (kind == FaultKind::kGarbage) state = State::kRandom;
   if (kind == FaultKind::kWrong) state = State::kReversed;
   const auto distort = [&](FaultKind how, WheelCommands&, FaultRandom& random) {
     if (how != FaultKind::kGarbage) return;
@@ -74,7 +74,7 @@ double MotorFaults::effort(std::size_t joint, JointMode mode, double effort, dou
       return effort;
     case State::kDead:
       return 0;
-    case State::kMad:
+    case State::kRandom:
       return drive.random_effort;
     case State::kReversed:
       return mode == JointMode::kBrake ? effort : -effort;

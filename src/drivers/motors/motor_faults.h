@@ -1,9 +1,9 @@
 #pragma once
-/// Motors that fail as told, each side's wheels together; what becomes of a command's torque τ, by kind:
+/// Motors with injected faults, each side's wheels together; the effect on a command's torque τ, by kind:
 ///
 ///   off           0, the brake too: a drive without power, the wheel runs free
 ///   stuck         the rotor is blocked where it was when the fault began
-///   garbage       uniform within ±limit, anew in every cycle, the brake too: a drive gone mad
+///   garbage       uniform within ±limit, new in every cycle, the brake too: a drive out of control
 ///   wrong         −τ: a motor wired the wrong way round. The brake brakes: shorted windings know no polarity
 ///   slow          the drive takes a command every 10 cycles, the brake too
 ///   delayed       the command of 10 cycles ago, the brake too
@@ -36,7 +36,7 @@ class MotorFaults {
   /// `step`: h, s, of the simulation.
   MotorFaults(const RobotModel& robot, std::uint64_t seed, double step);
 
-  /// Healthy, as new.
+  /// Without faults, as at the start.
   void reset() noexcept;
 
   /// Once per cycle: the commands as they were sent, one per joint; back come those that the drives follow. The result
@@ -58,10 +58,10 @@ class MotorFaults {
     FaultKind kind = FaultKind::kOk;
   };
   /// What a joint's motor does in this cycle.
-  enum class State : std::uint8_t { kHealthy, kDead, kBlocked, kMad, kReversed };
+  enum class State : std::uint8_t { kHealthy, kDead, kBlocked, kRandom, kReversed };
   struct Drive {
     State state = State::kHealthy;
-    double random_effort = 0;  ///< N·m, kMad
+    double random_effort = 0;  ///< N·m, kRandom
     bool anchored = false;
     double anchor = 0;  ///< rad, q*
     double limit = 0;   ///< N·m

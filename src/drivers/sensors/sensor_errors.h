@@ -25,7 +25,7 @@
 /// so old, the first one comes.
 ///
 /// Random numbers come from `seed` alone. Noise, bias and walk of each device are streams of their own: one that is
-/// set to zero changes none of the others. `reset` begins them all anew: the same bits again.
+/// set to zero changes none of the others. `reset` restarts all of them, with the same bits.
 
 #include <array>
 #include <cstddef>
@@ -95,7 +95,7 @@ class SensorErrors {
   /// Throws DriverError: a delay of more than kLongestDelay cycles. With `sensor_errors` off all steps change nothing.
   SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
-  /// Ordinary thread: begins anew.
+  /// Ordinary thread: restarts.
   void reset();
 
   /// Once per period: truth in, what is measured in its place. Real-time safe.

@@ -1,6 +1,6 @@
 #pragma once
-/// Encoders, gyro, accelerometer, battery gauge and e-stop button that fail as told; what they report, by component and
-/// kind:
+/// Encoders, gyro, accelerometer, battery gauge and e-stop button with injected faults; what they report, by component
+/// and kind:
 ///
 ///                 encoders of a side (all its wheels)           gyro, accelerometer
 ///   off           position and velocity NaN: the drive          not valid (SensorFrame::valid), NaN
@@ -14,10 +14,10 @@
 ///   delayed       the sample of 10 cycles ago
 ///   intermittent  as off, and healthy, at random
 ///
-///                 battery, where there is one                   e-stop button, which nobody presses
+///                 battery, where there is one                   e-stop button, not pressed
 ///   off           not valid, NaN                                pressed: its contacts open like a cut wire (ISO 13850)
 ///   stuck         voltage and current stay                      pressed, jammed
-///   garbage       voltage within twice, current within          pressed or not, anew in every cycle
+///   garbage       voltage within twice, current within          pressed or not, new in every cycle
 ///                 ±kGarbageCurrent, uniform
 ///   wrong         kWrongVoltage of the voltage                  pressed
 ///   slow          a sample every 10 cycles, held in between     not pressed
@@ -25,7 +25,7 @@
 ///   intermittent  as off, and healthy, at random                pressed and not, at random: a loose wire
 ///
 /// When and how long, see faults/faulty_output.h. Efforts and temperatures stay: the drive itself is well. All else of
-/// a frame is untouched. What is valid stays so in every kind but off: no device knows that it lies.
+/// a frame is untouched. What is valid stays so in every kind but off: a device does not detect its own wrong values.
 
 #include <array>
 #include <cstddef>
@@ -49,10 +49,10 @@ class SensorFaults {
 
   SensorFaults(const RobotModel& robot, std::uint64_t seed);
 
-  /// Healthy, as new.
+  /// Without faults, as at the start.
   void reset() noexcept;
 
-  /// Once per cycle: healthy samples in, what comes of them in their place. Bits of SensorValidity: what is not valid
+  /// Once per cycle: healthy samples in, the faulty samples in their place. Bits of SensorValidity: what is not valid
   /// any more. Real-time safe.
   std::uint64_t step(const InjectedFaults& faults, std::uint64_t cycle, Measurement& measurement) noexcept;
 

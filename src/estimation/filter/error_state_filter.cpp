@@ -63,17 +63,17 @@ double ErrorStateFilter::creep_across() const noexcept {
 }
 
 Vector2d ErrorStateFilter::force_on_tyres(const Vector3d& accelerometer) const noexcept {
-  const Vector2d doubtful = kGravity * (1 - tilt_beyond_doubt()) * rotation.row(2).head<2>().transpose();
+  const Vector2d doubtful = kGravity * (1 - significant_tilt()) * rotation.row(2).head<2>().transpose();
   const Vector2d swung = square(smooth_rate) * Vector2d(geometry_.middle_x, geometry_.middle_y);
   const Vector2d felt = (accelerometer - accelerometer_bias).head<2>() - doubtful - swung;
   return felt.cwiseMax(-kGravity).cwiseMin(kGravity);
 }
 
-double ErrorStateFilter::tilt_beyond_doubt() const noexcept {
+double ErrorStateFilter::significant_tilt() const noexcept {
   const double tilt = rotation.row(2).head<2>().norm();
-  const double doubt =
+  const double uncertainty =
       3 * std::sqrt(covariance(kOrientation, kOrientation) + covariance(kOrientation + 1, kOrientation + 1));
-  return tilt > doubt ? 1 - doubt / tilt : 0;
+  return tilt > uncertainty ? 1 - uncertainty / tilt : 0;
 }
 
 void ErrorStateFilter::predict(const Motion& motion) noexcept {
@@ -203,11 +203,11 @@ void ErrorStateFilter::transport(const Motion& motion, const Matrix3d& middle, c
   for (const int i : {0, 1, 2}) p(kVelocity + i, kVelocity + i) += shake;
   age(dt);
   const double path = (std::abs(motion.left_speed) + std::abs(motion.right_speed)) / 2 * dt;
-  const double slope = tilt_beyond_doubt() * rotation.row(2).head<2>().norm();
+  const double slope = significant_tilt() * rotation.row(2).head<2>().norm();
   const double slip = square(noise_.wheel_slip) + square(noise_.slope_slip * slope);
   p(kTravel, kTravel) += slip * std::abs(motion.left_speed) * dt;
   p(kTravel + 1, kTravel + 1) += slip * std::abs(motion.right_speed) * dt;
-  const double common = noise_.common_slip * (1 + kCautious * motion.caution);
+  const double common = noise_.common_slip * (1 + kCautious * motion.slip_proximity);
   p.block<2, 2>(kTravel, kTravel).array() += (square(common) + square(noise_.slope_creep * slope)) * path;
   const double wound = std::abs(smooth_rate - slow_rate) / kWindUp;
   const double twist =
@@ -234,12 +234,12 @@ void ErrorStateFilter::inject(const Column& error) noexcept {
   gyro_scale = std::clamp(gyro_scale + error[kGyroScale], -kMaxRatio, kMaxRatio);
 }
 
-void ErrorStateFilter::doubt_position(int axis, double deviation) noexcept {
+void ErrorStateFilter::inflate_position(int axis, double deviation) noexcept {
   const Vector3d along = rotation.col(axis) * deviation;
   covariance.block<3, 3>(kPosition, kPosition) += along * along.transpose();
 }
 
-void ErrorStateFilter::doubt_velocity(int axis, double deviation, double time) noexcept {
+void ErrorStateFilter::inflate_velocity(int axis, double deviation, double time) noexcept {
   Column error = Column::Zero();
   error[kVelocity + axis] = deviation;
   error.segment<3>(kPosition) = rotation.col(axis) * (deviation * time / 2);

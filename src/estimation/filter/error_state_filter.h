@@ -23,7 +23,7 @@
 /// pitching body enters with the height of the contact. Its lateral component is ±(1 + β)/2 of the effective wheel
 /// base. A tyre that pulls or holds creeps: its tread slides by χ f per speed, against the specific force f on the
 /// robot, along as across (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3, linear range). f is that of the
-/// middle between the contacts, without the part of gravity that is in doubt: a tilt within 3 σ makes no creep. The
+/// middle between the contacts, without the part of gravity that is uncertain: a tilt within 3 σ makes no creep. The
 /// Jacobian leaves creep out, χ f is some thousandths.
 ///
 /// The columns of ε, β and κ take the gyro's rate of a while ago, smoothed over kSmoothing and again over kWindUp: its
@@ -42,11 +42,11 @@
 ///                          Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2013, 15.3)
 ///   rolling                acceleration = accelerometer − ba + Rᵀ g, over a window in which everything rolled
 /// Encoders and contact consider tilt, accelerometer bias and gyro scale and do not correct them (Schmidt's gain, see
-/// `correct`): nothing that rolls tells the scale from the wheel base. The vertical contact corrects the velocity
+/// `correct`): rolling does not distinguish the scale from the wheel base. The vertical contact corrects the velocity
 /// alone. What is learned at rest leaves base_link where it is. Encoders and contact pull no harder than Huber's bound.
 ///
 /// A tyre winds up before it rolls, 0.4 mm by 20 N at 50 kN/m, and on wheels 0.5 m apart 1.6 mrad: noise of the wheels'
-/// turn where its rate changes. On a slope χ matters, which nobody knows to better than a half, and no two tyres have
+/// turn where its rate changes. On a slope χ matters, which is known to no better than a half, and no two tyres have
 /// the same: beyond what the tilt is known to (3 σ), the travel of both gets slope_creep times the slope as noise, that
 /// of either slope_slip.
 ///
@@ -131,7 +131,7 @@ class ErrorStateFilter {
     std::optional<Eigen::Vector3d> gyro;           ///< rad/s, mean over dt, bias included
     std::optional<Eigen::Vector3d> accelerometer;  ///< m/s², mean over dt, bias included
     double left_travel = 0, right_travel = 0;      ///< m over dt, as the model's radii measure it
-    double caution = 0;                            ///< 0 … 1: the wheels may be about to slide
+    double slip_proximity = 0;                     ///< 0 … 1: the wheels may be about to slide
     bool sliding = false;                          ///< no wheel holds the velocity
     double left_speed = 0, right_speed = 0;        ///< m/s, smoothed
   };
@@ -169,7 +169,7 @@ class ErrorStateFilter {
   /// The wheels stand, the body turns about their contacts by `turning` rad/s, base axes, known to `deviation`: that is
   /// the velocity.
   void rock(const Eigen::Vector3d& turning, double deviation) noexcept;
-  /// The robot has come to rest: the velocity is measured to be zero, which tells where it went wrong on the way.
+  /// The robot has come to rest: the velocity is measured to be zero, which corrects errors made on the way.
   void halt(double deviation) noexcept;
   /// Biases walk for `dt` s while nothing is predicted.
   void age(double dt) noexcept;
@@ -177,7 +177,7 @@ class ErrorStateFilter {
   Eigen::Vector3d acceleration_by(const Column& error) const noexcept;
   /// m/s², per base axis: of accelerometer − ba + Rᵀ g, through bias and tilt.
   Eigen::Vector3d acceleration_deviation() const noexcept;
-  /// The wheels of that side begin anew at `travel`.
+  /// The wheels of that side restart at `travel`.
   void anchor_travel(int side, double travel) noexcept;
   void turn_by(const Eigen::Vector3d& angle) noexcept;  ///< base axes, rad
 
@@ -185,8 +185,8 @@ class ErrorStateFilter {
   void inject(const Column& error) noexcept;
   /// The velocity along a base axis has been wrong by `deviation` m/s for `time` s, and has pulled on the
   /// accelerometer's bias, which is from now on known to kPulledBias at best.
-  void doubt_velocity(int axis, double deviation, double time) noexcept;
-  void doubt_position(int axis, double deviation) noexcept;  ///< m, along a base axis
+  void inflate_velocity(int axis, double deviation, double time) noexcept;
+  void inflate_position(int axis, double deviation) noexcept;  ///< m, along a base axis
   /// Sum of all errors injected by measurements since the last prediction.
   const Column& corrections() const noexcept { return corrections_; }
 
@@ -205,7 +205,7 @@ class ErrorStateFilter {
   double smooth_rate = 0;         ///< rad/s, about the base's z axis, over kSmoothing
   double slow_rate = 0;           ///< rad/s, smooth_rate over kWindUp
   Eigen::Vector2d force{0, 0};    ///< m/s², f along and across, of the last prediction, with as much of gravity as is
-                                  ///< beyond doubt; without accelerometer 0
+                                  ///< significant; without accelerometer 0
 
   const ContactGeometry& geometry() const noexcept { return geometry_; }
   const FilterNoise& noise() const noexcept { return noise_; }
@@ -221,10 +221,10 @@ class ErrorStateFilter {
   Innovation learn(const Column& ph, double innovation, double variance, std::span<const int> considered) noexcept;
   Innovation correct_rolling(const Column& ph, double innovation, double variance, double slack,
                              std::span<const int> considered) noexcept;
-  /// m/s², specific: of the middle between the contacts, with as much of gravity as is beyond doubt.
+  /// m/s², specific: of the middle between the contacts, with as much of gravity as is significant.
   Eigen::Vector2d force_on_tyres(const Eigen::Vector3d& accelerometer) const noexcept;
   /// Part of the tilt that is beyond 3 of its deviations, 0 … 1.
-  double tilt_beyond_doubt() const noexcept;
+  double significant_tilt() const noexcept;
   void transport(const Motion& motion, const Eigen::Matrix3d& middle, const Eigen::Matrix3d& turn,
                  const Eigen::Vector3d& u, const Eigen::Vector3d& omega) noexcept;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Sets the filter down: at a pose that somebody says, or where an earlier process left it.
+/// Sets the filter down: at a given pose, or where an earlier process left it.
 
 #include <Eigen/Core>
 
@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-inline constexpr double kUnknownSpeed = 2.0;  ///< m/s, standard deviation of a velocity that nobody has measured yet
+inline constexpr double kUnknownSpeed = 2.0;  ///< m/s, standard deviation of a velocity that is not measured yet
 
 /// base_link at x [m], y [m], yaw [rad]; height and tilt stay. The covariance of what is set is zero.
 void place(const Vector3& pose, ErrorStateFilter& filter) noexcept;

@@ -9,7 +9,7 @@ void ImuSamples::reset() noexcept {
   for (Channel* channel : {&gyro_, &accelerometer_}) {  // GCC 12 with a sanitizer takes `= {}` for uninitialised
     channel->mean.reset();
     channel->last.setZero();
-    channel->heard = channel->known = channel->fresh = channel->catches_up = false;
+    channel->received = channel->known = channel->fresh = channel->catches_up = false;
     channel->age = channel->last_gap = channel->gap = 0;
     channel->hold = kShortHold;
   }
@@ -27,14 +27,15 @@ void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sa
     channel.mean = *sample;
     if (continued && trapezoid) channel.mean = channel.last + (*sample - channel.last) * (steps / 2);
     channel.catches_up = continued && trapezoid && channel.age > dt;
-    if (channel.heard && dt > channel.hold) channel.mean.reset();  // one sample does not speak for a step that long
-    // Also from a sample that was lost in between: else who comes slower than the short hold would be lost for ever.
-    if (channel.heard && channel.age > 0) {
+    if (channel.received && dt > channel.hold) channel.mean.reset();  // one sample does not speak for a step that long
+    // Also from a sample that was lost in between: otherwise a device slower than the short hold would be lost for
+    // ever.
+    if (channel.received && channel.age > 0) {
       channel.gap = std::min(channel.age, std::exchange(channel.last_gap, channel.age));
       channel.hold = std::clamp(3 * channel.age, kShortHold, kLongHold);
     }
     channel.last = *sample;
-    channel.heard = channel.known = true;
+    channel.received = channel.known = true;
     channel.age = 0;
   } else if (channel.known && channel.age <= channel.hold) {
     channel.mean = channel.last;

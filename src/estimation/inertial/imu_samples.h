@@ -45,8 +45,8 @@ class ImuSamples {
   struct Channel {
     std::optional<Eigen::Vector3d> mean;
     Eigen::Vector3d last = Eigen::Vector3d::Zero();
-    bool heard = false;  ///< ever
-    bool known = false;  ///< and not lost
+    bool received = false;  ///< ever
+    bool known = false;     ///< and not lost
     bool fresh = false;
     bool catches_up = false;
     double age = 0;       ///< s since the last sample

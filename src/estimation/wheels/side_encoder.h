@@ -1,5 +1,5 @@
 #pragma once
-/// Encoder angles of one side's wheels → travel of that side, as differences to the last angles that were believed.
+/// Encoder angles of one side's wheels → travel of that side, as differences to the last angles that were accepted.
 ///
 ///   travel = mean over the side's wheels of signᵢ · radiusᵢ · (qᵢ − qᵢ,last)    [m]
 ///
@@ -7,7 +7,7 @@
 /// first after `reset`, is the offset: no travel. A sample that is missing, not finite or impossible is not used; the
 /// next good one brings the travel of the whole gap. Impossible is a difference above 2 · velocity_limit (1000 rad/s
 /// where the robot names none) times the time passed, plus kSlack. An encoder that stays impossible for more than
-/// kMaxRejected readings was set anew: then the present angles become the offset, and the travel in between is lost.
+/// kMaxRejected readings was reset: then the present angles become the offset, and the travel in between is lost.
 
 #include <cstdint>
 #include <vector>
@@ -20,7 +20,7 @@ namespace robot_control {
 enum class EncoderReading : std::uint8_t {
   kTravel,    ///< `travel` holds the travel
   kOffset,    ///< first reading
-  kLost,      ///< the angles began anew: an unknown travel was lost
+  kLost,      ///< the angles restarted: an unknown travel was lost
   kRejected,  ///< not used
 };
 
@@ -42,18 +42,18 @@ class SideEncoder {
   double travel() const noexcept { return travel_; }
   /// In which that travel was made. s
   double time() const noexcept { return time_; }
-  /// A reading was believed in the last step.
-  bool heard() const noexcept { return waiting_ == 0 && known_; }
-  bool known() const noexcept { return known_; }        ///< a reading was believed in this run
-  double waiting() const noexcept { return waiting_; }  ///< s since a reading was believed
-  double gap() const noexcept { return gap_; }          ///< s between the last two that were believed; at most kLongGap
+  /// A reading was accepted in the last step.
+  bool received() const noexcept { return waiting_ == 0 && known_; }
+  bool known() const noexcept { return known_; }        ///< a reading was accepted in this run
+  double waiting() const noexcept { return waiting_; }  ///< s since a reading was accepted
+  double gap() const noexcept { return gap_; }          ///< s between the last two that were accepted; at most kLongGap
 
  private:
   struct Wheel {
     std::size_t joint;
     double metres_per_radian;
     double velocity_bound;  ///< rad/s
-    double angle = 0;       ///< rad, as last believed
+    double angle = 0;       ///< rad, as last accepted
 
     Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept;
     bool measured(const SensorFrame& sensors) const noexcept;

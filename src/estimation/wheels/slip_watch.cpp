@@ -20,10 +20,10 @@ constexpr std::array<int, kContacts> kAxis{0, 0, 1, 2};
 constexpr double kVerticalSlack = 0.004;  // m: a bump that a wheel takes in its stride
 constexpr int kTurning[4] = {Filter::kGyroBias + 2, Filter::kRadiusRatio, Filter::kWheelBase, Filter::kGyroScale};
 constexpr double kSigmas = 4;
-constexpr double kDoubt = 3;          // deviations of the window's end speed: it was a slide that made the window
+constexpr double kInflation = 3;      // deviations of the window's end speed: it was a slide that made the window
 constexpr double kYoungest = 0.04;    // s
 constexpr double kShaken = 0.4;       // share of its limit from which a residual shakes the belief in a contact
-constexpr double kEase = 0.3;         // share of its limit up to which there is no caution
+constexpr double kEase = 0.3;         // share of its limit up to which the slip proximity is 0
 constexpr std::size_t kLearning = 2;  // index of the window that bias and tilt learn from
 constexpr double kSame = 0.3;         // part of the acceleration by which two of them differ at most
 
@@ -33,10 +33,10 @@ void SlipWatch::reset() noexcept {
   states_ = {};
   windows_ = {};
   since_judged_ = 0;
-  calm_ = kCalm;
+  no_slip_time_ = kNoSlipTime;
   shaken_ = 0;
   reasons_ = 0;
-  turn_nis_ = travel_nis_ = caution_ = 0;
+  turn_nis_ = travel_nis_ = slip_proximity_ = 0;
   turn_slips_ = false;
 }
 
@@ -99,12 +99,12 @@ void SlipWatch::step(const Sample& sample, Filter& filter) noexcept {
     window.turn += sample.dt * w.z();
   }
   for (State& state : states_) {
-    (state.believed ? state.trusted : state.doubted) += sample.dt;
-    if (state.trusted >= kCalm) state.unsure = 0;
+    (state.trusted ? state.trusted_time : state.distrusted_time) += sample.dt;
+    if (state.trusted_time >= kNoSlipTime) state.unsure = 0;
   }
-  const auto believed = [](const State& state) { return state.believed; };
-  calm_ = std::ranges::all_of(states_, believed) ? calm_ + sample.dt : 0;
-  if (calm_ == 0) shaken_ = 0;
+  const auto trusted = [](const State& state) { return state.trusted; };
+  no_slip_time_ = std::ranges::all_of(states_, trusted) ? no_slip_time_ + sample.dt : 0;
+  if (no_slip_time_ == 0) shaken_ = 0;
 
   since_judged_ += sample.dt;
   if (since_judged_ >= kJudgeEvery) {
@@ -168,37 +168,38 @@ bool SlipWatch::judge(const Window& window, Filter& filter) noexcept {
   std::array<bool, kContacts> slides{};
   bool found = false;
   for (std::size_t c = 0; c < kContacts; ++c) {
-    slides[c] = states_[c].believed && excess(window, c, filter) > 1;
+    slides[c] = states_[c].trusted && excess(window, c, filter) > 1;
     found = found || slides[c];
   }
   if (!found) return false;
   const Window& whole = oldest_that_sees(slides, window, filter);
   const double age = whole.age;
-  std::array<double, 3> doubt{};
+  std::array<double, 3> inflation{};
   std::array<double, 3> way{};
   for (std::size_t c = 0; c < kContacts; ++c) {
-    // What shakes the belief in one contact shakes that in the others: two wheels on ice rarely begin together.
-    if (!states_[c].believed || !(slides[c] || excess(window, c, filter) > kShaken)) continue;
+    // A contact near its limit is distrusted together with another that exceeds it: two wheels on ice rarely begin
+    // together.
+    if (!states_[c].trusted || !(slides[c] || excess(window, c, filter) > kShaken)) continue;
     const double unsure = states_[c].unsure;
-    states_[c] = {.believed = false, .excess = residual(window, c) / window.age};
+    states_[c] = {.trusted = false, .excess = residual(window, c) / window.age};
     const auto axis = static_cast<std::size_t>(kAxis[c]);
     if (std::abs(residual(whole, c)) > std::abs(way[axis])) way[axis] = residual(whole, c);
-    doubt[axis] = std::max({doubt[axis], kDoubt * std::sqrt(variance(whole, c, filter)) / age, unsure});
+    inflation[axis] = std::max({inflation[axis], kInflation * std::sqrt(variance(whole, c, filter)) / age, unsure});
   }
-  take_back(whole, {doubt[0] > 0, doubt[1] > 0, doubt[2] > 0}, filter);
+  undo(whole, {inflation[0] > 0, inflation[1] > 0, inflation[2] > 0}, filter);
   for (int axis = 0; axis < 3; ++axis) {
-    const double deviation = doubt[static_cast<std::size_t>(axis)];
-    if (deviation > 0) filter.doubt_velocity(axis, deviation, age);
-    if (deviation > 0) filter.doubt_position(axis, way[static_cast<std::size_t>(axis)] / 2);
+    const double deviation = inflation[static_cast<std::size_t>(axis)];
+    if (deviation > 0) filter.inflate_velocity(axis, deviation, age);
+    if (deviation > 0) filter.inflate_position(axis, way[static_cast<std::size_t>(axis)] / 2);
   }
   return true;
 }
 
-/// What was believed of a sliding contact since the window began: the whole way, the velocity along its axis, and what
+/// What was used of a sliding contact since the window began: the whole way, the velocity along its axis, and what
 /// that made of the acceleration. Bias and tilt keep what they have learned apart from each other. Of wheels also yaw,
 /// the gyro's bias about it, and calibration. Older windows keep the rest of their corrections; younger ones began with
-/// what was wrong, and begin anew.
-void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes, Filter& filter) noexcept {
+/// what was wrong, and restart.
+void SlipWatch::undo(const Window& window, const std::array<bool, 3>& axes, Filter& filter) noexcept {
   const double age = window.age;
   const Filter::Column& made = window.corrections;
   Filter::Column back = Filter::Column::Zero();
@@ -225,9 +226,9 @@ void SlipWatch::take_back(const Window& window, const std::array<bool, 3>& axes,
   }
 }
 
-/// A window in which everything rolled tells what the accelerometer's bias and the tilt are together.
+/// A window in which everything rolled shows what the accelerometer's bias and the tilt are together.
 void SlipWatch::learn_acceleration(const Window& window, Filter& filter) noexcept {
-  if (!window.inertial || calm_ < kCalm) return;
+  if (!window.inertial || no_slip_time_ < kNoSlipTime) return;
   const double per_way = 2 / square(window.age);
   const Eigen::Vector3d excess_by = per_way * Eigen::Vector3d{(residual(window, kLeft) + residual(window, kRight)) / 2,
                                                               residual(window, kLateral), residual(window, kVertical)};
@@ -244,10 +245,10 @@ void SlipWatch::learn_acceleration(const Window& window, Filter& filter) noexcep
   }
 }
 
-void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
+void SlipWatch::re_accept(const Window& window, const Filter& filter) noexcept {
   for (std::size_t c = 0; c < kContacts; ++c) {
     State& state = states_[c];
-    if (state.believed) continue;
+    if (state.trusted) continue;
     const int axis = kAxis[c];
     const double excess = residual(window, c) / window.age;
     const double deviation = std::sqrt(filter.covariance(Filter::kVelocity + axis, Filter::kVelocity + axis));
@@ -261,7 +262,7 @@ void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
     state.excess = excess;
     state.agreed = agrees && steady ? state.agreed + 1 : 0;
     const double enough = c == kVertical ? kLanded : kAgree * std::clamp(deviation / kSure, 1.0, kLonger);
-    if (static_cast<double>(state.agreed) >= enough || state.doubted > kDeadlock) {
+    if (static_cast<double>(state.agreed) >= enough || state.distrusted_time > kDeadlock) {
       state = {.unsure = deviation};
       if (c == kVertical) continue;
       for (Window& other : windows_) {
@@ -274,12 +275,12 @@ void SlipWatch::heal(const Window& window, const Filter& filter) noexcept {
 
 void SlipWatch::judge(Filter& filter) noexcept {
   bool found = false;
-  caution_ = 0;
+  slip_proximity_ = 0;
   for (const Window& window : windows_) {
     if (!window.inertial || window.age < kYoungest) continue;
-    caution_ = std::max({caution_, excess(window, kLeft, filter), excess(window, kRight, filter)});
+    slip_proximity_ = std::max({slip_proximity_, excess(window, kLeft, filter), excess(window, kRight, filter)});
   }
-  caution_ = std::clamp((caution_ - kEase) / (1 - kEase), 0.0, 1.0);
+  slip_proximity_ = std::clamp((slip_proximity_ - kEase) / (1 - kEase), 0.0, 1.0);
   for (std::size_t i = 0; i < kWindows && !found; ++i) {
     if (windows_[i].inertial && windows_[i].age >= 0.4 * kLengths[i]) found = judge(windows_[i], filter);
   }
@@ -288,15 +289,15 @@ void SlipWatch::judge(Filter& filter) noexcept {
     const Window& other = windows_[1];
     const bool first = one.age >= kYoungest && (one.age < other.age || other.age < kYoungest);
     const Window& young = first ? one : other;
-    if (young.age >= kYoungest) heal(young, filter);
+    if (young.age >= kYoungest) re_accept(young, filter);
   }
   if (!windows_[0].inertial) {
     for (State& state : states_) state = {};
   }
   // The newer window of the two looks over the shorter time; the turn needs no accelerometer.
   const Window& longest = windows_[4].age > windows_[5].age ? windows_[4] : windows_[5];
-  const bool heard = std::isfinite(longest.measured[kLeft]) && std::isfinite(longest.measured[kRight]);
-  if (longest.age > 0 && heard) {
+  const bool received = std::isfinite(longest.measured[kLeft]) && std::isfinite(longest.measured[kRight]);
+  if (longest.age > 0 && received) {
     const double left = residual(longest, kLeft);
     const double right = residual(longest, kRight);
     const auto& noise = filter.noise();
@@ -316,21 +317,21 @@ void SlipWatch::judge(Filter& filter) noexcept {
     const bool twin = i % 2 == 1 && window.age == windows_[i - 1].age && window.age >= kLengths[i] / 2 - 1e-9;
     if (twin || window.age >= kLengths[i] - 1e-9) open(window, filter);
   }
-  tell(filter);
+  report(filter);
 }
 
-void SlipWatch::tell(const Filter& filter) noexcept {
+void SlipWatch::report(const Filter& filter) noexcept {
   reasons_ = 0;
   for (const std::size_t c : {kLeft, kRight}) {
-    if (states_[c].believed || states_[c].agreed >= kTold) continue;
+    if (states_[c].trusted || states_[c].agreed >= kReported) continue;
     reasons_ |= c == kLeft ? kSlipLeft : kSlipRight;
     const double forward = filter.velocity.x();
     const bool faster = std::abs(forward + states_[c].excess) > std::abs(forward);
     reasons_ |= faster ? kSlipSpinning : kSlipStalled;
   }
   if (turn_slips_) reasons_ |= kSlipTurn;
-  if (!states_[kLateral].believed && states_[kLateral].agreed < kTold) reasons_ |= kSlipSideways;
-  if (!states_[kVertical].believed) reasons_ |= kSlipLifted;
+  if (!states_[kLateral].trusted && states_[kLateral].agreed < kReported) reasons_ |= kSlipSideways;
+  if (!states_[kVertical].trusted) reasons_ |= kSlipLifted;
 }
 
 }  // namespace robot_control

@@ -10,20 +10,21 @@
 /// where the robot has turned since), the accelerometer's noise n, the path m, and what gyro bias, ratio, wheel base
 /// and gyro scale may be wrong by, T:
 ///   σ² = V τ² + A τ⁴/4 + n² τ³/3;   wheels: + 2 encoder² + slip_noise² |m| + T
-/// Beyond kSigmas σ + kCreep |m| + slack the contact is not believed. Windows of 0.1 s find what happens suddenly,
+/// Beyond kSigmas σ + kCreep |m| + slack the contact is not trusted. Windows of 0.1 s find what happens suddenly,
 /// those of 0.3 s and 1 s what happens slowly; two of each length, half of it apart. What the sliding contact has made
-/// of velocity, way and acceleration is taken back from the oldest window that saw it come, and the velocity is
-/// doubted. A contact is believed again when its speed agrees with the filter's for kAgree judgements in a row, or
-/// after kDeadlock seconds; its residuals begin anew. Where the velocity is known to less than kSure, agreement says
+/// of velocity, way and acceleration is removed from the oldest window that saw it come, and the velocity is
+/// doubted. A contact is trusted again when its speed agrees with the filter's for kAgree judgements in a row, or
+/// after kDeadlock seconds; its residuals restart. Where the velocity is known to less than kSure, agreement says
 /// less and must last as many times longer, up to kLonger, for a wheel that still slides would take the velocity with
-/// it; told to slip it is for kTold judgements of agreement at most: then it is on probation, with a confidence of 0.
-/// A contact that is doubted again within kCalm has told nothing: the velocity is known no better than before.
+/// it; it is reported as slipping for kReported judgements of agreement at most: then it is on probation, with a
+/// confidence of 0. A contact that is distrusted again within kNoSlipTime has contributed nothing: the velocity is
+/// known no better than before.
 ///
 /// What the accelerometer's bias and the tilt are together is learned here, from windows of 0.3 s in which everything
-/// rolled, kCalm seconds after the last doubt: a wheel that only begins to slide would else be believed to be a bias. A
-/// small turn is a short lever between the two: kRoughness is what a window's mean is worth, or a shake would pry them
-/// apart. A window that nearly doubts a contact teaches nothing, unless kSteady in a row say the same: no slide keeps
-/// its acceleration and stays as slow.
+/// rolled, kNoSlipTime seconds after the last distrust: a wheel that only begins to slide would otherwise be taken for
+/// a bias. A small turn is a short lever between the two: kRoughness is what a window's mean is worth, or a shake would
+/// pry them apart. A window close to the limit of a contact is not used for learning, unless kSteady in a row say the
+/// same: no slide keeps its acceleration and stays as slow.
 ///
 /// Rolling rubber creeps by up to some percent under force (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3):
 /// kCreep = 3 % is not called slip.
@@ -47,33 +48,34 @@ class SlipWatch {
   static constexpr double kAgree = 4;                 ///< judgements, where the velocity is known to kSure
   static constexpr double kSure = 0.007;              ///< m/s; 0.005 … 0.01 do in simulated slides
   static constexpr double kLonger = 10;               ///< times at most
-  static constexpr std::uint64_t kTold = 12;          ///< judgements after which a contact is no longer told to slip
-  static constexpr std::uint64_t kLanded = 2;         ///< the same, of the vertical: what lands stays on the ground
-  static constexpr double kAgreeSpeed = 0.02;         ///< m/s, some counts of a usual encoder in the youngest window
-  static constexpr double kCalm = 1.0;                ///< s
+  static constexpr std::uint64_t kReported =
+      12;                                      ///< judgements after which a contact is no longer reported as slipping
+  static constexpr std::uint64_t kLanded = 2;  ///< the same, of the vertical: what lands stays on the ground
+  static constexpr double kAgreeSpeed = 0.02;  ///< m/s, some counts of a usual encoder in the youngest window
+  static constexpr double kNoSlipTime = 1.0;   ///< s
   static constexpr double kDeadlock = 10.0;    ///< s; by then a tilt of 1 mrad has made 0.1 m/s: the wheels know better
   static constexpr double kRoughness = 0.05;   ///< m/s², of a window's mean: a body that stops rocks by as much
   static constexpr std::uint64_t kSteady = 5;  ///< windows
 
   struct Sample {
     double dt = 0;
-    double left = 0, right = 0;  ///< m, travel measured over dt; NaN: not heard
+    double left = 0, right = 0;  ///< m, travel measured over dt; NaN: no reading
     bool inertial = false;       ///< gyro and accelerometer were there
   };
 
-  void reset() noexcept;                                ///< all contacts are believed
-  void begin(const ErrorStateFilter& filter) noexcept;  ///< the same, and windows begin anew
-  void renew(const ErrorStateFilter& filter) noexcept;  ///< windows begin anew; what is doubted stays so
+  void reset() noexcept;                                ///< all contacts are trusted
+  void begin(const ErrorStateFilter& filter) noexcept;  ///< the same, and windows restart
+  void renew(const ErrorStateFilter& filter) noexcept;  ///< windows restart; distrusted contacts stay so
 
-  /// After the filter's prediction and corrections of this cycle. Takes back corrections from the filter where a
+  /// After the filter's prediction and corrections of this cycle. Undoes corrections from the filter where a
   /// contact is found to slip.
   void step(const Sample& sample, ErrorStateFilter& filter) noexcept;
 
-  bool believed(Contact contact) const noexcept { return states_[static_cast<std::size_t>(contact)].believed; }
+  bool trusts(Contact contact) const noexcept { return states_[static_cast<std::size_t>(contact)].trusted; }
   /// How near to sliding the wheels are, by the last judgement: 0 … 1, the largest residual over its limit.
-  double caution() const noexcept { return caution_; }
-  /// All has rolled for kCalm seconds: what is learned of the wheels and the gyro may be.
-  bool calm() const noexcept { return calm_ >= kCalm && caution_ == 0 && !turn_slips_; }
+  double slip_proximity() const noexcept { return slip_proximity_; }
+  /// All has rolled for kNoSlipTime seconds: what is learned of the wheels and the gyro may be.
+  bool no_recent_slip() const noexcept { return no_slip_time_ >= kNoSlipTime && slip_proximity_ == 0 && !turn_slips_; }
   std::uint64_t reasons() const noexcept { return reasons_; }  ///< SlipReason bits
   /// Residuals of the last judgement over their deviation, squared: of the turn (gyro), of the travel (accelerometer).
   double turn_nis() const noexcept { return turn_nis_; }
@@ -102,12 +104,12 @@ class SlipWatch {
     double turn = 0;              ///< rad
   };
   struct State {
-    bool believed = true;
+    bool trusted = true;
     std::uint64_t agreed = 0;
-    double doubted = 0;  ///< s
-    double excess = 0;   ///< m/s, wheel faster than the ground
-    double trusted = 0;  ///< s, since it was believed again
-    double unsure = 0;   ///< m/s, deviation of the velocity by then; for kCalm seconds
+    double distrusted_time = 0;  ///< s
+    double excess = 0;           ///< m/s, wheel faster than the ground
+    double trusted_time = 0;     ///< s, since it was trusted again
+    double unsure = 0;           ///< m/s, deviation of the velocity by then; for kNoSlipTime seconds
   };
 
   void open(Window& window, const ErrorStateFilter& filter) const noexcept;
@@ -118,20 +120,20 @@ class SlipWatch {
   static double turning_variance(const Window& window, const Eigen::Vector4d& by) noexcept;
   static Eigen::Vector4d by_turning(const Window& window, int side, const ErrorStateFilter& filter) noexcept;
   static double excess(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
-  void take_back(const Window& window, const std::array<bool, 3>& axes, ErrorStateFilter& filter) noexcept;
+  void undo(const Window& window, const std::array<bool, 3>& axes, ErrorStateFilter& filter) noexcept;
   void learn_acceleration(const Window& window, ErrorStateFilter& filter) noexcept;
-  void heal(const Window& window, const ErrorStateFilter& filter) noexcept;
+  void re_accept(const Window& window, const ErrorStateFilter& filter) noexcept;
   static double residual(const Window& window, std::size_t contact) noexcept;
   static double variance(const Window& window, std::size_t contact, const ErrorStateFilter& filter) noexcept;
-  void tell(const ErrorStateFilter& filter) noexcept;
+  void report(const ErrorStateFilter& filter) noexcept;
 
   std::array<Window, kWindows> windows_;
   std::array<State, kContacts> states_;
   double since_judged_ = 0;
-  double calm_ = 0;                                      ///< s since a contact was doubted
-  std::uint64_t shaken_ = 0;                             ///< windows in a row that nearly doubted one
+  double no_slip_time_ = 0;                              ///< s since a contact was distrusted
+  std::uint64_t shaken_ = 0;                             ///< windows in a row that were close to a limit
   Eigen::Vector3d shaken_by_ = Eigen::Vector3d::Zero();  ///< m/s², by which the last one did
-  double caution_ = 0;
+  double slip_proximity_ = 0;
   std::uint64_t reasons_ = 0;
   double turn_nis_ = 0;
   double travel_nis_ = 0;

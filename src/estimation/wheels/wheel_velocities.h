@@ -3,7 +3,7 @@
 ///
 /// The speed that an encoder reports is differenced over one period and jumps by a count per period: 1.5 rad/s with
 /// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastest are left out; after
-/// kForgotten without one, the next begins anew.
+/// kForgotten without one, the next restarts.
 
 #include <algorithm>
 #include <array>

@@ -16,7 +16,7 @@
 ///
 /// More than kMaxWheels candidates, of which the URDF drives none, are the rollers of a track: refused.
 ///
-/// Left and right are told by position: names lie. What a name says otherwise is noted.
+/// Left and right are determined by position, because names may be wrong. A contradicting name is noted.
 ///
 /// All else that rolls near the floor is a caster. Its swivel turns it into the direction of travel by its trail
 /// (swivel.h). Without a swivel the robot could turn only by dragging it sideways: it is taken for an omni wheel

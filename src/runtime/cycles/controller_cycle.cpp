@@ -75,7 +75,7 @@ bool ControllerCycle::step() noexcept {
   const std::uint64_t run = state_.head.run;
   const std::uint64_t cycle = state_.head.cycle;
   const Lookup sensors_found = channels_.sensors->at(run, cycle, sensors_);
-  // A corrupt head is believed only where the sensors know it.
+  // The head of a corrupt frame is used only if sensors of that cycle exist.
   if (found == Lookup::kCorrupt && sensors_found != Lookup::kFrame) return false;
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(state_.head);

@@ -1,6 +1,6 @@
 #pragma once
 /// The controller's duty in one cycle: state k (which woke it), sensors k and the newest live permit ≤ k-1
-/// → command k. A token is passed on, and a state that is corrupt is one.
+/// → command k. A token is passed on; a corrupt state counts as a token.
 
 #include <cstdint>
 

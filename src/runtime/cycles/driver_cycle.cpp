@@ -62,7 +62,7 @@ GateInput DriverCycle::latch() noexcept {
   if (cycle_ == 0) return input;
   const std::uint64_t last = cycle_ - 1;
   input.command_found = channels_.command->newest_within(run_, cycle_ - std::min(cycle_, kCommandLife), last, command_);
-  // Further back than a permit lives: one that has expired is told from none.
+  // Further back than a permit lives, to distinguish an expired permit from a missing one.
   constexpr std::uint64_t kSearched = kFrameSlots - 1;
   input.permit_found = channels_.permit->newest_within(run_, cycle_ - std::min(cycle_, kSearched), last, permit_);
   return input;
@@ -76,7 +76,7 @@ void DriverCycle::step() noexcept {
   SensorFrame& sensors = trace_.sensors;
   driver_.read(sensors);
   sensors.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
-  sensors.boot = boot_;
+  sensors.driver_instance = driver_instance_;
   sensors.gate = gate_.report();
   sensors.overruns = overruns_;
   sensors.slipped_ns = slipped_ns_;

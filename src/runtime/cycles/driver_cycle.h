@@ -3,7 +3,7 @@
 ///   latch command k-1 and permit k-1 → sample sensors of x(t_k) → publish sensors k → gate
 ///   → apply torque over [t_k, t_k+1).
 /// Latched are the newest command of cycles k-4 … k-1 and the newest permit of cycles k-7 … k-1, of which the gate
-/// tells one that has expired from none.
+/// distinguishes an expired one from a missing one.
 /// Sensor-to-torque delay is exactly one period. No clock is read here; `now` stamps the trace only.
 
 #include <cstdint>
@@ -29,8 +29,8 @@ class DriverCycle {
   DriverCycle(Driver& driver, const RobotModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
               const GateParameters& gate = {});
 
-  /// The number of this process; see SensorFrame::boot.
-  void set_boot(std::uint64_t boot) noexcept { boot_ = boot; }
+  /// The number of this process; see SensorFrame::driver_instance.
+  void set_driver_instance(std::uint64_t driver_instance) noexcept { driver_instance_ = driver_instance; }
 
   /// Announces a run in the head of the sensors channel and wakes its readers, so that they attach to it.
   /// `run`: random, not 0. Cycles count from 0.
@@ -52,10 +52,10 @@ class DriverCycle {
   /// A simulated machine has these faults from the next tick on.
   void inject(const InjectedFaults& faults) noexcept;
 
-  /// Wall clock: the next tick is due then. Whatever its stamp lies behind that, and has not slipped, was held.
+  /// Wall clock: the next tick is due then. The part of its lag that has not slipped was held.
   void set_due(std::int64_t deadline_ns) noexcept;
 
-  /// Hardware whose node was late: the next tick is that many cycles further on.
+  /// Hardware, after its node was late: the next tick is that many cycles further on.
   void skip(std::uint64_t cycles) noexcept { cycle_ += cycles; }
 
   std::uint64_t run() const noexcept { return run_; }
@@ -77,7 +77,7 @@ class DriverCycle {
   Gate gate_;
   std::int64_t period_ns_;
   Now now_;
-  std::uint64_t boot_ = 0;
+  std::uint64_t driver_instance_ = 0;
   std::uint64_t run_ = 0;
   std::uint64_t cycle_ = 0;
   std::int64_t start_ns_ = 0;

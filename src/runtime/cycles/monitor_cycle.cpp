@@ -97,7 +97,7 @@ bool MonitorCycle::step() noexcept {
 }
 
 void MonitorCycle::note_corrupt_sensors() noexcept {
-  if (++corrupt_sensors_ != FrameFacts::kPersistence || input_.sensors == nullptr) return;
+  if (++corrupt_sensors_ != FrameConditions::kPersistence || input_.sensors == nullptr) return;
   monitor_.sensors_corrupt();
   publish_again();
 }

@@ -87,7 +87,7 @@ class MonitorCycle {
   OperatorInput operator_input_;  ///< inbox and script added up
   bool silent_ = false;
   std::uint64_t corrupt_sensors_ = 0;  ///< in a row
-  SensorFrame arrived_;                ///< as read, not yet believed
+  SensorFrame arrived_;                ///< as read, not yet checked
   SensorFrame sensors_;                ///< of the last step
   StateFrame state_;
   CommandFrame command_;

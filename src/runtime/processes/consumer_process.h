@@ -1,6 +1,5 @@
 #pragma once
-/// What the three nodes have in common that a frame wakes: state_estimator, diff_drive_controller,
-/// safety_monitor.
+/// The common part of the three nodes that a frame wakes: state_estimator, diff_drive_controller, safety_monitor.
 ///
 /// Such a node writes one channel (`output`), always reads the sensors, and is woken by the sensors or by another
 /// input. It starts once a living driver has announced the robot that it was itself started with.
@@ -71,8 +70,8 @@ class ConsumerProcess : public Process {
   bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
 
   /// The loop: the frame that is there first, then one step per wake. `silence` is called when nothing woke it for
-  /// `wait_ns`; a driver that begins, or an object that is mapped anew, wakes it and begins another wait. Whether a
-  /// driver was away is thus not to be told by silence alone.
+  /// `wait_ns`; a driver that starts, or an object that is mapped again, wakes it and restarts the wait. So silence
+  /// alone does not show whether the driver was interrupted.
   template <class Cycle, class Waking, class Silence>
   void consume(Cycle& cycle, const FrameReader<Waking>& wake, std::int64_t wait_ns, Silence silence) noexcept {
     while (!stopping().load(std::memory_order_relaxed)) {
@@ -94,7 +93,7 @@ class ConsumerProcess : public Process {
     return sensors_.reader.newest(first) != Lookup::kFrame || !current(sensors_.reader, first.head, robot_.hash);
   }
 
-  /// Tells the driver that this node waits on the sensors of its current run.
+  /// Publishes for the driver that this node waits on the sensors of its current run.
   void attach() noexcept {
     const auto* memory = sensors_.reader.memory();
     if (memory != nullptr) attach_to_run(output_.writer.memory()->head, attached_run(memory->head));

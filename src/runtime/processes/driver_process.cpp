@@ -59,7 +59,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   if (lockstep() && sensors_.reader.newest(last) == Lookup::kFrame) {
     cycle_->set_start(last.head.stamp_ns + loop_parameters().period_ns());
   }
-  cycle_->set_boot(mint_number());
+  cycle_->set_driver_instance(mint_number());
   cycle_->begin_run(mint_number());
   if (!driver_->simulated()) return;
   services_ = std::make_unique<SimulationServices>(

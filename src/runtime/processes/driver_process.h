@@ -6,7 +6,7 @@
 /// missing, and `missing` says which.
 ///
 /// A simulated machine can be paused, stepped, reset and given faults (simulation_services.h). While the loop stands
-/// it publishes its last frame ten times a second, as paused; afterwards the wall-clock grid begins anew.
+/// it publishes its last frame ten times a second, as paused; afterwards the wall-clock grid restarts.
 
 #include <atomic>
 #include <cstdint>

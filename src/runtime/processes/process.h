@@ -26,7 +26,7 @@ enum class LoopPriority : int { kDriver = 83, kMonitor = 82, kEstimator = 81, kC
 
 class Process {
  public:
-  /// Throws RealtimeError when realtime: required cannot be granted: now, not once everybody is there.
+  /// Throws RealtimeError when realtime: required cannot be granted: at start-up, before the other nodes run.
   Process(const LoopParameters& loop, LoopPriority priority, std::string thread_name);
   virtual ~Process();
   Process(const Process&) = delete;
@@ -41,7 +41,7 @@ class Process {
   /// True once the loop has ended by itself (mujoco_plant after `cycles`).
   bool finished() const noexcept { return finished_.load(); }
 
-  /// Who this node is waiting for, by node name; empty when it has all it needs. Only for the thread that polls.
+  /// The nodes that this node is waiting for, by name; empty if none. Only for the thread that polls.
   virtual std::vector<std::string> missing() const = 0;
 
   /// The same as of the last `poll`; any thread.

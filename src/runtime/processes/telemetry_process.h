@@ -4,8 +4,8 @@
 /// It owns the read positions. Only once all four rings are mapped and the positions stored does it say so
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
 ///
-/// A disk that takes no more ends the log, not this process: the rings are emptied on, so that nobody waits for room,
-/// and what is not written is counted. So does a log that fills telemetry.quota (log_folder.h).
+/// A disk that takes no more ends the log, not this process: the rings are still emptied, so that no node waits for
+/// space, and what is not written is counted. So does a log that fills telemetry.quota (log_folder.h).
 
 #include <cstdint>
 #include <memory>
@@ -48,7 +48,7 @@ class TelemetryProcess {
   /// be called afterwards.
   void finish();
 
-  /// Nodes whose ring is not there or not owned by a living process.
+  /// Nodes whose ring is not there or not owned by a running process.
   std::vector<std::string> missing() const;
 
   TelemetryCounts counts() const;

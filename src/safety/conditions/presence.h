@@ -1,14 +1,15 @@
 #pragma once
-/// Are the other nodes there, and does the monitor itself keep up?
+/// Do the other nodes make progress, and does the monitor itself?
 ///
-///   estimator lost   k − k_seen ≥ loss_cycles, from the first state of this run on
-///   controller lost  the same of commands, while states come: without a state there is no command to miss
-///   command stale    in each of the last loss_cycles cycles the command descended from another state than its own
-///                    cycle's (CommandFrame::state_cycle ≠ head.cycle), though that state was there: a controller that
-///                    publishes old content under a new head, or that is late all the time
-///   monitor late     k − k_last > loss_cycles between two steps of one run: others would have been judged too late
+///   estimator lost   k − k_last ≥ loss_cycles, from the first state of this run on
+///   controller lost  the same for commands, counted only while states arrive: without a state no command is due
+///   command stale    in each of the last loss_cycles cycles the command was computed from a state of another cycle
+///                    than its own (CommandFrame::state_cycle ≠ head.cycle), although that state existed: a controller
+///                    that publishes old content under a new head, or that is always late
+///   monitor late     k − k_last > loss_cycles between two steps of one run: the other losses would have been detected
+///                    too late
 ///
-/// Counts are of cycles, not of looks: a monitor that skips cycles is no slower to see a loss.
+/// All counts are cycles of the driver, not steps of the monitor: skipped cycles do not delay the detection of a loss.
 
 #include <cstdint>
 
@@ -21,13 +22,13 @@ class Presence {
  public:
   explicit Presence(std::uint64_t loss_cycles) noexcept : loss_cycles_(loss_cycles) {}
 
-  /// Nobody of this run was seen.
+  /// A new run: nothing was received yet.
   void enter_run() noexcept { *this = Presence(loss_cycles_); }
 
   /// `elapsed`: cycles since the last step, ≥ 1.
   void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
-  /// MissingNode bits: not seen in this run.
+  /// MissingNode bits: nothing received in this run.
   std::uint64_t missing() const noexcept { return missing_; }
 
  private:

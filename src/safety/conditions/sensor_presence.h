@@ -1,10 +1,11 @@
 #pragma once
-/// Do the sensors report at all?
+/// Do the sensors report?
 ///
 ///   encoders lost  the joint samples are not valid, or fewer than the robot has wheels
-///   IMU lost       gyro or accelerometer is not valid, and was in this run: a robot without an IMU may drive
+///   IMU lost       gyro or accelerometer is not valid, but was valid earlier in this run: a robot without an IMU may
+///                  drive
 ///
-/// Value and limit of both: s without a report, and their persistence.
+/// Value and limit of both: s without a valid sample, and the persistence.
 
 #include <cstddef>
 #include <cstdint>

@@ -59,7 +59,7 @@ void TorqueOscillation::enter_run() noexcept {
 
 void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targets, const WheelMotion& motion,
                              std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  Finding finding = kNothingFound;
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < count_; ++i) {
     const double measured = input.sensors->joints[i].effort;
     if (input.command != nullptr) commanded_[i] = input.command->joints[i].effort;
@@ -68,10 +68,10 @@ void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targ
       continue;
     }
     follow(i, measured, commanded_[i], targets[i], elapsed);
-    finding = worse(finding, judge(i, motion));
+    measurement = worse(measurement, judge(i, motion));
   }
-  out.judge(watch_, finding, elapsed);
-  warning_.step(finding, elapsed);
+  out.judge(watch_, measurement, elapsed);
+  warning_.step(measurement, elapsed);
   if (!watch_.active()) out.add(warning_);
 }
 
@@ -93,10 +93,10 @@ void TorqueOscillation::follow(std::size_t wheel, double measured, double comman
   of.target = target;
 }
 
-Finding TorqueOscillation::judge(std::size_t wheel, const WheelMotion& motion) const noexcept {
+ConditionMeasurement TorqueOscillation::judge(std::size_t wheel, const WheelMotion& motion) const noexcept {
   const Wheel& of = wheels_[wheel];
   const double most = effort_limit_[wheel];
-  if (most <= 0) return kNothingFound;
+  if (most <= 0) return kNothingMeasured;
   const double explained = 2 * of.planned.rms() + count_ripple_[wheel] * motion.quantum(wheel);
   const double ripple = std::min(of.measured.rms(), of.commanded.rms());
   return beyond(wheel, ripple / most, watch_.limit() + explained / most);

@@ -1,19 +1,20 @@
 #pragma once
-/// Does a motor pull to and fro, for nothing that the motion asks of it?
+/// Does a motor torque oscillate although the planned motion does not require it?
 ///
-///   ripple     τ minus its low pass of kSlow; RMS over kWindow. Of the torque that was measured and of that which was
-///              commanded, the smaller: what the gate cuts off is its own doing, and so is what a motor makes of it
-///   explained  J·α*, of the planned acceleration α* of the wheel's target, in the same way; J: of the loaded wheel,
-///              the larger of driving straight and turning (control/wheel_loops/feed_forward.h, of the robot as
+///   ripple     τ minus its low pass of kSlow; RMS over kWindow. The smaller of the ripples of measured and commanded
+///              torque: a command that the gate clamps, and ripple that the motor adds, do not count
+///   explained  J·α*, α* the planned acceleration of the wheel's target, filtered in the same way. J: inertia of the
+///              loaded wheel, the larger of driving straight and turning (control/wheel_loops/feed_forward.h, robot as
 ///              described)
-///   counted    SafetyParameters::count_ripple · quantum (wheel_motion.h): what derived gains make of the encoder's
-///              counts. With few counts a turn it is more than the motor has; then nothing is beyond
+///   counted    SafetyParameters::count_ripple · quantum (wheel_motion.h): the torque that derived gains produce from
+///              encoder quantisation. With few counts per turn it exceeds the motor's torque, and the condition cannot
+///              be active
 ///
-///   torque_oscillation   ripple > limit·τ_max + 2·explained + counted,   of the worst wheel, in parts of τ_max
+///   torque_oscillation   ripple > limit·τ_max + 2·explained + counted,   of the worst wheel, as a part of τ_max
 ///
-/// Alternating between both torque limits the ripple is τ_max; over bumps it is 0.3 τ_max for a moment. A latching
-/// reaction is announced by a warning after kWarned of its persistence. Only wheels that a target reaches
-/// (wheel_targets.h) are judged: the brake's torque is the driver's own.
+/// Alternation between both torque limits has a ripple of τ_max; over bumps it is 0.3 τ_max for a moment. A latching
+/// reaction is preceded by a warning after kWarned of its persistence. Only wheels with a target (wheel_targets.h) are
+/// evaluated: the torque of the brake is the driver's own.
 
 #include <array>
 #include <cstddef>
@@ -29,7 +30,7 @@ namespace robot_control {
 
 class TorqueOscillation {
  public:
-  static constexpr double kSlow = 5.0;    ///< Hz; what drives a robot is slower, what shakes it is faster
+  static constexpr double kSlow = 5.0;    ///< Hz; torque for driving is slower, oscillation is faster
   static constexpr double kWindow = 0.5;  ///< s
   static constexpr double kWarned = 0.5;
 
@@ -41,7 +42,7 @@ class TorqueOscillation {
             ActiveCauses& out) noexcept;
 
  private:
-  /// RMS of what is faster than kSlow.
+  /// RMS of the part that is faster than kSlow.
   struct Ripple {
     double slow = 0;
     double square = 0;
@@ -57,7 +58,7 @@ class TorqueOscillation {
   };
 
   void follow(std::size_t wheel, double measured, double commanded, double target, std::uint64_t elapsed) noexcept;
-  Finding judge(std::size_t wheel, const WheelMotion& motion) const noexcept;
+  ConditionMeasurement judge(std::size_t wheel, const WheelMotion& motion) const noexcept;
 
   double period_;
   ConditionWatch warning_;

@@ -49,8 +49,8 @@ void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& target
     judge_direction(targets, motion, i, elapsed, out);
   }
   const double dt = static_cast<double>(elapsed) * period_;
-  out.judge(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingFound, elapsed);
-  out.judge(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingFound, elapsed);
+  out.judge(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingMeasured, elapsed);
+  out.judge(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingMeasured, elapsed);
 }
 
 void WheelFollowing::Excess::reset() noexcept {
@@ -58,17 +58,17 @@ void WheelFollowing::Excess::reset() noexcept {
   mark = 0;
 }
 
-void WheelFollowing::Excess::step(Finding finding, double speed, double progress, std::uint64_t elapsed,
-                                  ActiveCauses& out) noexcept {
-  if (!finding.beyond) {
+void WheelFollowing::Excess::step(ConditionMeasurement measurement, double speed, double progress,
+                                  std::uint64_t elapsed, ActiveCauses& out) noexcept {
+  if (!measurement.beyond) {
     mark = 0;
   } else if (mark == 0) {
     mark = speed;
-  } else if (speed < mark - progress && finding.value <= kFarBeyond * finding.limit) {
+  } else if (speed < mark - progress && measurement.value <= kFarBeyond * measurement.limit) {
     mark = speed;
-    finding.beyond = false;
+    measurement.beyond = false;
   }
-  out.judge(watch, finding, elapsed);
+  out.judge(watch, measurement, elapsed);
 }
 
 void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
@@ -77,8 +77,8 @@ void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotio
   const double target = targets[wheel];
   const double speed = target == 0 ? std::abs(motion.speed(wheel)) : along(target, motion.speed(wheel));
   const double tolerance = motion.speed_tolerance(wheel);
-  const Finding finding = beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance);
-  excess.step(finding, speed, kProgress + tolerance, weighed(finding, elapsed), out);
+  const ConditionMeasurement measurement = beyond(wheel, speed - std::abs(target), excess.watch.limit() + tolerance);
+  excess.step(measurement, speed, kProgress + tolerance, weighed(measurement, elapsed), out);
 }
 
 void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
@@ -90,9 +90,9 @@ void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMot
   excess.step(beyond(wheel, speed, excess.watch.limit() + tolerance), speed, kProgress + tolerance, elapsed, out);
 }
 
-Finding WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
-                                double dt) noexcept {
-  Finding finding = kNothingFound;
+ConditionMeasurement WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets,
+                                             const WheelMotion& motion, double dt) noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     Stall& stall = stalls_[i];
     const double wanted = targets.has(i) ? std::min(std::abs(targets[i]), fastest_[i]) : 0;
@@ -104,15 +104,15 @@ Finding WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& 
       const double pushed = std::abs(sensors.joints[i].effort) > pushes_[i] ? kPushed : 0;
       stall.missed += std::max(wanted, pushed) * dt;
     }
-    finding = worse(finding, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));
+    measurement = worse(measurement, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));
   }
-  return finding;
+  return measurement;
 }
 
-Finding WheelFollowing::not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
-                                    std::uint64_t elapsed) noexcept {
+ConditionMeasurement WheelFollowing::not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
+                                                 std::uint64_t elapsed) noexcept {
   rested_ = standstill.moving() ? 0 : rested_ + elapsed;
-  if (!targets.told_to_stand() || static_cast<double>(rested_) * period_ >= kRest) {
+  if (!targets.commanded_to_stand() || static_cast<double>(rested_) * period_ >= kRest) {
     moved_ = 0;
   } else if (standstill.moving()) {
     moved_ += elapsed;

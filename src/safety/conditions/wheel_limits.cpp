@@ -47,41 +47,41 @@ void WheelLimits::step(const SensorFrame& sensors, const WheelMotion& motion, bo
                        std::uint64_t elapsed, ActiveCauses& out) noexcept {
   const double in_force = in_force_.step(speed_limit, elapsed);
   const bool known = motion.speed_known();
-  const Finding speed = known ? fastest(motion, in_force) : kNothingFound;
+  const ConditionMeasurement speed = known ? fastest(motion, in_force) : kNothingMeasured;
   out.judge(speed_, speed, weighed(speed, elapsed));
-  out.judge(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingFound, elapsed);
-  out.judge(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingFound, elapsed);
-  out.judge(power_, known ? drawn(sensors, motion) : kNothingFound, elapsed);
+  out.judge(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingMeasured, elapsed);
+  out.judge(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingMeasured, elapsed);
+  out.judge(power_, known ? drawn(sensors, motion) : kNothingMeasured, elapsed);
 }
 
-Finding WheelLimits::fastest(const WheelMotion& motion, double speed_limit) const noexcept {
-  Finding finding = kNothingFound;
+ConditionMeasurement WheelLimits::fastest(const WheelMotion& motion, double speed_limit) const noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     const double slowed = (kSlack * speed_limit + kSlackSpeed) / radius_[i];
     const double limit = std::min(speed_.limit(), slowed) + motion.speed_tolerance(i);
-    finding = worse(finding, beyond(i, std::abs(motion.speed(i)), limit));
+    measurement = worse(measurement, beyond(i, std::abs(motion.speed(i)), limit));
   }
-  return finding;
+  return measurement;
 }
 
-Finding WheelLimits::most_jerked(const WheelMotion& motion) const noexcept {
-  Finding finding = kNothingFound;
+ConditionMeasurement WheelLimits::most_jerked(const WheelMotion& motion) const noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     const double limit = acceleration_.limit() + motion.acceleration_tolerance(i);
-    finding = worse(finding, beyond(i, std::abs(motion.acceleration(i)), limit));
+    measurement = worse(measurement, beyond(i, std::abs(motion.acceleration(i)), limit));
   }
-  return finding;
+  return measurement;
 }
 
-Finding WheelLimits::strongest(const SensorFrame& sensors) const noexcept {
-  Finding finding = kNothingFound;
+ConditionMeasurement WheelLimits::strongest(const SensorFrame& sensors) const noexcept {
+  ConditionMeasurement measurement = kNothingMeasured;
   for (std::size_t i = 0; i < effort_limit_.size() && effort_limit_[i] > 0; ++i) {
-    finding = worse(finding, beyond(i, std::abs(sensors.joints[i].effort) / effort_limit_[i], effort_.limit()));
+    measurement = worse(measurement, beyond(i, std::abs(sensors.joints[i].effort) / effort_limit_[i], effort_.limit()));
   }
-  return finding;
+  return measurement;
 }
 
-Finding WheelLimits::drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept {
+ConditionMeasurement WheelLimits::drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept {
   double power = 0;
   double limit = power_.limit();
   for (std::size_t i = 0; i < motion.wheels(); ++i) {

@@ -1,15 +1,15 @@
 #pragma once
-/// Each wheel against limits that hold whatever it was told.
+/// Limits of each wheel that do not depend on the command.
 ///
 ///   wheel_speed         |ω| > limit + tolerance. While a speed limit L (m/s) has been in force for longer than
-///                       ramp_time, also |ω| > (kSlack·L + kSlackSpeed)/radius + tolerance: a controller that does not
+///                       ramp_time, also |ω| > (kSlack·L + kSlackSpeed)/radius + tolerance: the controller does not
 ///                       slow down
 ///   wheel_acceleration  |ω̇| > limit + tolerance
-///   wheel_effort        |τ|/(the joint's effort limit) > limit, where the gate let a command pass: the brake is the
-///                       driver's own, and may be stronger than the motor
-///   power               Σ max(0, τ ω) > limit + Σ |τ|·tolerance: what the motors draw, braking is none
+///   wheel_effort        |τ|/(the joint's effort limit) > limit, in ticks in which the gate let a command pass: the
+///                       driver's own brake may be stronger than the motor
+///   power               Σ max(0, τ ω) > limit + Σ |τ|·tolerance: the power that the motors draw; braking draws none
 ///
-/// ω, ω̇ and their tolerances: wheel_motion.h. Of several wheels the finding is the worst.
+/// ω, ω̇ and their tolerances: wheel_motion.h. The measurement is that of the worst wheel.
 
 #include <array>
 #include <cstdint>
@@ -21,7 +21,8 @@
 
 namespace robot_control {
 
-/// The largest speed limit of the last ramp_time, and up to twice that: what has been in force for long enough.
+/// The largest speed limit of the last ramp_time to 2·ramp_time: every limit below it has been in force for long
+/// enough.
 class SpeedLimitInForce {
  public:
   SpeedLimitInForce(double ramp_time, double period) noexcept;
@@ -51,10 +52,10 @@ class WheelLimits {
             std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
-  Finding fastest(const WheelMotion& motion, double speed_limit) const noexcept;
-  Finding most_jerked(const WheelMotion& motion) const noexcept;
-  Finding strongest(const SensorFrame& sensors) const noexcept;
-  Finding drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept;
+  ConditionMeasurement fastest(const WheelMotion& motion, double speed_limit) const noexcept;
+  ConditionMeasurement most_jerked(const WheelMotion& motion) const noexcept;
+  ConditionMeasurement strongest(const SensorFrame& sensors) const noexcept;
+  ConditionMeasurement drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept;
 
   ConditionWatch speed_;
   ConditionWatch acceleration_;

@@ -30,10 +30,10 @@ YawAgreement::YawAgreement(const Condition& condition, const RobotModel& robot, 
 void YawAgreement::step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed,
                         ActiveCauses& out) noexcept {
   const bool known = motion.speed_known() && (sensors.valid & kValidGyro) != 0;
-  out.judge(watch_, known ? compare(sensors.imu.angular_velocity, motion) : kNothingFound, elapsed);
+  out.judge(watch_, known ? compare(sensors.imu.angular_velocity, motion) : kNothingMeasured, elapsed);
 }
 
-Finding YawAgreement::compare(const Vector3& gyro, const WheelMotion& motion) const noexcept {
+ConditionMeasurement YawAgreement::compare(const Vector3& gyro, const WheelMotion& motion) const noexcept {
   double wheels = 0;
   double tolerance = 0;
   for (std::size_t i = 0; i < motion.wheels(); ++i) {

@@ -1,12 +1,12 @@
 #pragma once
-/// Do gyro and wheels agree on how fast the robot turns?
+/// Do gyro and wheels measure the same yaw rate?
 ///
 ///   |ω_gyro·z − ω| > limit + kScrub·|ω| + δ,   ω = (v_right − v_left)/b
 ///
 /// z the base's z axis in the IMU's axes (RobotModel::imu_in_base), v the mean rim speed of a side, b the effective
 /// wheel base, δ = 2·(quantum/T)·radius/b the encoders' tolerance (wheel_motion.h), summed over the wheels.
-/// kScrub for several wheels a side, which scrub in a turn: how far depends on the ground (RobotModel), by up to half
-/// of ω; with one wheel a side nothing scrubs.
+/// kScrub applies with several wheels a side, which scrub in a turn by up to half of ω, depending on the ground
+/// (RobotModel); with one wheel a side it is 0.
 
 #include <array>
 #include <cstdint>
@@ -29,7 +29,7 @@ class YawAgreement {
   void step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
-  Finding compare(const Vector3& gyro, const WheelMotion& motion) const noexcept;
+  ConditionMeasurement compare(const Vector3& gyro, const WheelMotion& motion) const noexcept;
 
   ConditionWatch watch_;
   Vector3 up_imu_;  ///< the base's z axis in the IMU's axes

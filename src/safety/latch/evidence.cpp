@@ -8,10 +8,10 @@ void Evidence::latch(const ActiveCauses& active, std::uint64_t cycle) noexcept {
   std::uint64_t fresh = active.stopping() & ~known_;
   if (fresh == 0) return;
   known_ |= fresh;
-  for (const CauseEvidence& finding : active.findings()) {
-    if ((finding.cause & fresh) == 0 || count_ == kMaxEvidence) continue;
-    fresh &= ~finding.cause;
-    latched_[count_] = finding;
+  for (const CauseEvidence& measurement : active.measurements()) {
+    if ((measurement.cause & fresh) == 0 || count_ == kMaxEvidence) continue;
+    fresh &= ~measurement.cause;
+    latched_[count_] = measurement;
     latched_[count_].cycle = cycle;
     ++count_;
   }

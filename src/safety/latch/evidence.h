@@ -1,6 +1,6 @@
 #pragma once
-/// By what the latched causes were told: the first kMaxEvidence in the order they came, each as it was found when it
-/// latched. It outlives a new run and a restart of the monitor; an accepted reset clears it.
+/// The measurements that latched the causes: the first kMaxEvidence in the order of latching, with their values at that
+/// time. They outlive a new run and a restart of the monitor; an accepted reset clears them.
 
 #include <array>
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace robot_control {
 
 class Evidence {
  public:
-  /// Of what latches now, that which had not before.
+  /// Records the causes that latch now and were not latched before.
   void latch(const ActiveCauses& active, std::uint64_t cycle) noexcept;
 
-  /// What an earlier monitor's permit held of its latched causes.
+  /// Takes over the evidence of an earlier monitor's permit.
   void restore(const Permit& last) noexcept;
 
   void clear() noexcept {
@@ -24,11 +24,11 @@ class Evidence {
     count_ = 0;
   }
 
-  /// The latched ones, then the warnings, then nothing.
+  /// The latched ones, then the warnings; the rest is empty.
   void write(const Warnings& warnings, std::array<CauseEvidence, kMaxEvidence>& out) const noexcept;
 
  private:
-  std::uint64_t known_ = 0;  ///< latched causes, those among them for which there was no place, too
+  std::uint64_t known_ = 0;  ///< latched causes, also those that did not fit
   std::size_t count_ = 0;
   std::array<CauseEvidence, kMaxEvidence> latched_{};
 };

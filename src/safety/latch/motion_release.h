@@ -1,23 +1,23 @@
 #pragma once
-/// May motion begin? Two rules that do not depend on each other; absence of evidence releases nothing.
+/// May motion begin? Two independent rules; missing evidence never releases motion.
 ///
 /// A *current command frame* in cycle k is the command of cycle k−1, computed from the state of cycle k−1. Its counters
 /// of requests (control/command_watch.h) began in its first_cycle.
 ///
 /// **Zero first.** A start is the first cycle of a run (the driver was started or reset), the first_cycle of an
-/// estimator or of a controller, and the first cycle of this monitor. After the latest start nothing is released until
-/// a current command frame reports
-///   zero     a zero request received after that start, or
+/// estimator or of a controller, and the first cycle of this monitor. After the latest start motion is released as soon
+/// as a current command frame reports one of
+///   zero     a zero request was received after that start
 ///   silence  no message of any sender, accepted or refused, for silence_needed cycles after that start, and no command
-///            in force that requests motion.
+///            in force requests motion
 /// Once released, motion stays released until the next start.
 ///
 /// **Evidence for a reset.** No motion is requested in cycle k if its current command frame reports a command in force
-/// of zero velocity, and
-///   zero     nothing but zero requests since the last of them, which was received after the last gap, or
-///   silence  as above, after the last gap.
-/// A *gap* is a start, or a cycle without a current command frame, or one that the monitor did not look at: what was
-/// received and silent before it counts for nothing.
+/// of zero velocity, and one of
+///   zero     a zero request was received after the last gap, and only zero requests since then
+///   silence  as above, after the last gap
+/// A *gap* is a start, a cycle without a current command frame, or a cycle that the monitor skipped: messages and
+/// silence before a gap do not count.
 ///
 /// A zero request counts as received after cycle c if the frame's counter began at c or later, or has grown since the
 /// first current frame after c.

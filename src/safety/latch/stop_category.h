@@ -3,9 +3,9 @@
 ///   0  brake at once
 ///   1  ramp down under supervision, then brake
 ///
-/// Those of kStopRules do so always, whatever a user sets: they say that the chain itself cannot be trusted, or that
-/// somebody wants it to stand. What waits for a repair is category 0 besides. All other causes are conditions of
-/// SafetyParameters, with the reaction that stands there.
+/// The causes of kStopRules have a fixed category, whatever the user sets: either the control chain itself cannot be
+/// trusted, or a stop was commanded. Causes that need repair are of category 0 and lead to FAULT. All other causes are
+/// conditions of SafetyParameters, with the reaction that is set there.
 
 #include <array>
 #include <cstdint>
@@ -49,7 +49,7 @@ constexpr std::uint64_t causes_of(StopCategory category) noexcept {
   return bits;
 }
 
-/// Of these, those that wait for a repair.
+/// Those of `causes` that need repair.
 constexpr std::uint64_t for_repair(std::uint64_t causes) noexcept {
   return causes & causes_of(StopCategory::kBrakeForRepair);
 }

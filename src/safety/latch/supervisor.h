@@ -1,14 +1,16 @@
 #pragma once
-/// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, how each stops, which came first.
+/// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, the category of each, the first
+/// cause.
 ///
-/// A cause once active stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused
-/// while a cause is active, there is no evidence that no motion is requested (motion_release.h), a wheel turns, the
-/// body may still slide or a node is missing in INIT; during STOPPING it counts as moving. Where nothing is latched
-/// (READY, DRIVE) a reset is accepted without effect. The ramp of STOPPING ends at the cycle fixed when it began, or at
-/// standstill.
+/// A latched cause stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused while a
+/// cause is active, while there is no evidence that no motion is requested (motion_release.h), while a wheel turns,
+/// while the body may still slide, and while a node is missing in INIT; STOPPING counts as moving. In READY and DRIVE,
+/// where nothing is latched, a reset is accepted without effect. The ramp of STOPPING ends at the cycle that was fixed
+/// when it began, or at standstill.
 ///
-/// INIT ends when every node of this run was seen and motion is released (motion_release.h). A start that takes the
-/// release back ends READY and DRIVE in INIT and STOPPING in STOPPED: the robot brakes, and no cause is latched for it.
+/// INIT ends when all nodes of this run were received once and motion is released (motion_release.h). A node start,
+/// which withdraws the release, leads from READY and DRIVE to INIT and from STOPPING to STOPPED: the robot brakes, and
+/// no cause is latched for it.
 
 #include <cstdint>
 
@@ -19,16 +21,16 @@ namespace robot_control {
 
 struct SupervisorInput {
   std::uint64_t cycle = 0;
-  std::uint64_t repair = 0;          ///< StopCause bits true in this cycle that brake and wait for a repair
-  std::uint64_t brake = 0;           ///< … that brake
-  std::uint64_t ramp = 0;            ///< … that ramp
+  std::uint64_t repair = 0;          ///< StopCause bits active in this cycle: category 0, needs repair
+  std::uint64_t brake = 0;           ///< … category 0
+  std::uint64_t ramp = 0;            ///< … category 1
   std::uint64_t missing = 0;         ///< MissingNode bits of this run
   bool released = false;             ///< zero first is satisfied
-  bool requested = false;            ///< the controller asks for a motion
-  bool no_motion_requested = false;  ///< there is evidence that nothing does
-  bool moving = false;               ///< a joint turns in this very cycle
-  bool standing = false;             ///< every joint has been slow for a while
-  bool sliding = false;              ///< … but the body may still slide
+  bool requested = false;            ///< the controller requests motion
+  bool no_motion_requested = false;  ///< there is evidence that no motion is requested
+  bool moving = false;               ///< a joint turns in this cycle
+  bool standing = false;             ///< all joints have been slow for the standing time
+  bool sliding = false;              ///< standing, but the body may still slide
   bool reset_requested = false;
 };
 
@@ -42,7 +44,7 @@ class Supervisor {
   /// A new run: INIT, or where a cause is latched STOPPED or FAULT.
   void enter_run() noexcept;
 
-  /// Takes over what an earlier monitor had latched: STOPPED, or FAULT. All of it brakes from now on.
+  /// Takes over the latched causes of an earlier monitor: STOPPED, or FAULT. All of them count as category 0.
   void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept;
 
   SupervisorState state() const noexcept { return state_; }

@@ -1,7 +1,7 @@
 #pragma once
-/// The supervisor as data: in `from`, when `trigger` holds, `to`. Read from above, the first row that fits wins,
-/// so that within a state the severest trigger stands first. At most one transition per cycle; where no row
-/// fits, the state stays.
+/// The state machine of the supervisor as data: from state `from`, if `trigger` holds, to state `to`. The first
+/// matching row wins, so within a state the severest trigger stands first. At most one transition per cycle; if no row
+/// matches, the state stays.
 ///
 ///                 complete          motion
 ///         INIT ◄───────────► READY ◄──────► DRIVE          any brake cause ─► STOPPED
@@ -20,16 +20,16 @@
 namespace robot_control {
 
 enum class Trigger : std::uint8_t {
-  kRepairCause,      ///< a latched cause that waits for a repair
+  kRepairCause,      ///< a latched cause that needs repair
   kBrakeCause,       ///< a latched cause of stop category 0
   kRampCause,        ///< a latched cause of stop category 1
   kRampEnded,        ///< standing, or the ramp's last cycle is reached
-  kUnreleased,       ///< a node was started, and no zero velocity was requested since (motion_release.h)
-  kResetIncomplete,  ///< a reset was accepted, a node of this run is still missing, or motion is not released
-  kResetComplete,    ///< a reset was accepted, all nodes of this run were seen, and motion is released
-  kComplete,         ///< sensors, state and command of this run were each seen, and motion is released
-  kMotion,           ///< a motion is asked for or going on
-  kRest,             ///< nothing is asked for and the robot stands
+  kUnreleased,       ///< a node was started, and no zero velocity was requested since then (motion_release.h)
+  kResetIncomplete,  ///< a reset was accepted, but a node is still missing or motion is not released
+  kResetComplete,    ///< a reset was accepted, all nodes were received in this run, and motion is released
+  kComplete,         ///< sensors, state and command of this run were each received, and motion is released
+  kMotion,           ///< motion is requested, or the robot moves
+  kRest,             ///< no motion is requested, and the robot stands
 };
 inline constexpr std::size_t kTriggers = 10;
 

@@ -24,11 +24,11 @@ void Warnings::step(const ActiveCauses& active, std::uint64_t cycle, std::uint64
   const std::uint64_t warning = active.with(Reaction::kWarn);
   const std::uint64_t slowing = active.with(Reaction::kSlow);
   if ((warning | slowing) == 0) return;
-  for (const CauseEvidence& finding : active.findings()) {
-    if ((finding.cause & (warning | slowing)) == 0) continue;
-    Held& held = held_[index_of(finding.cause)];
-    const std::uint64_t since = (bits() & finding.cause) != 0 ? held.evidence.cycle : cycle;
-    held = {.left = hold_cycles_, .evidence = finding};
+  for (const CauseEvidence& measurement : active.measurements()) {
+    if ((measurement.cause & (warning | slowing)) == 0) continue;
+    Held& held = held_[index_of(measurement.cause)];
+    const std::uint64_t since = (bits() & measurement.cause) != 0 ? held.evidence.cycle : cycle;
+    held = {.left = hold_cycles_, .evidence = measurement};
     held.evidence.cycle = since;
   }
   warning_ |= warning;

@@ -1,7 +1,7 @@
 #pragma once
-/// Causes that are told, or slowed down for, and do not latch (Reaction::kWarn, kSlow).
+/// Active causes that do not latch: they are reported, and may limit the speed (Reaction::kWarn, kSlow).
 ///
-/// Each stays for kWarningHold after its fact has ended, so that neither a display nor the robot's speed flickers.
+/// Each is held for kWarningHold after its condition has ended, so that neither a display nor the speed limit flickers.
 
 #include <array>
 #include <cstdint>
@@ -24,7 +24,7 @@ class Warnings {
   std::uint64_t bits() const noexcept { return warning_ | slowing_; }
   bool slowing() const noexcept { return slowing_ != 0; }
 
-  /// Of one bit that is set: as last found, with the cycle since which it stands.
+  /// Of one set bit: the last measurement, with the cycle since which it is active.
   const CauseEvidence& evidence(std::uint64_t cause) const noexcept;
 
  private:

@@ -1,28 +1,29 @@
 #pragma once
-/// Which way is up, in base axes, from gyro and accelerometer alone: the monitor's own, never the estimate.
+/// The direction of the vertical in base axes, from gyro and accelerometer alone: the monitor's own estimate,
+/// independent of state_estimator.
 ///
-///   carried by the gyro     u̇ = −ω × u
-///   pulled by the other     u ← u + dt/T·(â − u),   â = (a − c)/|a − c|,   where ||a − c| − g| < kBand
-///   at first                u = â, of the first sample within the band
+///   prediction (gyro)            u̇ = −ω × u
+///   correction (accelerometer)   u ← u + dt/T·(â − u),   â = (a − c)/|a − c|,   if ||a − c| − g| < kBand
+///   initial value                u = â, of the first sample within the band
 ///
-/// a  accelerometer: specific force, +g upwards at rest; c  what the caller knows of it that is not gravity
-/// u  always of unit length; no sample of one of them, or one too large for its square: the other alone
+/// a  accelerometer: specific force, +g upwards at rest; c  the part of it that the caller knows not to be gravity
+/// u  always of unit length. If a sample of one device is missing or too large to be squared, the other is used alone
 ///
-/// Errors of u [rad], T = 1.5 s, b a gyro's bias, A an acceleration along the ground that c does not hold:
+/// Errors of u [rad], T = 1.5 s, b a gyro's bias, A an acceleration along the ground that is not in c:
 ///
 ///   bias              ≤ b T            0.05 rad/s: 0.075
 ///   acceleration      ≤ A/g·(1 − e^{−t/T}) ≤ Δv/(g T)    1 m/s² for 1 s: 0.050; from 1 m/s at 4.5 m/s²: 0.068;
-///                                      5 m/s²: none, above √(2 g kBand + kBand²) = 4.5 m/s² the band shuts it out
+///                                      5 m/s²: 0, because above √(2 g kBand + kBand²) = 4.5 m/s² the band excludes it
 ///   offset of a       δ/g              0.2 m/s²: 0.020
-///   a start in motion A/g of the first sample, and falls with e^{−t/T}
+///   start in motion   A/g of the first sample, decays with e^{−t/T}
 ///
-/// T weighs the first two: b T = Δv/(g T) for b = 0.05 rad/s and Δv = 1 m/s is T = 1.4 s. kBand: three standard
+/// T balances the first two: b T = Δv/(g T) for b = 0.05 rad/s and Δv = 1 m/s gives T = 1.4 s. kBand: three standard
 /// deviations of an offset of 0.2 m/s² and of noise of 0.05 m/s², and 1 m/s² of braking, which adds 0.05 m/s² to |a|.
 ///
-/// Without a pull for kTrust the gyro's bias may have carried u anywhere: it is not known, until the next pull, which
-/// begins anew.
+/// After kTrust without a correction u is unknown, because of the gyro's bias, until the next correction, which sets u
+/// = â.
 ///
-/// (Complementary filter: R. Mahony, T. Hamel, J.-M. Pflimlin, IEEE TAC 53 (2008) 1203, of its vector alone.)
+/// (Complementary filter: R. Mahony, T. Hamel, J.-M. Pflimlin, IEEE TAC 53 (2008) 1203, for the vertical only.)
 
 #include <Eigen/Core>
 

@@ -1,13 +1,13 @@
 #pragma once
-/// How fast may the robot be if it shall stop within the free way ahead?
+/// The largest speed from which the robot can stop within the free distance ahead.
 ///
 ///   v·t + v²/(2a) ≤ c   ⇒   v = a·(√(t² + 2c/a) − t) = 2c/(t + √(t² + 2c/a))
 ///
-/// c the clearance (m), t stop_delay (s), in which the robot drives on, a stop_deceleration (m/s²). The second form
-/// does not cancel for a small c. Where way and speed end: c = ∞ is unlimited; c ≤ 0 and NaN are no way left, speed 0.
+/// c the clearance (m), t stop_delay (s), during which the robot drives on, a stop_deceleration (m/s²). The second form
+/// has no cancellation for a small c. c = ∞ means unlimited; c ≤ 0 and NaN give speed 0.
 ///
-/// c is the parameter `clearance` (0: unlimited) until the topic says otherwise; then its last value, for ever: who
-/// measures it has to tell when the way is free again.
+/// c is the parameter `clearance` (0: unlimited) until the first message on the topic, then the topic's last value,
+/// without a timeout: the sender must also publish when the distance becomes free.
 
 #include <cmath>
 

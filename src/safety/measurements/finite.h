@@ -1,5 +1,5 @@
 #pragma once
-/// Is every number finite that a frame claims to be valid?
+/// Are all numbers finite that a frame marks as valid?
 
 #include <cstdint>
 
@@ -8,10 +8,10 @@
 
 namespace robot_control {
 
-/// The first joint whose sample is not, where joints are valid; kMaxJoints: none.
+/// The first joint with a sample that is not finite, if joints are valid; kMaxJoints: none.
 std::uint64_t not_finite_joint(const SensorFrame& sensors) noexcept;
 
-/// Joints, gyro, accelerometer, contact forces and battery, as far as `valid` says they were measured.
+/// Joints, gyro, accelerometer, contact forces and battery, as far as `valid` marks them.
 bool finite(const SensorFrame& sensors) noexcept;
 
 /// Used joints and both twists.

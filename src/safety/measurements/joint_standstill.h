@@ -1,14 +1,15 @@
 #pragma once
-/// Does the robot stand, by its wheels' angles alone (the monitor trusts no estimate)? A caster may still turn.
+/// Does the robot stand, judged by its wheel angles alone (the monitor does not trust the estimate)? A caster may still
+/// turn.
 ///
-///   inside    every wheel within ±w of where it was when the window began;  w = max(v·T, 1.5 quanta), T =
-///             kStandingTime, v standstill_speed; a wheel that stands already may use twice that, so that nothing
-///             flickers
-///   standing  inside for T; then the window begins anew, so that a creep slower than v never ends it
+///   inside    every wheel within ±w of its angle at the beginning of the window;  w = max(v·T, 1.5 quanta), T =
+///             kStandingTime, v standstill_speed; doubled while standing, as hysteresis
+///   standing  inside for T; then the window restarts, so that creeping slower than v does not end standing
 ///   moving    a wheel left its window, or its angle is not known; until the robot stands again
 ///
-/// One count of a wheel at rest at the edge of a count is no motion, and a wheel that swings beyond the window does not
-/// stand, however slow it is on average. At first, and in the first T of a run, it is neither.
+/// A change of one count, of a wheel at rest at the edge of a count, is not motion. A wheel that oscillates beyond the
+/// window does not stand, however slow it is on average. In the first T of a run the robot is neither standing nor
+/// moving.
 
 #include <array>
 #include <cstddef>
@@ -21,7 +22,7 @@ namespace robot_control {
 
 class JointStandstill {
  public:
-  static constexpr double kStandingTime = 0.1;  ///< s; the robot's own swinging is over by then
+  static constexpr double kStandingTime = 0.1;  ///< s; longer than the robot's own oscillation after a stop
 
   /// `standstill_speed` rad/s, `period` s, both > 0.
   JointStandstill(double standstill_speed, double period) noexcept;

@@ -1,14 +1,14 @@
 #pragma once
-/// How fast may the body still slide? Wheels that stand do not say that it stands: on ice it slides with its wheels
-/// locked, and no sensor of the monitor's tells a steady slide from rest.
+/// An upper bound on how fast the body may still slide. Standing wheels do not prove that the body stands: on ice it
+/// slides with locked wheels, and no sensor of the monitor distinguishes steady sliding from rest.
 ///
 ///   u_k = max(u_k−1 − a·dt, min(rim, u_k−1 + kGrip·dt, limit)),   rim = max |ωᵢ|·rᵢ, 0 while the wheels stand
 ///
-/// A bound (m/s), never a measurement: what the rims ran at, lost no faster than a = stop_deceleration, which is
-/// reached on any ground the robot drives on. kGrip: no tyre takes a body along faster, so a wheel that spins or an
-/// encoder that lies for a moment does not count much; limit: that of wheel_speed.
+/// u is a bound (m/s), not a measurement: the rim speed, reduced no faster than by a = stop_deceleration, which is
+/// reached on every ground the robot drives on. kGrip: a tyre cannot accelerate the body faster, so a spinning wheel or
+/// a wrong encoder counts little if it is short. limit: that of wheel_speed.
 ///
-/// Where the wheels' speeds are not known (wheel_motion.h), u stays what it is.
+/// While the wheel speeds are not known (wheel_motion.h), u keeps its value.
 
 #include <array>
 #include <cstddef>
@@ -30,7 +30,7 @@ class Slide {
   /// A new run: the machine begins at rest.
   void enter_run() noexcept { speed_ = 0; }
 
-  /// `standing`: the wheels, standstill.h. `elapsed` cycles since the last step.
+  /// `standing`: the wheels (joint_standstill.h). `elapsed` cycles since the last step.
   void step(const WheelMotion& motion, bool standing, std::uint64_t elapsed) noexcept;
 
   bool possible() const noexcept { return speed_ > 0; }

@@ -1,20 +1,20 @@
 #pragma once
-/// How the wheels turn, from raw encoder angles alone.
+/// Speeds and accelerations of the wheels, from raw encoder angles alone.
 ///
-///   speed         ω = (q_k − q_j)/((k − j)·period),  j the newest cycle seen with k − j ≥ n
-///   acceleration  (ω_k − ω_j)/((k − j)·period), of two windows side by side
+///   speed         ω = (q_k − q_j)/((k − j)·period),  j the newest received cycle with k − j ≥ n
+///   acceleration  (ω_k − ω_j)/((k − j)·period), of two adjacent windows
 ///   n = max(2, ⌈kSpeedWindow/period⌉), at most kMaxWindow (2 kHz)
 ///
-/// The speed that the encoder reports is differenced over one period and jumps by the quantum 2π/(counts·period):
-/// 1.5 rad/s for 4096 counts at 1 kHz. Over the window T it is quantum/T = 0.08 rad/s; the price is a lag of T/2.
+/// Differencing over one period has the resolution 2π/(counts·period): 1.5 rad/s for 4096 counts at 1 kHz. Over the
+/// window T the resolution is quantum/T = 0.08 rad/s, at the price of a lag of T/2.
 ///
-///   quantum       the smallest step, or change of step, that an angle made in this run. A robot starts from rest, so
-///                 it is a single count; at speed, steps of 65 and 66 counts give it, too. Steps below kLeastQuantum
-///                 are none: an encoder of 2²² counts needs no tolerance.
-///   tolerances    quantum/T for a speed, 2 quanta/T² for an acceleration: by so much may quantisation alone lift them.
+///   quantum       the smallest step of an angle, or change of step, in this run: a single count, because a robot
+///                 starts from rest; at speed, steps of 65 and 66 counts give it, too. Steps below kLeastQuantum are
+///                 ignored: an encoder of 2²² counts needs no tolerance.
+///   tolerances    quantum/T for a speed, 2 quanta/T² for an acceleration: the largest error by quantisation
 ///
-/// Cycles that were skipped, or whose samples are missing, not valid or not finite, make a window longer, to at most
-/// twice its length; beyond, nothing is known.
+/// Skipped cycles, and samples that are missing, not valid or not finite, make a window longer, up to twice its length;
+/// beyond that speed and acceleration are not known.
 
 #include <array>
 #include <cstddef>
@@ -34,14 +34,14 @@ class WheelMotion {
   /// The first `wheels` joints. `period` s.
   WheelMotion(std::size_t wheels, double period) noexcept;
 
-  /// Nothing is known.
+  /// A new run: speed and acceleration are not known.
   void enter_run() noexcept;
 
   void step(const SensorFrame& sensors) noexcept;
 
   std::size_t wheels() const noexcept { return wheels_; }
 
-  /// This cycle's angles are there.
+  /// This cycle has valid angles.
   bool sampled() const noexcept { return sampled_; }
   bool speed_known() const noexcept { return speed_known_; }
   bool acceleration_known() const noexcept { return acceleration_known_; }
@@ -49,7 +49,7 @@ class WheelMotion {
   double angle(std::size_t wheel) const noexcept { return angle_[wheel]; }                ///< rad
   double speed(std::size_t wheel) const noexcept { return speed_[wheel]; }                ///< rad/s
   double acceleration(std::size_t wheel) const noexcept { return acceleration_[wheel]; }  ///< rad/s²
-  double quantum(std::size_t wheel) const noexcept { return quantum_[wheel]; }            ///< rad; 0: not seen yet
+  double quantum(std::size_t wheel) const noexcept { return quantum_[wheel]; }            ///< rad; 0: not known yet
   double speed_tolerance(std::size_t wheel) const noexcept { return quantum_[wheel] / window_; }
   double acceleration_tolerance(std::size_t wheel) const noexcept { return 2 * quantum_[wheel] / (window_ * window_); }
 
@@ -74,7 +74,7 @@ class WheelMotion {
   bool sampled_ = false;
   bool speed_known_ = false;
   bool acceleration_known_ = false;
-  bool stepped_ = false;  ///< `last_step_` is one
+  bool stepped_ = false;  ///< `last_step_` is valid
   std::uint64_t newest_ = kNever;
   Values angle_{};
   Values last_step_{};

@@ -1,9 +1,9 @@
 #pragma once
-/// What the wheels are told to do, as far as it reaches the motors.
+/// The wheel targets that reach the motors.
 ///
-///   target      JointCommand::velocity of a wheel whose mode is not brake, of the last command seen in this run
-///   passed      tick k−1 let a command pass (SensorFrame::gate): else the motors do not know of it
-///   told to stand  the gate brakes, or every wheel is to brake or has the target 0
+///   target      JointCommand::velocity of a wheel whose mode is not brake, of the last command received in this run
+///   passed      tick k−1 let a command pass (SensorFrame::gate); otherwise the target did not reach the motors
+///   standstill  is commanded if the gate brakes, or if every wheel has mode brake or target 0
 
 #include <array>
 #include <cstddef>
@@ -27,7 +27,7 @@ class WheelTargets {
   /// rad/s, in the joint's own sign; meaningful where `has`.
   double operator[](std::size_t wheel) const noexcept { return velocity_[wheel]; }
 
-  bool told_to_stand() const noexcept { return !passed_ || !motion_; }
+  bool commanded_to_stand() const noexcept { return !passed_ || !motion_; }
   bool passed() const noexcept { return passed_; }
 
  private:

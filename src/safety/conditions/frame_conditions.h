@@ -1,9 +1,10 @@
 #pragma once
-/// Can what was read be believed? kPersistence cycles in a row are a cause; a single one only costs the gate's brake.
+/// Can the input frames be trusted? The cause is active after kPersistence bad cycles in a row; in a single bad cycle
+/// only the gate brakes.
 ///
 ///   corrupt     a checksum of this cycle's inputs was wrong
-///   not finite  a number that sensors or command claim to be valid is NaN or infinite (finite.h); told with the joint
-///               whose sample it is
+///   not finite  a number that sensors or command mark as valid is NaN or infinite (finite.h); reported with the joint
+///               of the sample
 
 #include <cstdint>
 
@@ -12,7 +13,7 @@
 
 namespace robot_control {
 
-class FrameFacts {
+class FrameConditions {
  public:
   static constexpr std::uint64_t kPersistence = 3;  ///< cycles
 

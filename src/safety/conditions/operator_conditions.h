@@ -1,11 +1,11 @@
 #pragma once
-/// What the operator says, and whether he is still there.
+/// What the operator commands, and whether the operator's heartbeat still arrives.
 ///
 ///   e-stop topic    level true, or its trigger counter changed      | service  its counter changed
 ///   e-stop input    kInputEmergencyStop
-///   heartbeat lost  k − k_beat > timeout, in cycles. Counting begins at the first beat of this run, or at the first
-///                   cycle of motion without one (state DRIVE): a robot that was never asked to move needs no
-///                   operator, and one that moves needs one within the timeout.
+///   heartbeat lost  k − k_beat > timeout, in cycles. Counting begins with the first heartbeat of this run, or with the
+///                   first cycle of state DRIVE without one: a robot at rest needs no operator, a driving one needs a
+///                   heartbeat within the timeout.
 ///
 /// An emergency stop is never dropped: one that arrived between two runs is active in the first cycle of the new one.
 
@@ -17,12 +17,12 @@
 
 namespace robot_control {
 
-class OperatorFacts {
+class OperatorConditions {
  public:
   /// `heartbeat_timeout`, `period` s.
-  OperatorFacts(double heartbeat_timeout, double period) noexcept;
+  OperatorConditions(double heartbeat_timeout, double period) noexcept;
 
-  /// A new run. Heartbeats received before it are not beats of this run.
+  /// A new run. Heartbeats received before it do not count.
   void enter_run(const OperatorInput& operator_input) noexcept;
 
   /// After a restart of the monitor: the topic e_stop counts as true until its next message.
@@ -31,7 +31,7 @@ class OperatorFacts {
   /// `driving`: the state before this cycle is DRIVE.
   void step(const MonitorInput& input, bool driving, ActiveCauses& out) noexcept;
 
-  /// StopCause bits of the topic and the service, each event told once. For times in which no cycle passes.
+  /// StopCause bits of the topic and the service, each event reported once. For times without sensor frames.
   std::uint64_t emergency_stops(const OperatorInput& operator_input) noexcept;
 
  private:
@@ -43,7 +43,7 @@ class OperatorFacts {
   bool e_stop_held_ = false;
   bool heartbeat_counts_ = false;
   std::uint64_t beat_cycle_ = 0;
-  OperatorInput seen_;  ///< the counters as last looked at
+  OperatorInput seen_;  ///< the counters at the last step
 };
 
 }  // namespace robot_control

@@ -1,4 +1,4 @@
-#include "safety/conditions/body_facts.h"
+#include "safety/conditions/body_conditions.h"
 
 #include <algorithm>
 #include <bit>
@@ -24,7 +24,7 @@ Eigen::Vector3d imu_from_axles(const RobotModel& robot) {
 
 }  // namespace
 
-BodyFacts::BodyFacts(const SafetyParameters& parameters, const RobotModel& robot, double period)
+BodyConditions::BodyConditions(const SafetyParameters& parameters, const RobotModel& robot, double period)
     : period_(period),
       weight_(robot.mass * kGravity),
       persistence_(parameters.imu_stuck.persistence),
@@ -48,7 +48,7 @@ BodyFacts::BodyFacts(const SafetyParameters& parameters, const RobotModel& robot
   }
 }
 
-void BodyFacts::enter_run() noexcept {
+void BodyConditions::enter_run() noexcept {
   for (ConditionWatch* watch : {&tilt_, &tip_over_, &free_fall_, &lift_, &impact_}) watch->reset();
   for (Repetition* device : {&gyro_, &accelerometer_}) {
     device->watch.reset();
@@ -62,15 +62,15 @@ void BodyFacts::enter_run() noexcept {
   carried_ = 1;
 }
 
-bool BodyFacts::sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
-                       Eigen::Vector3d& base) const noexcept {
+bool BodyConditions::sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
+                            Eigen::Vector3d& base) const noexcept {
   if ((sensors.valid & validity) == 0 || !finite(axes)) return false;
   base = to_base_ * Vector(axes.data());
   return true;
 }
 
-void BodyFacts::repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool wheels_turn,
-                       ActiveCauses& out) const noexcept {
+void BodyConditions::repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool wheels_turn,
+                            ActiveCauses& out) const noexcept {
   const auto bits = std::bit_cast<std::array<std::uint64_t, 3>>(axes);
   const bool same = good && device.seen && device.bits == bits && wheels_turn;
   device.cycles = same ? device.cycles + elapsed : 0;
@@ -81,7 +81,7 @@ void BodyFacts::repeat(Repetition& device, bool good, const Vector3& axes, std::
   out.add(device.watch);
 }
 
-double BodyFacts::forward_speed(const SensorFrame& sensors) const noexcept {
+double BodyConditions::forward_speed(const SensorFrame& sensors) const noexcept {
   if ((sensors.valid & kValidJoints) == 0 || wheel_count_ == 0) return 0;
   double sum = 0;
   for (std::size_t i = 0; i < wheel_count_; ++i) {
@@ -90,7 +90,7 @@ double BodyFacts::forward_speed(const SensorFrame& sensors) const noexcept {
   return std::isfinite(sum) ? sum / static_cast<double>(wheel_count_) : 0;
 }
 
-void BodyFacts::weigh(const SensorFrame& sensors) noexcept {
+void BodyConditions::weigh(const SensorFrame& sensors) noexcept {
   carried_ = 1;
   if ((sensors.valid & kValidContacts) == 0) return;
   double sum = 0;
@@ -98,7 +98,7 @@ void BodyFacts::weigh(const SensorFrame& sensors) noexcept {
   if (std::isfinite(sum)) carried_ = sum / weight_;
 }
 
-void BodyFacts::shake(bool felt) noexcept {
+void BodyConditions::shake(bool felt) noexcept {
   const Eigen::Vector3d& up = attitude_.up();
   across_[next_] = felt ? Eigen::Vector3d(force_ - force_.dot(up) * up) : Eigen::Vector3d::Zero();
   next_ = next_ + 1 == window_ ? 0 : next_ + 1;
@@ -107,7 +107,8 @@ void BodyFacts::shake(bool felt) noexcept {
   shock_ = sum.norm() / static_cast<double>(window_);
 }
 
-void BodyFacts::step(const SensorFrame& sensors, std::uint64_t elapsed, bool wheels_turn, ActiveCauses& out) noexcept {
+void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, bool wheels_turn,
+                          ActiveCauses& out) noexcept {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   const bool turned = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
   const bool felt = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, force_);

@@ -1,10 +1,10 @@
 #pragma once
-/// What the machine says of itself.
+/// What the driver reports about the machine.
 ///
-///   driver fault   driver_state kFault or faults ≠ 0; category 0, waits for a repair
-///   overruns       growth of SensorFrame::overruns over the last second, in tenths of it; what the driver counted
-///                  before the first look does not count
-///   battery        voltage below its limit, where a battery is reported
+///   driver fault   driver_state kFault or faults ≠ 0; category 0, needs repair (FAULT)
+///   overruns       growth of SensorFrame::overruns over the last second, in steps of a tenth; overruns before the
+///                  first step do not count
+///   battery        voltage below its limit, if a battery is reported
 
 #include <array>
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace robot_control {
 
-class MachineFacts {
+class MachineConditions {
  public:
   /// `period` s.
-  MachineFacts(const SafetyParameters& parameters, double period) noexcept;
+  MachineConditions(const SafetyParameters& parameters, double period) noexcept;
 
   void enter_run() noexcept;
   void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;

@@ -6,7 +6,7 @@ namespace robot_control {
 
 /// `Word::kText` is a hash (`rossrv md5 SERVICE`, of what stands in the .srv file, comments aside) or a type.
 template <class Word>
-struct ServiceWord {
+struct ServiceText {
   static const char* value() { return Word::kText; }
   template <class Message>
   static const char* value(const Message&) {

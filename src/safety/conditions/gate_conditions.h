@@ -1,16 +1,16 @@
 #pragma once
-/// Does the gate do what the permits say? The sensors of cycle k tell what it did in tick k−1.
+/// Does the gate obey the permits? The sensors of cycle k report what it did in tick k−1.
 ///
-///   due         the newest permit given of cycles ≤ k−2, which is what it should have used, if alive in tick k−1
-///   refuses     due allowed motion (drive, or ramp while k−1 ≤ ramp_until), the tick braked or refused a frame, and
-///               it was not the command that asked for the brake: loss_cycles ticks in a row, or in more than half of
-///               the ticks of the last second. A controller that is slow or comes and goes, or a monitor whose permits
-///               do not arrive: a robot that stops and drives on by itself is none that anybody can foresee.
-///   disobeys    a command passed under a permit that ordered the brake, whose ramp was over, that had expired, or that
-///               was never given: no software stops this machine any more, it waits for a repair
+///   due         the newest permit of cycles ≤ k−2 that was alive in tick k−1: the one that the gate should have used
+///   refuses     the due permit allowed motion (drive, or ramp while k−1 ≤ ramp_until), the command did not request the
+///               brake, and yet the tick braked or rejected a frame: in loss_cycles ticks in a row, or in more than
+///               half of the ticks of the last second. Reasons are a slow or intermittent controller, or permits that
+///               do not arrive. A robot that stops and continues by itself is not predictable
+///   disobeys    a command passed although the permit ordered the brake, its ramp had ended, it had expired, or it was
+///               never issued: software can no longer stop this machine, so it needs repair (FAULT)
 ///
-/// A permit of before the first step (of an earlier monitor) is judged by its age alone. Ticks that the monitor did not
-/// look at count as the next one that it did.
+/// A permit from before the first step (of an earlier monitor) is judged by its age only. Ticks that the monitor
+/// skipped count as the next tick that it evaluated.
 
 #include <array>
 #include <bitset>
@@ -22,20 +22,20 @@
 
 namespace robot_control {
 
-class GateFacts {
+class GateConditions {
  public:
   static constexpr std::size_t kMostTicks = 2048;  ///< of the last second
 
   /// `period` s.
-  GateFacts(std::uint64_t loss_cycles, double period) noexcept;
+  GateConditions(std::uint64_t loss_cycles, double period) noexcept;
 
-  /// No permit of this run was given.
+  /// A new run: no permit was issued yet.
   void enter_run() noexcept;
 
   void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
-  /// The permit of `cycle`, once each. One that is published again in its cycle (for display) the gate may have used or
-  /// not; the first one counts.
+  /// The permit that was issued in `cycle`; call once per cycle. A permit that is published again in the same cycle
+  /// (for display) is not recorded: the gate may or may not have used it.
   void remember(const Permit& permit, std::uint64_t cycle) noexcept;
 
  private:
@@ -61,7 +61,7 @@ class GateFacts {
   std::uint64_t second_;       ///< ticks of the last second
   std::uint64_t permits_ = 0;  ///< remembered in this run
   std::array<Given, kRemembered> given_{};
-  std::uint64_t refused_frames_ = 0;  ///< GateReport::refused as last looked at
+  std::uint64_t refused_frames_ = 0;  ///< GateReport::refused at the last step
   std::uint64_t in_a_row_ = 0;
   std::uint64_t in_second_ = 0;
   std::size_t next_tick_ = 0;

@@ -1,24 +1,24 @@
-#include "safety/conditions/machine_facts.h"
+#include "safety/conditions/machine_conditions.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace robot_control {
 
-MachineFacts::MachineFacts(const SafetyParameters& parameters, double period) noexcept
+MachineConditions::MachineConditions(const SafetyParameters& parameters, double period) noexcept
     : overruns_(kCauseOverruns, parameters.overruns, period),
       battery_low_(kCauseBatteryLow, parameters.battery_low, period),
       battery_empty_(kCauseBatteryEmpty, parameters.battery_empty, period),
       mark_cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1.0 / (kMarks * period))))) {}
 
-void MachineFacts::enter_run() noexcept {
+void MachineConditions::enter_run() noexcept {
   overruns_.reset();
   battery_low_.reset();
   battery_empty_.reset();
   marked_ = false;
 }
 
-std::uint64_t MachineFacts::overruns_of_the_last_second(std::uint64_t overruns, std::uint64_t elapsed) noexcept {
+std::uint64_t MachineConditions::overruns_of_the_last_second(std::uint64_t overruns, std::uint64_t elapsed) noexcept {
   if (!marked_) {
     marks_.fill(overruns);
     since_mark_ = oldest_ = 0;
@@ -33,7 +33,7 @@ std::uint64_t MachineFacts::overruns_of_the_last_second(std::uint64_t overruns, 
   return growth;
 }
 
-void MachineFacts::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+void MachineConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   if (sensors.driver_state == DriverState::kFault || sensors.faults != 0) out.add(kCauseDriverFault, Reaction::kBrake);
 
   const auto overruns = static_cast<double>(overruns_of_the_last_second(sensors.overruns, elapsed));

@@ -8,9 +8,9 @@ namespace robot_control {
 namespace {
 
 /// Driving, without a heartbeat.
-class GateFactsTest : public MonitorTest {
+class GateConditionsTest : public MonitorTest {
  protected:
-  GateFactsTest() {
+  GateConditionsTest() {
     SafetyParameters patient = parameters();
     patient.heartbeat_timeout = 0;
     monitor_ = SafetyMonitor(patient, robot(), kPeriod);
@@ -30,7 +30,7 @@ class GateFactsTest : public MonitorTest {
   }
 };
 
-TEST_F(GateFactsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossCycles) {
+TEST_F(GateConditionsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossCycles) {
   gate_works_ = false;
   steps(kLoss - 1);
   EXPECT_EQ(permit_.causes, 0u);
@@ -41,24 +41,24 @@ TEST_F(GateFactsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossCycles
 }
 
 // 6 ticks of 10, as of a controller whose commands come every tenth cycle: more than a half of 1000 after 833 ticks.
-TEST_F(GateFactsTest, AGateThatBrakesInMoreThanHalfOfASecondIsRefusing) {
+TEST_F(GateConditionsTest, AGateThatBrakesInMoreThanHalfOfASecondIsRefusing) {
   const std::uint64_t ticks = braked_ticks_until_refused(10, 6, 2000);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
   EXPECT_NEAR(static_cast<double>(ticks), 501 / 0.6, 10);
 }
 
-TEST_F(GateFactsTest, AGateThatBrakesInHalfOfTheTicksAtMostIsTolerated) {
+TEST_F(GateConditionsTest, AGateThatBrakesInHalfOfTheTicksAtMostIsTolerated) {
   EXPECT_EQ(braked_ticks_until_refused(10, 5, 5000), 5000u);
 }
 
-TEST_F(GateFactsTest, ABrakeThatTheControllerAskedForIsNoRefusal) {
+TEST_F(GateConditionsTest, ABrakeThatTheControllerAskedForIsNoRefusal) {
   stand();
   steps(2000);
   EXPECT_EQ(permit_.causes, 0u);
 }
 
 // It may drive on by the frame before, and count.
-TEST_F(GateFactsTest, AGateThatRefusesFramesIsRefusing) {
+TEST_F(GateConditionsTest, AGateThatRefusesFramesIsRefusing) {
   for (std::uint64_t i = 0; i < kLoss; ++i) {
     ASSERT_EQ(permit_.causes, 0u);
     ++refused_frames_;
@@ -69,7 +69,7 @@ TEST_F(GateFactsTest, AGateThatRefusesFramesIsRefusing) {
 }
 
 // The monitor's permits expire before it notices that it is late; a gate that brakes then is right.
-TEST_F(GateFactsTest, ABrakeUnderAnExpiredPermitIsNoRefusal) {
+TEST_F(GateConditionsTest, ABrakeUnderAnExpiredPermitIsNoRefusal) {
   for (int i = 0; i < 100; ++i) {
     skip(kPermitLife + 2);
     step();
@@ -78,7 +78,7 @@ TEST_F(GateFactsTest, ABrakeUnderAnExpiredPermitIsNoRefusal) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-TEST_F(GateFactsTest, AGateThatPassesUnderABrakeDisobeysAndWaitsForARepair) {
+TEST_F(GateConditionsTest, AGateThatPassesUnderABrakeDisobeysAndWaitsForARepair) {
   ++input_.operator_input.e_stop_services;
   step();
   steps(5);
@@ -89,7 +89,7 @@ TEST_F(GateFactsTest, AGateThatPassesUnderABrakeDisobeysAndWaitsForARepair) {
   EXPECT_EQ(permit_.state, SupervisorState::kFault);
 }
 
-TEST_F(GateFactsTest, AGateThatPassesWhatExpiredDisobeys) {
+TEST_F(GateConditionsTest, AGateThatPassesWhatExpiredDisobeys) {
   gate_obeys_ = false;
   steps(10);
   EXPECT_EQ(permit_.causes, 0u) << "the permits allow it";
@@ -99,7 +99,7 @@ TEST_F(GateFactsTest, AGateThatPassesWhatExpiredDisobeys) {
 }
 
 // In the tick after the stop the gate still used the permit before it, as it should.
-TEST_F(GateFactsTest, ThePermitOnItsWayIsNoDisobedience) {
+TEST_F(GateConditionsTest, ThePermitOnItsWayIsNoDisobedience) {
   ++input_.operator_input.e_stop_services;
   step();
   step();
@@ -108,7 +108,7 @@ TEST_F(GateFactsTest, ThePermitOnItsWayIsNoDisobedience) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEmergencyStopService});
 }
 
-TEST_F(GateFactsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
+TEST_F(GateConditionsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
   const Permit last = permit_;
   monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
   monitor_.restore(last);

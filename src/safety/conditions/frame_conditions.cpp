@@ -1,4 +1,4 @@
-#include "safety/conditions/frame_facts.h"
+#include "safety/conditions/frame_conditions.h"
 
 #include "safety/measurements/finite.h"
 
@@ -6,17 +6,17 @@ namespace robot_control {
 namespace {
 
 void judge(StopCause cause, std::uint64_t cycles, std::uint64_t joint, ActiveCauses& out) noexcept {
-  if (cycles < FrameFacts::kPersistence) return;
+  if (cycles < FrameConditions::kPersistence) return;
   out.add(cause, Reaction::kBrake,
           {.beyond = true,
            .value = static_cast<double>(cycles),
-           .limit = static_cast<double>(FrameFacts::kPersistence),
+           .limit = static_cast<double>(FrameConditions::kPersistence),
            .joint = joint});
 }
 
 }  // namespace
 
-void FrameFacts::step(const MonitorInput& input, ActiveCauses& out) noexcept {
+void FrameConditions::step(const MonitorInput& input, ActiveCauses& out) noexcept {
   corrupt_ = input.corrupt ? corrupt_ + 1 : 0;
   const bool numbers_finite = finite(*input.sensors) && (input.command == nullptr || finite(*input.command));
   not_finite_ = numbers_finite ? 0 : not_finite_ + 1;

@@ -1,6 +1,6 @@
 // What the machine says of itself: overruns of the last second.
 
-#include "safety/conditions/machine_facts.h"
+#include "safety/conditions/machine_conditions.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace robot_control {
 namespace {
 
 /// 1 kHz; more than 50 overruns within a second, for a tenth of it, are told.
-class MachineFactsTest : public testing::Test {
+class MachineConditionsTest : public testing::Test {
  protected:
   bool overruns(std::uint64_t counted, std::uint64_t cycles = 1) {
     bool told = false;
@@ -27,12 +27,12 @@ class MachineFactsTest : public testing::Test {
     return parameters;
   }
 
-  MachineFacts facts_{parameters(), 1e-3};
+  MachineConditions facts_{parameters(), 1e-3};
   ActiveCauses active_;
   SensorFrame sensors_;
 };
 
-TEST_F(MachineFactsTest, OverrunsOfTheLastSecondCount) {
+TEST_F(MachineConditionsTest, OverrunsOfTheLastSecondCount) {
   EXPECT_FALSE(overruns(0, 2000));
   EXPECT_FALSE(overruns(50, 2000));
   EXPECT_TRUE(overruns(101, 200));
@@ -41,12 +41,12 @@ TEST_F(MachineFactsTest, OverrunsOfTheLastSecondCount) {
 }
 
 // A monitor that starts, or is started anew, beside a driver that runs for hours.
-TEST_F(MachineFactsTest, OverrunsOfBeforeTheFirstLookDoNotCount) {
+TEST_F(MachineConditionsTest, OverrunsOfBeforeTheFirstLookDoNotCount) {
   EXPECT_FALSE(overruns(1000, 2000));
   EXPECT_TRUE(overruns(1051, 200));
 }
 
-TEST_F(MachineFactsTest, ANewRunCountsAnew) {
+TEST_F(MachineConditionsTest, ANewRunCountsAnew) {
   overruns(1000, 2000);
   facts_.enter_run();
   EXPECT_FALSE(overruns(0, 100));

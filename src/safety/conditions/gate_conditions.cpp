@@ -1,26 +1,26 @@
-#include "safety/conditions/gate_facts.h"
+#include "safety/conditions/gate_conditions.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace robot_control {
 
-GateFacts::GateFacts(std::uint64_t loss_cycles, double period) noexcept
+GateConditions::GateConditions(std::uint64_t loss_cycles, double period) noexcept
     : loss_cycles_(loss_cycles),
       second_(std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(1 / period)), 1, kMostTicks)) {}
 
-void GateFacts::enter_run() noexcept {
+void GateConditions::enter_run() noexcept {
   permits_ = refused_frames_ = in_a_row_ = in_second_ = 0;
   next_tick_ = 0;
   ticks_.reset();
 }
 
-void GateFacts::remember(const Permit& permit, std::uint64_t cycle) noexcept {
+void GateConditions::remember(const Permit& permit, std::uint64_t cycle) noexcept {
   given_[permits_ % kRemembered] = {cycle, permit.action, permit.ramp_until};
   ++permits_;
 }
 
-void GateFacts::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
+void GateConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   if (sensors.head.cycle == 0) return;
   const std::uint64_t tick = sensors.head.cycle - 1;
   count(refuses(sensors.gate, tick), elapsed);
@@ -35,7 +35,7 @@ void GateFacts::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCa
   if (disobeys(sensors.gate, tick)) out.add(kCauseGateDisobeys, Reaction::kBrake, {.beyond = true, .value = 1});
 }
 
-bool GateFacts::refuses(const GateReport& report, std::uint64_t tick) const noexcept {
+bool GateConditions::refuses(const GateReport& report, std::uint64_t tick) const noexcept {
   const bool braked = report.verdict == GateVerdict::kBrake && (report.reasons & kGateControllerBrake) == 0;
   if (!braked && report.refused <= refused_frames_) return false;
   for (std::uint64_t i = permits_; i > 0 && permits_ - i < kRemembered; --i) {
@@ -45,18 +45,18 @@ bool GateFacts::refuses(const GateReport& report, std::uint64_t tick) const noex
   return false;
 }
 
-bool GateFacts::disobeys(const GateReport& report, std::uint64_t tick) const noexcept {
+bool GateConditions::disobeys(const GateReport& report, std::uint64_t tick) const noexcept {
   if (report.verdict == GateVerdict::kBrake) return false;
   if (report.permit_cycle >= tick || tick - report.permit_cycle > kPermitLife) return true;
   for (std::uint64_t i = permits_; i > 0 && permits_ - i < kRemembered; --i) {
     const Given& used = given(i - 1);
     if (used.cycle == report.permit_cycle) return !used.allows(tick);
-    if (used.cycle < report.permit_cycle) return true;  // of a cycle in which none was given
+    if (used.cycle < report.permit_cycle) return true;  // a cycle for which none was issued
   }
   return false;
 }
 
-void GateFacts::count(bool refused, std::uint64_t elapsed) noexcept {
+void GateConditions::count(bool refused, std::uint64_t elapsed) noexcept {
   in_a_row_ = refused ? in_a_row_ + elapsed : 0;
   for (std::uint64_t i = 0; i < std::min(elapsed, second_); ++i) {
     in_second_ += (refused ? 1u : 0u);

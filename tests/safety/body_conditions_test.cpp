@@ -1,7 +1,7 @@
 /// What happens to the body, at 1 kHz. The healthy case: a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart, its IMU
 /// in the middle, upright, rolling straight at 0.5 m/s; the last bits of every sample are others.
 
-#include "safety/conditions/body_facts.h"
+#include "safety/conditions/body_conditions.h"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,9 @@ Vector3 plain(const Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
-class BodyFactsTest : public testing::Test {
+class BodyConditionsTest : public testing::Test {
  protected:
-  BodyFactsTest() {
+  BodyConditionsTest() {
     robot_.mass = 10;
     robot_.joints.resize(2);
     robot_.wheels.resize(2);
@@ -42,7 +42,7 @@ class BodyFactsTest : public testing::Test {
 
   /// Anew, with the parameters and the robot as they are now; healthy for 10 cycles.
   void begin() {
-    facts_ = BodyFacts(parameters_, robot_, kPeriod);
+    facts_ = BodyConditions(parameters_, robot_, kPeriod);
     steps(10);
   }
 
@@ -74,7 +74,7 @@ class BodyFactsTest : public testing::Test {
   static int cycles(const Condition& condition) {
     return std::max(1, static_cast<int>(std::lround(condition.persistence / kPeriod)));
   }
-  bool quiet() const { return out_.findings().empty(); }
+  bool quiet() const { return out_.measurements().empty(); }
 
   /// Leans by `angle` about x from now on, as a robot that is set on a ramp.
   void lean(double angle) { force_ = kGravity * Vector3d(0, std::sin(angle), std::cos(angle)); }
@@ -82,7 +82,7 @@ class BodyFactsTest : public testing::Test {
   SafetyParameters parameters_;
   RobotModel robot_;
   SensorFrame sensors_;
-  BodyFacts facts_{parameters_, robot_, kPeriod};
+  BodyConditions facts_{parameters_, robot_, kPeriod};
   ActiveCauses out_;
   Vector3d rate_ = Vector3d::Zero();
   Vector3d force_{0, 0, kGravity};
@@ -90,29 +90,29 @@ class BodyFactsTest : public testing::Test {
   double jitter_ = 1e-12;
 };
 
-TEST_F(BodyFactsTest, FindNothingOnAHealthyRobot) {
+TEST_F(BodyConditionsTest, FindNothingOnAHealthyRobot) {
   for (int i = 0; i < 5000; ++i) {
     step();
     ASSERT_TRUE(quiet());
   }
 }
 
-TEST_F(BodyFactsTest, TiltIsFoundAfterItsPersistence) {
+TEST_F(BodyConditionsTest, TiltIsFoundAfterItsPersistence) {
   lean(0.43);
   facts_.enter_run();  // the ramp is steep from the beginning
   EXPECT_EQ(cycles_until(kCauseTilt), cycles(parameters_.tilt));
-  EXPECT_NEAR(out_.findings()[0].value, 0.43, 1e-9);
-  EXPECT_EQ(out_.findings()[0].limit, 0.42);
+  EXPECT_NEAR(out_.measurements()[0].value, 0.43, 1e-9);
+  EXPECT_EQ(out_.measurements()[0].limit, 0.42);
 }
 
-TEST_F(BodyFactsTest, ALeanBelowTheLimitIsNone) {
+TEST_F(BodyConditionsTest, ALeanBelowTheLimitIsNone) {
   lean(0.41);
   facts_.enter_run();
   EXPECT_EQ(cycles_until(kCauseTilt), -1);
 }
 
 // Tipping at 1 rad/s, slower than the limit of tip_over: at the limit after 0.42 s, and its persistence.
-TEST_F(BodyFactsTest, TiltIsFoundWhileItGrows) {
+TEST_F(BodyConditionsTest, TiltIsFoundWhileItGrows) {
   int count = 0;
   for (double angle = 0; quiet() && count < 2000; ++count) {
     angle += kPeriod;
@@ -124,7 +124,7 @@ TEST_F(BodyFactsTest, TiltIsFoundWhileItGrows) {
   EXPECT_NEAR(count, 420 + cycles(parameters_.tilt), 1) << "rounding of the sum";
 }
 
-TEST_F(BodyFactsTest, TippingOverIsFoundBeforeTheTiltIsReached) {
+TEST_F(BodyConditionsTest, TippingOverIsFoundBeforeTheTiltIsReached) {
   int count = 0;
   for (double angle = 0; quiet() && count < 2000; ++count) {
     angle += 2 * kPeriod;
@@ -134,11 +134,11 @@ TEST_F(BodyFactsTest, TippingOverIsFoundBeforeTheTiltIsReached) {
   }
   EXPECT_EQ(out_.stopping(), kCauseTipOver);
   EXPECT_NEAR(count, 0.21 / 2 / kPeriod + cycles(parameters_.tip_over), 2);
-  EXPECT_NEAR(out_.findings()[0].value, 2, 1e-6);
+  EXPECT_NEAR(out_.measurements()[0].value, 2, 1e-6);
   EXPECT_LT(facts_.attitude().tilt(), 0.42);
 }
 
-TEST_F(BodyFactsTest, RisingAgainIsNoTippingOver) {
+TEST_F(BodyConditionsTest, RisingAgainIsNoTippingOver) {
   lean(0.3);
   facts_.enter_run();
   steps(1);
@@ -150,7 +150,7 @@ TEST_F(BodyFactsTest, RisingAgainIsNoTippingOver) {
   }
 }
 
-TEST_F(BodyFactsTest, AFastSwayNearTheVerticalIsNoTippingOver) {
+TEST_F(BodyConditionsTest, AFastSwayNearTheVerticalIsNoTippingOver) {
   for (int i = 0; i < 1000; ++i) {  // 0.1 rad at 30 rad/s: 3 rad/s
     const double time = kPeriod * i;
     lean(0.1 * std::sin(30 * time));
@@ -160,13 +160,13 @@ TEST_F(BodyFactsTest, AFastSwayNearTheVerticalIsNoTippingOver) {
   }
 }
 
-TEST_F(BodyFactsTest, FreeFallIsFoundAfterItsPersistence) {
+TEST_F(BodyConditionsTest, FreeFallIsFoundAfterItsPersistence) {
   force_ = {0, 0, 0.5};
   EXPECT_EQ(cycles_until(kCauseFreeFall), cycles(parameters_.free_fall));
-  EXPECT_NEAR(out_.findings()[0].value, 0.5, 1e-6);
+  EXPECT_NEAR(out_.measurements()[0].value, 0.5, 1e-6);
 }
 
-TEST_F(BodyFactsTest, AHopIsNoFreeFall) {
+TEST_F(BodyConditionsTest, AHopIsNoFreeFall) {
   force_ = {0, 0, 0.5};
   steps(cycles(parameters_.free_fall) - 1);
   EXPECT_TRUE(quiet());
@@ -178,14 +178,14 @@ TEST_F(BodyFactsTest, AHopIsNoFreeFall) {
 }
 
 // 0.25 m/s lost in every millisecond: 0.8 m/s, the limit times the window, are gone in the fourth.
-TEST_F(BodyFactsTest, AnImpactIsFoundAsSoonAsTheSpeedIsGone) {
+TEST_F(BodyConditionsTest, AnImpactIsFoundAsSoonAsTheSpeedIsGone) {
   force_ = {-250, 0, kGravity};
   EXPECT_EQ(cycles_until(kCauseImpact), 4);
-  EXPECT_NEAR(out_.findings()[0].value, 100, 1e-6);
-  EXPECT_EQ(out_.findings()[0].limit, 80);
+  EXPECT_NEAR(out_.measurements()[0].value, 100, 1e-6);
+  EXPECT_EQ(out_.measurements()[0].limit, 80);
 }
 
-TEST_F(BodyFactsTest, AnImpactMayComeFromAnySide) {
+TEST_F(BodyConditionsTest, AnImpactMayComeFromAnySide) {
   for (const double angle : {0.7, 2.0, 4.0}) {
     force_ = {250 * std::cos(angle), 250 * std::sin(angle), kGravity};
     facts_.enter_run();
@@ -194,7 +194,7 @@ TEST_F(BodyFactsTest, AnImpactMayComeFromAnySide) {
   }
 }
 
-TEST_F(BodyFactsTest, AKnockIsNoImpact) {
+TEST_F(BodyConditionsTest, AKnockIsNoImpact) {
   force_ = {-500, 0, kGravity};
   step();  // 0.5 m/s
   EXPECT_NEAR(facts_.shock(), 50, 1e-6);
@@ -206,34 +206,34 @@ TEST_F(BodyFactsTest, AKnockIsNoImpact) {
   EXPECT_NEAR(facts_.shock(), 0, 1e-9) << "the window is past";
 }
 
-TEST_F(BodyFactsTest, ALandingIsNoImpact) {
+TEST_F(BodyConditionsTest, ALandingIsNoImpact) {
   force_ = {0, 0, 300};
   steps(10);
   EXPECT_TRUE(quiet());
 }
 
-TEST_F(BodyFactsTest, GravityOnARampIsNoPartOfAnImpact) {
+TEST_F(BodyConditionsTest, GravityOnARampIsNoPartOfAnImpact) {
   lean(0.35);
   facts_.enter_run();
   steps(100);
   EXPECT_NEAR(facts_.shock(), 0, 1e-6);
 }
 
-TEST_F(BodyFactsTest, LiftIsFoundWhereContactsAreFelt) {
+TEST_F(BodyConditionsTest, LiftIsFoundWhereContactsAreFelt) {
   sensors_.valid |= kValidContacts;
   sensors_.contact_forces[0] = sensors_.contact_forces[1] = {3, 0, 0.15 * 10 * kGravity};
   EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
   sensors_.contact_forces[0] = {3, 0, 0};
   EXPECT_EQ(cycles_until(kCauseLift), cycles(parameters_.lift));
-  EXPECT_NEAR(out_.findings()[0].value, 0.15, 1e-9);
+  EXPECT_NEAR(out_.measurements()[0].value, 0.15, 1e-9);
 }
 
-TEST_F(BodyFactsTest, WithoutContactSensorsThereIsNoLift) {
+TEST_F(BodyConditionsTest, WithoutContactSensorsThereIsNoLift) {
   EXPECT_EQ(cycles_until(kCauseLift), -1);
   EXPECT_EQ(facts_.carried(), 1);
 }
 
-TEST_F(BodyFactsTest, CastersCarryToo) {
+TEST_F(BodyConditionsTest, CastersCarryToo) {
   robot_.casters.resize(1);
   sensors_.valid |= kValidContacts;
   sensors_.contact_forces[2] = {0, 0, 0.9 * 10 * kGravity};
@@ -242,7 +242,7 @@ TEST_F(BodyFactsTest, CastersCarryToo) {
 }
 
 // On a ramp of 0.3 rad weight m g stands on the wheels, along the vertical.
-TEST_F(BodyFactsTest, WeightIsVertical) {
+TEST_F(BodyConditionsTest, WeightIsVertical) {
   lean(0.3);
   facts_.enter_run();
   sensors_.valid |= kValidContacts;
@@ -252,7 +252,7 @@ TEST_F(BodyFactsTest, WeightIsVertical) {
 }
 
 // The other device goes on.
-TEST_F(BodyFactsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
+TEST_F(BodyConditionsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
   for (Vector3* stuck : {&sensors_.imu.angular_velocity, &sensors_.imu.linear_acceleration}) {
     begin();
     Vector3& other =
@@ -264,11 +264,11 @@ TEST_F(BodyFactsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
     }
     EXPECT_EQ(count, cycles(parameters_.imu_stuck));
     EXPECT_EQ(out_.with(Reaction::kSlow), kCauseImuStuck);
-    EXPECT_NEAR(out_.findings()[0].value, parameters_.imu_stuck.persistence, 1e-9);
+    EXPECT_NEAR(out_.measurements()[0].value, parameters_.imu_stuck.persistence, 1e-9);
   }
 }
 
-TEST_F(BodyFactsTest, StandsStillWithoutAStuckImu) {
+TEST_F(BodyConditionsTest, StandsStillWithoutAStuckImu) {
   wheels_turn_ = false;
   for (int i = 0; i < 2000; ++i) {
     look();
@@ -276,7 +276,7 @@ TEST_F(BodyFactsTest, StandsStillWithoutAStuckImu) {
   }
 }
 
-TEST_F(BodyFactsTest, ASlowImuIsNotStuck) {
+TEST_F(BodyConditionsTest, ASlowImuIsNotStuck) {
   for (int i = 0; i < 2000; ++i) {  // gyro and accelerometer at 100 Hz, not at once
     jitter_ = i / 10 % 2 == 0 ? 1e-12 : -1e-12;
     if (i % 10 == 0) sensors_.imu.angular_velocity = plain(rate_ + jitter_ * Vector3d::Ones());
@@ -286,7 +286,7 @@ TEST_F(BodyFactsTest, ASlowImuIsNotStuck) {
   }
 }
 
-TEST_F(BodyFactsTest, ASampleThatIsNotFiniteTellsNothing) {
+TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteTellsNothing) {
   const double before = facts_.attitude().tilt();
   for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -303,7 +303,7 @@ TEST_F(BodyFactsTest, ASampleThatIsNotFiniteTellsNothing) {
   EXPECT_EQ(cycles_until(kCauseTilt, 100), -1);
 }
 
-TEST_F(BodyFactsTest, ASampleThatIsNotValidTellsNothing) {
+TEST_F(BodyConditionsTest, ASampleThatIsNotValidTellsNothing) {
   sensors_.valid = kValidJoints;
   force_ = {100, 0, 0};
   rate_ = {30, 0, 0};
@@ -312,14 +312,14 @@ TEST_F(BodyFactsTest, ASampleThatIsNotValidTellsNothing) {
   EXPECT_LT(facts_.attitude().tilt(), 1e-6);
 }
 
-TEST_F(BodyFactsTest, ContactForcesThatAreNotFiniteTellNothing) {
+TEST_F(BodyConditionsTest, ContactForcesThatAreNotFiniteTellNothing) {
   sensors_.valid |= kValidContacts;
   sensors_.contact_forces[0] = {kNaN, 0, 0};
   EXPECT_EQ(cycles_until(kCauseLift, 500), -1);
 }
 
 // 1 m/s at 2 rad/s: 2 m/s² to the left, 0.2 rad if it were taken for gravity.
-TEST_F(BodyFactsTest, ACurveIsNoTilt) {
+TEST_F(BodyConditionsTest, ACurveIsNoTilt) {
   rate_ = {0, 0, 2};
   force_ = {0, 2, kGravity};
   for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = 10;
@@ -329,7 +329,7 @@ TEST_F(BodyFactsTest, ACurveIsNoTilt) {
 }
 
 // 0.5 m ahead of the axle, at 2 rad/s on the spot: 2 m/s² backwards.
-TEST_F(BodyFactsTest, AnImuFarOutIsNotTilted) {
+TEST_F(BodyConditionsTest, AnImuFarOutIsNotTilted) {
   robot_.imu_in_base.position = {0.5, 0, 0.1};
   begin();
   rate_ = {0, 0, 2};
@@ -339,7 +339,7 @@ TEST_F(BodyFactsTest, AnImuFarOutIsNotTilted) {
   EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
 }
 
-TEST_F(BodyFactsTest, ACurveIsFeltWithWheelsThatTurnTheOtherWay) {
+TEST_F(BodyConditionsTest, ACurveIsFeltWithWheelsThatTurnTheOtherWay) {
   robot_.wheels[0].sign = -1;
   begin();
   rate_ = {0, 0, 2};
@@ -350,19 +350,19 @@ TEST_F(BodyFactsTest, ACurveIsFeltWithWheelsThatTurnTheOtherWay) {
   EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
 }
 
-TEST_F(BodyFactsTest, EncodersThatSayNothingDoNoHarm) {
+TEST_F(BodyConditionsTest, EncodersThatSayNothingDoNoHarm) {
   sensors_.joints[0].velocity = kNaN;
   steps(1000);
   EXPECT_LT(facts_.attitude().tilt(), 1e-6);
 }
 
 // Mounted upside down and turned: what it measures is turned back into base axes.
-TEST_F(BodyFactsTest, TheMountingOfTheImuCounts) {
+TEST_F(BodyConditionsTest, TheMountingOfTheImuCounts) {
   const Eigen::Quaterniond mounting =
       Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()) * Eigen::AngleAxisd(0.5, Vector3d::UnitZ());
   robot_.imu_in_base.orientation = {mounting.x(), mounting.y(), mounting.z(), mounting.w()};
   force_ = mounting.inverse() * Vector3d(0, 0, kGravity);
-  facts_ = BodyFacts(parameters_, robot_, kPeriod);
+  facts_ = BodyConditions(parameters_, robot_, kPeriod);
   steps(100);
   EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-9);
   double angle = 0;
@@ -375,7 +375,7 @@ TEST_F(BodyFactsTest, TheMountingOfTheImuCounts) {
   EXPECT_EQ(out_.stopping(), kCauseTilt);
 }
 
-TEST_F(BodyFactsTest, ANewRunKnowsNothing) {
+TEST_F(BodyConditionsTest, ANewRunKnowsNothing) {
   force_ = {0, 0, 0.5};
   steps(cycles(parameters_.free_fall) - 1);
   facts_.enter_run();
@@ -384,13 +384,13 @@ TEST_F(BodyFactsTest, ANewRunKnowsNothing) {
   EXPECT_TRUE(quiet()) << "the count begins anew";
 }
 
-TEST_F(BodyFactsTest, SkippedCyclesCount) {
+TEST_F(BodyConditionsTest, SkippedCyclesCount) {
   sensors_.imu.linear_acceleration = {0, 0, 0.5};
   look(static_cast<std::uint64_t>(cycles(parameters_.free_fall)));
   EXPECT_EQ(out_.stopping(), kCauseFreeFall);
 }
 
-TEST_F(BodyFactsTest, WhatIsOffIsNotFound) {
+TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
   for (Condition* condition : {&parameters_.tilt, &parameters_.tip_over, &parameters_.free_fall, &parameters_.impact,
                                &parameters_.lift, &parameters_.imu_stuck}) {
     condition->reaction = Reaction::kOff;
@@ -406,7 +406,7 @@ TEST_F(BodyFactsTest, WhatIsOffIsNotFound) {
   }
 }
 
-TEST_F(BodyFactsTest, NeverAllocate) {
+TEST_F(BodyConditionsTest, NeverAllocate) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   rate_ = {1, 2, 3};
   const AllocationGuard guard;

@@ -1,0 +1,103 @@
+#pragma once
+/// Conditions of the body, from IMU and contact sensors.
+///
+///   tilt       angle between the vertical u (attitude.h) and the base's z axis > limit
+///   tip over   tilt > half the limit of tilt, and tilt rate > limit
+///   free fall  |a| < limit
+///   impact     component of a perpendicular to u, mean over kImpactWindow, > limit; that is a speed change of
+///              limit · kImpactWindow. The mean, because stiff bodies stop within milliseconds; the perpendicular
+///              component, because bumps and landings accelerate upwards
+///   lift       Σ F·u < limit · m g, if the robot has contact sensors; m = RobotModel::mass
+///   IMU stuck  all axes of gyro or of accelerometer are bit for bit equal to the last sample while the wheels turn.
+///              Noise changes the last bits of every new sample; an IMU that is slower than the loop repeats a sample
+///              for less than any allowed persistence. At standstill even correct sensors may repeat a value
+///
+/// a: specific force of the accelerometer; u: vertical, upwards; both in base axes. A robot whose base z axis does not
+/// point up at the zero pose is measured as tilted.
+///
+/// In a curve the accelerometer measures the centripetal acceleration for as long as the curve lasts; attitude.h is
+/// given its expected value c = ω × (v x̂ + ω × r), v the mean rim speed of the wheels, r the IMU's position relative
+/// to the middle of the axles. Remaining tilt errors: Δv ω/g while wheels slip by Δv; Δω r/(g T) at the beginning of a
+/// turn.
+///
+/// The default limits are 1.5 times what normal driving reaches; the measured values stand in docs/derivations.md.
+///
+/// A sample that is missing, not valid or not finite is not evaluated: its conditions are not beyond their limits.
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+#include "robot/robot_model.h"
+#include "safety/conditions/condition_watch.h"
+#include "safety/latch/active_causes.h"
+#include "safety/measurements/attitude.h"
+#include "safety/safety_parameters.h"
+#include "signals/sensor_frame.h"
+
+namespace robot_control {
+
+class BodyConditions {
+ public:
+  static constexpr double kImpactWindow = 0.01;  ///< s
+
+  /// `period` s.
+  BodyConditions(const SafetyParameters& parameters, const RobotModel& robot, double period);
+
+  /// A new run: all state restarts.
+  void enter_run() noexcept;
+
+  /// Once per cycle; `elapsed` cycles since the last one, ≥ 1. Adds the active causes to `out`.
+  void step(const SensorFrame& sensors, std::uint64_t elapsed, bool wheels_turn, ActiveCauses& out) noexcept;
+
+  // Intermediates of the last step.
+  const Attitude& attitude() const noexcept { return attitude_; }
+  double shock() const noexcept { return shock_; }      ///< m/s², the mean that is compared with the limit of impact
+  double carried() const noexcept { return carried_; }  ///< part of the weight on the wheels; 1 without contact sensors
+  double force() const noexcept { return force_.norm(); }  ///< m/s², |a|, of the last good sample
+
+ private:
+  static constexpr std::size_t kMostSamples = 20;  ///< kImpactWindow at 2 kHz
+
+  struct Wheel {
+    std::size_t joint = 0;
+    double rim_per_joint = 0;  ///< m/s per rad/s, forwards
+  };
+  /// One device's samples, compared bit for bit.
+  struct Repetition {
+    ConditionWatch watch;
+    std::array<std::uint64_t, 3> bits{};
+    bool seen = false;
+    std::uint64_t cycles = 0;  ///< for which the sample stayed the same while the wheels turned
+  };
+
+  bool sample(const SensorFrame& sensors, SensorValidity validity, const Vector3& axes,
+              Eigen::Vector3d& base) const noexcept;
+  void repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool wheels_turn,
+              ActiveCauses& out) const noexcept;
+  void weigh(const SensorFrame& sensors) noexcept;
+  void shake(bool felt) noexcept;
+  double forward_speed(const SensorFrame& sensors) const noexcept;
+
+  double period_;
+  double weight_;       ///< N
+  double persistence_;  ///< s, of imu_stuck
+  double tip_tilt_;     ///< rad
+  std::size_t contacts_;
+  Eigen::Matrix3d to_base_;  ///< from IMU axes
+  Eigen::Vector3d imu_;      ///< m, from the middle of the axles, base axes
+  std::size_t wheel_count_ = 0;
+  std::array<Wheel, kMaxWheels> wheels_{};
+
+  ConditionWatch tilt_, tip_over_, free_fall_, lift_, impact_;
+  Attitude attitude_;
+  Repetition gyro_, accelerometer_;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+  std::size_t window_;  ///< samples in kImpactWindow
+  std::size_t next_ = 0;
+  std::array<Eigen::Vector3d, kMostSamples> across_;  ///< m/s², the last ones
+  double shock_ = 0;
+  double carried_ = 1;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,34 @@
+"""The texts of the program use the terms of docs/glossary.md: no word that treats a node or a joint as a person."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+BANNED = re.compile(r"\b(told|tells|believed|believes|anew|nobody|whoever|wish|wished)\b", re.IGNORECASE)
+MOST = {"src": 0, "config": 0, "msg": 0, "srv": 0, "scripts": 78}
+SUFFIXES = {".h", ".cpp", ".py", ".sh", ".txt", ".yaml", ".msg", ".srv", ""}
+
+
+def hits(folder):
+    found = []
+    for path in sorted((ROOT / folder).rglob("*")):
+        if not path.is_file() or path.suffix not in SUFFIXES:
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            found += [f"{path.relative_to(ROOT)}:{number}: {word}" for word in BANNED.findall(line)]
+    return found
+
+
+@pytest.mark.parametrize("folder", MOST)
+def test_banned_words_stay_out(folder):
+    found = hits(folder)
+    assert len(found) <= MOST[folder], "\n".join(found)
+
+
+def test_the_words_are_found(tmp_path, monkeypatch):
+    monkeypatch.setitem(globals(), "ROOT", tmp_path)
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / "a.h").write_text("/// The node was Told to stop.\n/// It is untold.\n")
+    assert hits("src") == ["src/a.h:1: Told"]
