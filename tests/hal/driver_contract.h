@@ -111,7 +111,7 @@ TEST_P(DriverContract, StandsWithValidJointsAfterStart) {
 TEST_P(DriverContract, LeavesHeadInstanceGateAndCountersAlone) {
   SensorFrame frame;
   frame.head = {.checksum = 1, .run = 2, .cycle = 3, .stamp_ns = 4};
-  frame.boot = 5;
+  frame.driver_instance = 5;
   frame.gate.held = 6;
   frame.overruns = 7;
   frame.slipped_ns = 8;
@@ -119,7 +119,7 @@ TEST_P(DriverContract, LeavesHeadInstanceGateAndCountersAlone) {
   driver_->read(frame);
   EXPECT_EQ(frame.head.checksum + frame.head.run + frame.head.cycle, 6u);
   EXPECT_EQ(frame.head.stamp_ns, 4);
-  EXPECT_EQ(frame.boot, 5u);
+  EXPECT_EQ(frame.driver_instance, 5u);
   EXPECT_EQ(frame.gate.held, 6u);
   EXPECT_EQ(frame.overruns, 7u);
   EXPECT_EQ(frame.slipped_ns, 8u);
