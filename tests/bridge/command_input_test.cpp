@@ -17,14 +17,14 @@ using testing::IsEmpty;
 /// One node sends every 0.1 s, on the robot's clock.
 class CommandInputTest : public testing::Test {
  protected:
-  void add(const std::string& sender, double linear, std::int64_t stamp_ns = 0) {
+  void receive(const std::string& sender, double linear, std::int64_t stamp_ns = 0) {
     ArrivedCommand arrived{.sender = sender, .twist = {}, .stamp_ns = stamp_ns};
     arrived.twist.linear[0] = linear;
     input_.receive(arrived, now_);
   }
 
-  void hear_stamped(const std::string& sender, double linear, std::int64_t age_ns = 0) {
-    hear(sender, linear, now_.ros_ns - age_ns);
+  void receive_stamped(const std::string& sender, double linear, std::int64_t age_ns = 0) {
+    receive(sender, linear, now_.ros_ns - age_ns);
   }
 
   void pass(std::int64_t time_ns) {
@@ -45,12 +45,12 @@ class CommandInputTest : public testing::Test {
 };
 
 TEST_F(CommandInputTest, PassesOnWhatOneNodeSends) {
-  hear("/teleop", 0.5);
+  receive("/teleop", 0.5);
   EXPECT_EQ(value().count, 1u);
   EXPECT_EQ(value().twist.linear[0], 0.5);
   EXPECT_EQ(value().age_ns, 0);
   pass(kSecond / 10);
-  hear_stamped("/teleop", 0.3, kSecond / 50);
+  receive_stamped("/teleop", 0.3, kSecond / 50);
   EXPECT_EQ(value().count, 2u);
   EXPECT_EQ(value().twist.linear[0], 0.3);
   EXPECT_EQ(value().age_ns, kSecond / 50);
@@ -58,9 +58,9 @@ TEST_F(CommandInputTest, PassesOnWhatOneNodeSends) {
 }
 
 TEST_F(CommandInputTest, AStampTooOldOrOfTheFutureIsRefusedAndTheCommandBeforeStands) {
-  hear_stamped("/teleop", 0.5);
-  hear_stamped("/teleop", 0.9, 2 * kSecond);
-  hear_stamped("/teleop", 0.9, -kHour);
+  receive_stamped("/teleop", 0.5);
+  receive_stamped("/teleop", 0.9, 2 * kSecond);
+  receive_stamped("/teleop", 0.9, -kHour);
   EXPECT_EQ(value().count, 1u);
   EXPECT_EQ(value().stale, 2u);
   EXPECT_EQ(value().twist.linear[0], 0.5);
@@ -68,7 +68,7 @@ TEST_F(CommandInputTest, AStampTooOldOrOfTheFutureIsRefusedAndTheCommandBeforeSt
 
 TEST_F(CommandInputTest, AClockThatIsAnHourOffIsToldOnce) {
   for (int i = 0; i < 36'000; ++i) {
-    hear_stamped("/teleop", 0.5, kHour);
+    receive_stamped("/teleop", 0.5, kHour);
     pass(kSecond / 10);
   }
   EXPECT_EQ(value().stale, 36'000u);
@@ -77,16 +77,16 @@ TEST_F(CommandInputTest, AClockThatIsAnHourOffIsToldOnce) {
             "W cmd_vel_stamped of /teleop is 3600 s old by its stamp, more than cmd_vel_timeout (1.25 s): refused; it "
             "was long under way, or that sender's clock is behind; synchronise it (chrony), or let it publish on "
             "cmd_vel, whose age counts from its arrival\n");
-  hear_stamped("/teleop", 0.5, -kHour);
+  receive_stamped("/teleop", 0.5, -kHour);
   EXPECT_THAT(told(), HasSubstr("/teleop is stamped 3600 s in the future")) << "that is another fault";
-  hear_stamped("/ahead", 0.5, -kHour);
+  receive_stamped("/ahead", 0.5, -kHour);
   EXPECT_THAT(told(), HasSubstr("/ahead is stamped 3600 s in the future, more than clocks may differ (0.1 s)"));
 }
 
 TEST_F(CommandInputTest, AClockThatFlickersIsToldEveryTenSecondsAtMost) {
   std::size_t lines = 0;
   for (int i = 0; i < 300; ++i) {  // 60 s
-    hear_stamped("/teleop", 0.5, i % 2 == 0 ? kHour : 0);
+    receive_stamped("/teleop", 0.5, i % 2 == 0 ? kHour : 0);
     pass(kSecond / 5);
     lines += input_.lines().size();
   }
@@ -97,7 +97,7 @@ TEST_F(CommandInputTest, AClockThatFlickersIsToldEveryTenSecondsAtMost) {
 TEST_F(CommandInputTest, AJumpOfACommonClockRefusesNothing) {
   for (const std::int64_t jump : {kHour, -kHour, kSecond, -kSecond}) {
     now_.ros_ns += jump;
-    hear_stamped("/teleop", 0.5);
+    receive_stamped("/teleop", 0.5);
     EXPECT_EQ(value().stale, 0u) << jump;
     EXPECT_EQ(value().age_ns, 0);
     pass(kSecond / 10);
@@ -112,16 +112,16 @@ TEST_F(CommandInputTest, AJumpWhileAMessageIsUnderWayCostsThatMessage) {
     const std::uint64_t count = value().count;
     const std::uint64_t stale = value().stale;
     now_.ros_ns += jump;
-    hear("/teleop", 0.9, stamp_ns);
+    receive("/teleop", 0.9, stamp_ns);
     EXPECT_EQ(value().stale, stale + 1) << jump;
     EXPECT_EQ(value().count, count) << jump;
-    hear_stamped("/teleop", 0.5);
+    receive_stamped("/teleop", 0.5);
     EXPECT_EQ(value().count, count + 1) << jump;
   }
 }
 
 TEST_F(CommandInputTest, AJumpChangesNothingOfWhatArrivedBefore) {
-  hear_stamped("/teleop", 0.5, kSecond / 10);
+  receive_stamped("/teleop", 0.5, kSecond / 10);
   const VelocityCommand before = value();
   now_.ros_ns -= kHour;
   EXPECT_FALSE(input_.look(now_.loop_ns));
@@ -133,24 +133,24 @@ TEST_F(CommandInputTest, AJumpChangesNothingOfWhatArrivedBefore) {
 
 TEST_F(CommandInputTest, SimulatedTimeIsAClockLikeAnyOther) {
   now_ = {.ros_ns = 7 * kSecond, .loop_ns = 7 * kSecond};
-  hear_stamped("/teleop", 0.5, kSecond / 100);
+  receive_stamped("/teleop", 0.5, kSecond / 100);
   EXPECT_EQ(value().age_ns, kSecond / 100);
-  hear("/wall", 0.9, 1'700'000'000 * kSecond);
+  receive("/wall", 0.9, 1'700'000'000 * kSecond);
   EXPECT_EQ(value().stale, 1u);
   EXPECT_THAT(told(), HasSubstr("is not the robot's /clock"));
 }
 
 TEST_F(CommandInputTest, WithoutATimeoutNoStampIsLookedAt) {
   input_.set_timeout(0);
-  hear_stamped("/teleop", 0.5, kHour);
+  receive_stamped("/teleop", 0.5, kHour);
   EXPECT_EQ(value().count, 1u);
   EXPECT_EQ(value().age_ns, 0);
 }
 
 TEST_F(CommandInputTest, TwoNodesAreNamedOnceAndOverrideEachOther) {
   for (int i = 0; i < 100; ++i) {
-    hear("/teleop", 0.5);
-    hear("/navigation", 0.3);
+    receive("/teleop", 0.5);
+    receive("/navigation", 0.3);
     pass(kSecond / 10);
   }
   EXPECT_EQ(value().count, 200u);
@@ -159,20 +159,20 @@ TEST_F(CommandInputTest, TwoNodesAreNamedOnceAndOverrideEachOther) {
             "W 2 nodes send commands: /navigation, /teleop; each message overrides the one before (one_sender: true "
             "refuses them)\n");
   pass(2 * kSecond);
-  hear("/teleop", 0.5);
+  receive("/teleop", 0.5);
   EXPECT_EQ(told(), "I one sender of commands is left: /teleop\n");
 }
 
 TEST_F(CommandInputTest, OneNodeOnBothTopicsIsOneSender) {
-  hear("/teleop", 0.5);
-  hear_stamped("/teleop", 0.5);
+  receive("/teleop", 0.5);
+  receive_stamped("/teleop", 0.5);
   EXPECT_EQ(told(), "");
 }
 
 TEST_F(CommandInputTest, SendersSlowerThanAShortTimeoutAreACrowdAllTheSame) {
   input_ = CommandInput(0.1, true);
   for (int i = 0; i < 10; ++i) {  // each at 2 Hz
-    hear(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
+    receive(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
     EXPECT_EQ(value().many_senders, i == 0 ? 0u : 1u);
     pass(kSecond / 4);
   }
@@ -181,7 +181,7 @@ TEST_F(CommandInputTest, SendersSlowerThanAShortTimeoutAreACrowdAllTheSame) {
 
 TEST_F(CommandInputTest, TakingTurnsSlowerThanTheTimeoutIsNoCrowd) {
   for (int i = 0; i < 10; ++i) {
-    hear(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
+    receive(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
     pass(2 * kSecond);
   }
   EXPECT_EQ(told(), "");
@@ -189,23 +189,23 @@ TEST_F(CommandInputTest, TakingTurnsSlowerThanTheTimeoutIsNoCrowd) {
 
 TEST_F(CommandInputTest, WhoseStampsAreRefusedIsNoSender) {
   input_ = CommandInput(1.25, true);
-  hear("/teleop", 0.5);
-  hear_stamped("/late", 0.5, kHour);
+  receive("/teleop", 0.5);
+  receive_stamped("/late", 0.5, kHour);
   EXPECT_EQ(value().many_senders, 0u);
   EXPECT_THAT(input_.senders(now_.loop_ns), testing::ElementsAre("/teleop"));
 }
 
 TEST_F(CommandInputTest, WithOneSenderMessagesOfAllAreRefusedUntilOneIsLeft) {
   input_ = CommandInput(1.25, true);
-  hear("/teleop", 0.5);
+  receive("/teleop", 0.5);
   EXPECT_EQ(value().count, 1u);
   pass(kSecond / 10);
-  hear("/navigation", 0.3);
+  receive("/navigation", 0.3);
   EXPECT_EQ(value().many_senders, 1u);
   EXPECT_EQ(value().crowded, 1u);
   for (int i = 0; i < 12; ++i) {
     pass(kSecond / 10);
-    hear("/teleop", 0.5);
+    receive("/teleop", 0.5);
   }
   EXPECT_EQ(value().many_senders, 1u) << "/navigation was heard 1.2 s ago";
   EXPECT_EQ(value().crowded, 13u);
@@ -214,27 +214,27 @@ TEST_F(CommandInputTest, WithOneSenderMessagesOfAllAreRefusedUntilOneIsLeft) {
   pass(kSecond / 10);
   EXPECT_TRUE(input_.look(now_.loop_ns)) << "without any message, too";
   EXPECT_EQ(value().many_senders, 0u);
-  hear("/teleop", 0.5);
+  receive("/teleop", 0.5);
   EXPECT_EQ(value().count, 2u);
   EXPECT_EQ(told(), "I one sender of commands is left: /teleop\n");
 }
 
 TEST_F(CommandInputTest, ANewcomerToACrowdIsNamed) {
-  hear("/a", 0);
-  hear("/b", 0);
+  receive("/a", 0);
+  receive("/b", 0);
   EXPECT_THAT(told(), HasSubstr("2 nodes send commands: /a, /b"));
-  hear("/c", 0);
+  receive("/c", 0);
   EXPECT_THAT(told(), HasSubstr("3 nodes send commands: /a, /b, /c"));
-  hear("/a", 0);
+  receive("/a", 0);
   EXPECT_EQ(told(), "");
 }
 
 TEST_F(CommandInputTest, AFlickeringCrowdIsToldEveryTenSecondsAtMost) {
   std::size_t warnings = 0;
   for (int i = 0; i < 30; ++i) {  // 60 s: /b sends every 2 s, and is a sender for 1.25 of them
-    hear("/b", 0.5);
+    receive("/b", 0.5);
     for (int k = 0; k < 20; ++k) {
-      hear("/a", 0.5);
+      receive("/a", 0.5);
       pass(kSecond / 10);
     }
     for (const ReportLine& line : input_.lines()) warnings += line.warning ? 1 : 0;
@@ -243,36 +243,36 @@ TEST_F(CommandInputTest, AFlickeringCrowdIsToldEveryTenSecondsAtMost) {
 }
 
 TEST_F(CommandInputTest, AZeroIsContestedWhileAnotherSenderRequestsMotion) {
-  hear("/teleop", 1);
-  hear("/planner", 0);
+  receive("/teleop", 1);
+  receive("/planner", 0);
   EXPECT_EQ(value().contested, 1u);
   pass(kSecond);
-  hear("/planner", 0);
+  receive("/planner", 0);
   EXPECT_EQ(value().contested, 1u);
-  hear("/teleop", 0);  // its own zero ends its request
+  receive("/teleop", 0);  // its own zero ends its request
   EXPECT_EQ(value().contested, 0u);
-  hear("/planner", 0);
+  receive("/planner", 0);
   EXPECT_EQ(value().contested, 0u);
 }
 
 TEST_F(CommandInputTest, ARequestForMotionContestsForTheTimeoutOnly) {
-  hear("/teleop", 1);
+  receive("/teleop", 1);
   pass(5 * kSecond / 4 + 1);
-  hear("/planner", 0);
+  receive("/planner", 0);
   EXPECT_EQ(value().contested, 0u);
 }
 
 TEST_F(CommandInputTest, ARefusedMessageIsARequestForMotionWhateverItHolds) {
-  hear_stamped("/teleop", 0, -kHour);
-  hear("/planner", 0);
+  receive_stamped("/teleop", 0, -kHour);
+  receive("/planner", 0);
   EXPECT_EQ(value().contested, 1u);
-  hear("/teleop", std::numeric_limits<double>::quiet_NaN());
-  hear("/planner", 0);
+  receive("/teleop", std::numeric_limits<double>::quiet_NaN());
+  receive("/planner", 0);
   EXPECT_EQ(value().contested, 1u);
 }
 
 TEST_F(CommandInputTest, NaNIsPassedOnForTheControllerToRefuse) {
-  hear("/teleop", std::numeric_limits<double>::quiet_NaN());
+  receive("/teleop", std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(value().count, 1u);
   EXPECT_TRUE(std::isnan(value().twist.linear[0]));
 }

@@ -171,7 +171,7 @@ class Sequence {
     if (sender.message == Message::kMotion) arrived.twist.linear[0] = 0.5;
     if (sender.message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
     if (sender.message == Message::kStale) arrived.stamp_ns = 1;
-    inbox_->hear(arrived, {.ros_ns = 1'000'000'000'000, .loop_ns = loop_ns()});
+    inbox_->receive(arrived, {.ros_ns = 1'000'000'000'000, .loop_ns = loop_ns()});
     sender.received = sender.message;
     sender.received_at = now_;
     sender.received_cycle = cycles_;

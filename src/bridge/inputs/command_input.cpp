@@ -27,7 +27,7 @@ std::string seconds(double value) {
 }  // namespace
 
 CommandInput::CommandInput(double timeout, bool one_sender) : one_sender_(one_sender) {
-  limit(timeout);
+  set_timeout(timeout);
 }
 
 void CommandInput::set_timeout(double timeout) {
@@ -113,7 +113,7 @@ void CommandInput::report_senders(std::int64_t loop_ns) {
 }
 
 bool CommandInput::may_report(const std::string& what, std::int64_t loop_ns) {
-  std::erase_if(reported_ns_, [&](const auto& reported) { return std::abs(loop_ns - entry.second) >= kRepeatAfter; });
+  std::erase_if(reported_ns_, [&](const auto& entry) { return std::abs(loop_ns - entry.second) >= kRepeatAfter; });
   return reported_ns_.size() < kMostNames && reported_ns_.emplace(what, loop_ns).second;
 }
 
