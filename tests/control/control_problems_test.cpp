@@ -141,7 +141,7 @@ TEST(ControlProblems, RefuseASetThatWouldExceedTheSpeedOnTheDescribedRobot) {
   using Forward = FeedForwardParameters;
   EXPECT_THAT(problems_of(&Forward::wheel_friction, 0.2), IsEmpty());
   EXPECT_THAT(problems_of(&Forward::wheel_friction, 0.2, 0.05),
-              ElementsAre(AllOf(HasSubstr("the robot as its description has it would reach"), HasSubstr("4 %"))));
+              ElementsAre(AllOf(HasSubstr("the robot as its description has it would reach"), HasSubstr("3 %"))));
   EXPECT_THAT(problems_of(&Forward::wheel_damping, 0.05, 0.05), SizeIs(1));
   EXPECT_THAT(problems_of(&Forward::mass, 40), SizeIs(1));
 }

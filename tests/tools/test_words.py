@@ -7,7 +7,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 BANNED = re.compile(r"\b(told|tells|believed|believes|anew|nobody|whoever|wish|wished)\b", re.IGNORECASE)
-MOST = {"src": 0, "config": 0, "msg": 0, "srv": 0, "scripts": 78}
+MOST = {"src": 0, "config": 0, "msg": 0, "srv": 0, "scripts": 0}
 SUFFIXES = {".h", ".cpp", ".py", ".sh", ".txt", ".yaml", ".msg", ".srv", ""}
 
 
