@@ -60,8 +60,8 @@ inline std::string to_text(const StopTrials& trials) {
   return text.data();
 }
 
-/// Trials that may be blurred beyond as many as are asked for: a machine may stall for half a minute.
-inline constexpr int kRepeatedTrials = 60;
+/// Trials that may be blurred beyond as many as are asked for.
+inline constexpr int kRepeatedTrials = 20;
 
 /// Throws std::runtime_error where the robot does not stop, or not drive again, or too many trials are blurred.
 inline StopTrials run_trials(DrivingRobot& robot, const LossCell& cell, int count) {
