@@ -119,7 +119,7 @@ MassSum sum_of_masses(const RigidBodies& robot) {
 }
 
 Eigen::Vector3d effective_centre(const RigidBodies& robot, const RobotParameters& parameters,
-                                const Eigen::Vector3d& from_urdf, RobotModel& model) {
+                                 const Eigen::Vector3d& from_urdf, RobotModel& model) {
   if (!parameters.centre_of_gravity) return from_urdf;
   const Vector3& given = *parameters.centre_of_gravity;
   Eigen::Vector3d centre(given[0], given[1], given[2]);

@@ -26,8 +26,8 @@ std::uint64_t mint_number();
 
 class SimulationServices {
  public:
-  /// Called by any thread: `missing`, the nodes that the loop waits for; `takes_faults`, whether a node's program is one into
-  /// which faults can be injected.
+  /// Called by any thread: `missing`, the nodes that the loop waits for; `takes_faults`, whether a node's program is
+  /// one into which faults can be injected.
   SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
                      std::function<std::vector<std::string>()> missing,
                      std::function<bool(FaultComponent)> takes_faults);
@@ -44,8 +44,8 @@ class SimulationServices {
   /// succeed where the machine does not start; then the old run goes on, with the driver's fault.
   ServiceAnswer reset();
 
-  /// From the next cycle on; words of names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a node
-  /// is refused unless the program that runs is the one for it.
+  /// From the next cycle on; words of names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a
+  /// node is refused unless the program that runs is the one for it.
   ServiceAnswer inject_fault(const std::string& component, const std::string& kind);
 
  private:

@@ -52,8 +52,9 @@ class ChildProcess {
     if (id_ > 0) ::kill(id_, signal);
   }
 
-  /// Sends SIGSTOP or a signal that ends it. After SIGSTOP it waits until all threads stand still, which takes time where
-  /// they have no core. After SIGKILL it does not wait: no thread runs again, but the kernel frees memory for many cycles.
+  /// Sends SIGSTOP or a signal that ends it. After SIGSTOP it waits until all threads stand still, which takes time
+  /// where they have no core. After SIGKILL it does not wait: no thread runs again, but the kernel frees memory for
+  /// many cycles.
   void stop_with(int signal) const noexcept {
     if (id_ <= 0) return;
     ::kill(id_, signal);

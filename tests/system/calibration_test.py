@@ -83,7 +83,12 @@ class CalibrationTest(RobotTestCase):
         whole = self.file.read_text()
         self.file.write_text(whole.replace("wheel_base: 0.5", "wheel_base: 0.6"))
         words = refusal(ESTIMATOR)
-        for part in (str(self.file), "calibration.wheel_base = 0.6", "0.5 holds here", "delete it to restart the calibration"):
+        for part in (
+            str(self.file),
+            "calibration.wheel_base = 0.6",
+            "0.5 holds here",
+            "delete it to restart the calibration",
+        ):
             self.assertIn(part, words)
         self.file.write_text(whole[: len(whole) // 2])
         self.assertIn("missing", refusal(ESTIMATOR))
