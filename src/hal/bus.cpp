@@ -4,13 +4,15 @@
 #include <cctype>
 #include <cstdio>
 
+#include "signals/fnv.h"
+
 namespace robot_control {
 namespace {
 
-std::uint64_t fnv1a(const std::string& text) noexcept {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
+std::uint64_t hash_of(const std::string& text) noexcept {
+  Fnv1a hash;
+  hash.add(text);
+  return hash.value();
 }
 
 std::string hex(std::uint64_t value) {
@@ -41,7 +43,7 @@ std::string normalised(const std::string& name_space) {
 }  // namespace
 
 std::string bus_name(const std::string& master_uri, const std::string& name_space) {
-  return hex(fnv1a(port_of(master_uri) + "\n/" + normalised(name_space)));
+  return hex(hash_of(port_of(master_uri) + "\n/" + normalised(name_space)));
 }
 
 void announce_robot(ChannelHead& own, std::uint64_t hash, const std::string& source) noexcept {

@@ -1,9 +1,9 @@
 #include "parameters/live_parameters.h"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 
+#include "files/ascii.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
@@ -69,18 +69,6 @@ void refuse_fixed(const Block& block, const ParameterTree& tree, ProblemList& pr
     problems.add({path, as_written(entry), "is read at start alone", entry.origin,
                   "set it in the YAML file or on the parameter server and start the node again"});
   }
-}
-
-/// What tools show that know no other letters.
-std::string ascii(std::string text) {
-  const std::pair<std::string_view, std::string_view> words[] = {{"…", "..."}, {"·", "*"},  {"²", "^2"}, {"³", "^3"},
-                                                                 {"≥", ">="},  {"≤", "<="}, {"°", "deg"}};
-  for (const auto& [letter, word] : words) {
-    for (std::size_t at = text.find(letter); at != std::string::npos; at = text.find(letter, at + word.size())) {
-      text.replace(at, letter.size(), word);
-    }
-  }
-  return text;
 }
 
 }  // namespace

@@ -2,13 +2,15 @@
 
 #include <bit>
 
+#include "signals/fnv.h"
+
 namespace robot_control {
 namespace {
 
-class Fnv1a {
+class ModelHash {
  public:
   void add(const std::string& text) {
-    for (const char c : text) add_byte(static_cast<unsigned char>(c));
+    hash_.add(text);
     add_byte(0);
   }
   void add(const std::vector<std::string>& texts) {
@@ -27,17 +29,17 @@ class Fnv1a {
     add(std::optional<double>(vector ? 1.0 : 0.0));
     for (const double component : vector.value_or(Vector3{})) add(component);
   }
-  std::uint64_t value() const { return hash_; }
+  std::uint64_t value() const { return hash_.value(); }
 
  private:
-  void add_byte(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001B3ULL; }
-  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+  void add_byte(unsigned char byte) { hash_.add(byte); }
+  Fnv1a hash_;
 };
 
 }  // namespace
 
 std::uint64_t model_hash(const std::string& urdf, const RobotParameters& parameters) {
-  Fnv1a hash;
+  ModelHash hash;
   hash.add(urdf);
   hash.add(parameters.left_wheel_joints);
   hash.add(parameters.right_wheel_joints);

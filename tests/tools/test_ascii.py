@@ -7,7 +7,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 BRIDGE = sorted((ROOT / "src/bridge").rglob("*.cpp"))
-KNOWN = set(re.findall(r'\{"([^"\x00-\x7f]+)",', (ROOT / "src/bridge/reports/ascii.cpp").read_text()))
+KNOWN = set(re.findall(r'\{"([^"\x00-\x7f]+)",', (ROOT / "src/files/ascii.cpp").read_text()))
 
 
 @pytest.mark.parametrize("path", [*(ROOT / "msg").iterdir(), *(ROOT / "srv").iterdir()], ids=lambda path: path.name)
@@ -25,7 +25,7 @@ def test_every_sign_in_a_message_of_any_layer_has_a_spelling_in_ascii():
     unknown = {}
     for path in sorted((ROOT / "src").rglob("*.[hc]*")):
         for sign in {sign for text in literals(path) for sign in text if not sign.isascii()} - KNOWN:
-            unknown[f"{path.relative_to(ROOT)}: {sign}"] = f"add it to src/bridge/reports/ascii.cpp: U+{ord(sign):04X}"
+            unknown[f"{path.relative_to(ROOT)}: {sign}"] = f"add it to src/files/ascii.cpp: U+{ord(sign):04X}"
     assert not unknown
 
 

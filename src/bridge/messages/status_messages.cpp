@@ -7,8 +7,8 @@
 #include <span>
 #include <string_view>
 
-#include "bridge/reports/ascii.h"
 #include "bridge/reports/name_list.h"
+#include "files/ascii.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -13,12 +13,12 @@
 #include "bridge/messages/motion_messages.h"
 #include "bridge/messages/tuning_messages.h"
 #include "bridge/nodes/process_node.h"
-#include "bridge/reports/ascii.h"
 #include "bridge/reports/command_report.h"
 #include "bridge/reports/diagnostics.h"
 #include "bridge/reports/pacer.h"
 #include "bridge/reports/reason_history.h"
 #include "bridge/reports/report_line.h"
+#include "files/ascii.h"
 #include "runtime/processes/controller_process.h"
 
 namespace robot_control {

@@ -5,12 +5,12 @@
 #include "bridge/messages/motion_messages.h"
 #include "bridge/messages/simulation_messages.h"
 #include "bridge/nodes/process_node.h"
-#include "bridge/reports/ascii.h"
 #include "bridge/reports/diagnostics.h"
 #include "bridge/reports/pacer.h"
 #include "bridge/reports/robot_report.h"
 #include "bridge/startup/description.h"
 #include "drivers/mujoco_plant.h"
+#include "files/ascii.h"
 #include "runtime/processes/driver_process.h"
 
 namespace robot_control {

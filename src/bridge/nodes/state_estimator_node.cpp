@@ -10,9 +10,9 @@
 #include "bridge/messages/odometry_messages.h"
 #include "bridge/nodes/calibration_keeper.h"
 #include "bridge/nodes/process_node.h"
-#include "bridge/reports/ascii.h"
 #include "bridge/reports/diagnostics.h"
 #include "bridge/reports/pacer.h"
+#include "files/ascii.h"
 #include "rt/clock.h"
 #include "runtime/processes/estimator_process.h"
 

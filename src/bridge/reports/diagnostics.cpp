@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "bridge/reports/ascii.h"
 #include "bridge/reports/name_list.h"
+#include "files/ascii.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "signals/geometry.h"
+#include "signals/rotation.h"
 
 namespace robot_control::algebra {
 
@@ -63,11 +64,6 @@ inline Eigen::Vector3d vector(const Vector3& v) noexcept {
 
 inline Vector3 array(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
-}
-
-/// Of any quaternion that is not zero.
-inline Eigen::Matrix3d rotation_of(const Quaternion& q) noexcept {
-  return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
 }
 
 inline Quaternion quaternion_of(const Eigen::Matrix3d& r) noexcept {

@@ -5,15 +5,12 @@
 #include <cmath>
 
 #include "robot/gravity.h"
+#include "signals/rotation.h"
 
 namespace robot_control {
 namespace {
 
 using Vector = Eigen::Map<const Eigen::Vector3d>;
-
-Eigen::Matrix3d rotation(const Quaternion& q) {
-  return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
-}
 
 Eigen::Vector3d imu_from_axles(const RobotModel& robot) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -30,7 +27,7 @@ BodyConditions::BodyConditions(const SafetyParameters& parameters, const RobotMo
       persistence_(parameters.imu_stuck.persistence),
       tip_tilt_(parameters.tilt.limit.value_or(0) / 2),
       contacts_(std::min(robot.wheels.size() + robot.casters.size(), kMaxContacts)),
-      to_base_(rotation(robot.imu_in_base.orientation)),
+      to_base_(rotation_of(robot.imu_in_base.orientation)),
       imu_(imu_from_axles(robot)),
       wheel_count_(std::min(robot.wheels.size(), kMaxWheels)),
       tilt_(kCauseTilt, parameters.tilt, period),

@@ -1,4 +1,4 @@
-#include "bridge/reports/ascii.h"
+#include "files/ascii.h"
 
 #include <gtest/gtest.h>
 
