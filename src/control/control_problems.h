@@ -1,5 +1,6 @@
 #pragma once
-/// The start-up check: are these gains stable on this robot at this rate?
+/// The check of limits, gains and feed-forward, at start and while driving: are they plausible, stable and damped on
+/// this robot at this rate?
 
 #include <string>
 #include <vector>
@@ -9,10 +10,19 @@
 
 namespace robot_control {
 
-/// One message per problem, with value, rule and remedy; empty: none. Each wheel must have a spectral radius < 1
-/// lifted, turning, straight and straight with the robot's mass doubled, and a torque limit above 0.
+/// One message per problem, with value, rule and remedy; empty: none.
+///
+///   wheels                a torque limit above 0
+///   feed_forward          within plausible factors of the description
+///   tracking_bandwidth    at most a tenth of the rate
+///   gains                 for the wheel lifted, turning, straight, and straight with the robot's mass doubled, as the
+///   set
+///                         and as the description have it: spectral radius < 1, and in every mode a damping ratio of at
+///                         least 0.3 (turning, straight) or 0.2, or nine tenths of what derived gains have
+///   a set of more than limits    drives a model (rehearsal.h), which takes some ms
+///
 /// `parameters` within their ranges, `period` s > 0.
-std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& robot,
+std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
                                           double period);
 
 }  // namespace robot_control

@@ -10,9 +10,8 @@
 ///   truncated or foreign magic    never writes to it, unlinks it and makes a new one
 ///   any of them, locked           BusError after a third of a second: another instance, or a node of another build, is
 ///                                 running
-///   another owner, open to others BusError naming owner or mode; its mode is not corrected, because another process
-///   may
-///                                 still have it open
+///   another owner, open to others BusError naming owner or mode; its mode is not corrected, because another
+///                                 process may still have it open
 ///   a link, directory, pipe       BusError
 /// What the processes of another bus left is removed by the next start of any node (bus_cleanup.h).
 /// A reader maps read-only. It maps nothing but what is usable: an unlocked unusable object is waited for, because its

@@ -13,6 +13,7 @@
 #include "files/input_file.h"
 #include "files/output_file.h"
 #include "rt/clock.h"
+#include "signals/fnv.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -22,12 +23,6 @@ constexpr std::int64_t kRetryNs = 1'000'000'000;
 
 LatchRecord unreadable() {
   return {kCauseLatchUnreadable, kCauseLatchUnreadable, {}};
-}
-
-std::uint64_t fnv1a(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
 }
 
 std::string utc_now() {
@@ -103,7 +98,9 @@ std::string resolved(const std::string& path) {
 
 std::string latch_text(const LatchRecord& record) {
   const std::string text = body(record);
-  return text + "checksum: " + hexadecimal(fnv1a(text)) + "\n";
+  Fnv1a hash;
+  hash.add(text);
+  return text + "checksum: " + hexadecimal(hash.value()) + "\n";
 }
 
 LatchRecord parse_latch(const std::string& text) {

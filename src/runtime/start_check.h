@@ -6,8 +6,7 @@
 
 namespace robot_control {
 
-/// Throws ParameterError with every problem: a wheel loop that would be unstable on this robot at this rate, a
-/// driven joint without torque.
+/// Throws ParameterError with every problem: whatever control_problems.h refuses.
 void require_drivable(const Parameters& parameters, const RobotModel& robot);
 
 /// The robot with rate and clock in its hash and source: what the driver announces and every other node compares

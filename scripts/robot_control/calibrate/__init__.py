@@ -1,1 +1,1 @@
-"""calibrate.py: wheel radii and track width from measured drives."""
+"""calibrate.py: wheel radii and wheel base from measured drives."""

@@ -1,1 +1,1 @@
-"""identify.py: motor constant, friction, inertia and delay of the wheels from a drive, and gains for them."""
+"""identify.py: inertia, friction and delay of the wheels from a drive, and gains for them."""

@@ -3,8 +3,7 @@
 ///
 /// A message passes these checks:
 ///   1. its stamp (command_stamp.h): refused if it is too old or in the future. The last command stays in force until
-///   its
-///      timeout, and the sender of the refused message does not count as a sender;
+///      its timeout, and the sender of the refused message does not count as a sender;
 ///   2. its sender (command_senders.h): with `one_sender`, while messages of two or more senders arrived within
 ///      cmd_vel_timeout, but no less than kSenderWindow, the messages of all of them are refused, and the robot ramps
 ///      to rest until one sender is left. Without it each message overrides the one before, and that is reported;

@@ -40,7 +40,7 @@ std::vector<ReportLine> StopLog::look(const msg::SafetyStatus& status) {
   if (status.run != run_) {
     run_ = status.run;
     awaiting_ = false;
-    told_.clear();
+    reported_.clear();
   }
   std::vector<ReportLine> lines;
   look_at_causes(status, lines);
@@ -101,8 +101,8 @@ bool StopLog::due(const std::string& name, bool present, double now) {
     return false;
   }
   present_.insert(name);
-  if (before || (told_.contains(name) && now - told_[name] < kRepeat)) return false;
-  told_[name] = now;
+  if (before || (reported_.contains(name) && now - reported_[name] < kRepeat)) return false;
+  reported_[name] = now;
   return true;
 }
 

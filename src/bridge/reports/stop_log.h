@@ -23,8 +23,9 @@ namespace robot_control {
 
 class StopLog {
  public:
-  static constexpr double kRepeat = 10;        ///< s
-  static constexpr double kReserve = 0.25;     ///< s, beyond `zero_silence`, until INIT is said to wait for a zero
+  static constexpr double kRepeat = 10;  ///< s
+  /// s, beyond `cmd_vel_timeout` (kZeroSilence where that is 0), until INIT is reported to wait for a zero.
+  static constexpr double kReserve = 0.25;
   static constexpr double kNoSpeed = 0.01;     ///< m/s; a speed limit below it is none to drive with
   static constexpr double kZeroSilence = 1.0;  ///< s, where cmd_vel_timeout is 0
 
@@ -49,8 +50,8 @@ class StopLog {
   std::uint64_t run_ = 0;
   double awaiting_since_ = -1;  ///< s of this run; negative: it does not wait, or that was said
   bool awaiting_ = false;
-  std::set<std::string> present_;       ///< warnings of the last status
-  std::map<std::string, double> told_;  ///< s of this run, by warning
+  std::set<std::string> present_;           ///< warnings of the last status
+  std::map<std::string, double> reported_;  ///< s of this run, by warning
 };
 
 }  // namespace robot_control

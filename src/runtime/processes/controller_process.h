@@ -12,7 +12,8 @@ namespace robot_control {
 
 class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerTrace> {
  public:
-  /// Throws BusError; ParameterError for a script that cannot be read, or gains that this robot makes unstable.
+  /// Throws BusError; ParameterError for a script that cannot be read, or limits and gains that control_problems.h
+  /// refuses.
   ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
                     OutputDecoratorPtr<CommandFrame> decorator = nullptr);
   ~ControllerProcess() override { stop(); }

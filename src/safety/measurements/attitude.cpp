@@ -14,7 +14,7 @@ constexpr double kUpright = 1e-9;  // rad; below it no direction of tilting is k
 }  // namespace
 
 void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept {
-  unpulled_ = std::min(unpulled_ + dt, 2 * kTrust);
+  uncorrected_ = std::min(uncorrected_ + dt, 2 * kTrust);
   if (rate != nullptr) carry(*rate, dt);
   if (force != nullptr) pull(*force, dt);
   const double horizontal = std::hypot(up_.x(), up_.y());
@@ -33,7 +33,7 @@ void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {
   const Eigen::Vector3d measured = force / size;
   const double weight = known() ? std::min(1.0, dt / kTimeConstant) : 1;
   const Eigen::Vector3d pulled = up_ + weight * (measured - up_);
-  unpulled_ = 0;
+  uncorrected_ = 0;
   const double length = pulled.norm();
   up_ = length > 0.5 ? Eigen::Vector3d(pulled / length) : measured;
 }

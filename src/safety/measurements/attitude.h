@@ -41,7 +41,7 @@ class Attitude {
   /// `dt` s since the last step.
   void step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept;
 
-  bool known() const noexcept { return unpulled_ <= kTrust; }
+  bool known() const noexcept { return uncorrected_ <= kTrust; }
 
   /// u; while it is not known, the base's z axis or the last one known.
   const Eigen::Vector3d& up() const noexcept { return up_; }
@@ -57,7 +57,7 @@ class Attitude {
   void pull(const Eigen::Vector3d& force, double dt) noexcept;
 
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
-  double unpulled_ = 2 * kTrust;  ///< s since the last pull
+  double uncorrected_ = 2 * kTrust;  ///< s since the last correction
   double tilt_rate_ = 0;
 };
 
