@@ -133,7 +133,8 @@ def carry_out(robot: str, seed: int) -> Tuned:
     if not faults:
         return Tuned(robot, seed, values, refused, causes=causes)
     derived = _Motion(robot, seed, np.random.default_rng([seed, ROBOTS.index(robot)]))
-    derived.loop.set_parameters({name: value for name, value in values.items() if name in {*LIMITS, *EMERGENCY}})
+    if same := {name: value for name, value in values.items() if name in {*LIMITS, *EMERGENCY}}:
+        derived.loop.set_parameters(same)
     of_limits = derived.judge()[0]
     own = tuple(text for kind, text in faults.items() if kind not in of_limits)
     return Tuned(robot, seed, values, refused, own, tuple(of_limits.values()), causes)
