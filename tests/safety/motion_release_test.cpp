@@ -53,6 +53,17 @@ class MotionReleaseTest : public testing::Test {
     command_.silence_needed = kSilence;
     command_.first_cycle = cycle_ - 1;
   }
+  /// Requests of motion do not release; a zero request after them does.
+  void expect_release_by_a_new_zero_only() {
+    for (int i = 0; i < 1000; ++i) {
+      request_motion();
+      step();
+      ASSERT_FALSE(release_.released());
+    }
+    request_zero();
+    step();
+    EXPECT_TRUE(release_.released());
+  }
 
   SensorFrame sensors_;
   CommandFrame command_;
@@ -167,14 +178,7 @@ TEST_F(MotionReleaseTest, ARestartedEstimatorTakesTheReleaseBackAndOlderZerosDoN
   steps(5);
   request_motion();
   input_.state_first_cycle = cycle_ - 1;
-  for (int i = 0; i < 1000; ++i) {
-    request_motion();
-    step();
-    ASSERT_FALSE(release_.released());
-  }
-  request_zero();
-  step();
-  EXPECT_TRUE(release_.released());
+  expect_release_by_a_new_zero_only();
 }
 
 TEST_F(MotionReleaseTest, ANewRunTakesTheReleaseBack) {
@@ -203,14 +207,7 @@ TEST_F(MotionReleaseTest, AMonitorThatStartsInAGoingRunDoesNotCountOlderZeros) {
   request_motion();
   release_.enter_run();
   release_.begin(cycle_);
-  for (int i = 0; i < 1000; ++i) {
-    request_motion();
-    step();
-    ASSERT_FALSE(release_.released());
-  }
-  request_zero();
-  step();
-  EXPECT_TRUE(release_.released());
+  expect_release_by_a_new_zero_only();
 }
 
 // Through the monitor.
