@@ -251,7 +251,7 @@ inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, 
   return text;
 }
 
-/// "the topic e_stop said true (publish false on e_stop, then call e_stop_reset); …". Allocates.
+/// "the topic e_stop said true (publish false on e_stop); …". Allocates.
 inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits) {
   std::string text;
   for (const BitName& row : table) {

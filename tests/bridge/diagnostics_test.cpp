@@ -79,7 +79,9 @@ TEST_F(StateReport, WarnsOfASensorThatIsLost) {
     state_.flags = kStateValid | flag;
     EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
     EXPECT_THAT(report().message().message, HasSubstr(sentences_of(kStateFlagNames, flag)));
-    EXPECT_EQ(value_of(report(), "estimate: " + names_of(kStateFlagNames, flag)), sentences_of(kStateFlagNames, flag));
+    const BitName& row = *row_of(kStateFlagNames, flag);
+    EXPECT_EQ(value_of(report(), "estimate: " + std::string(row.name)), row.sentence);
+    EXPECT_EQ(value_of(report(), "estimate remedy: " + std::string(row.name)), row.remedy);
   }
 }
 
@@ -94,7 +96,9 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
   EXPECT_THAT(report().message().message, HasSubstr("the left wheels do not roll; a wheel turns faster than the ground "
                                                     "passes (accelerate less)"));
   EXPECT_EQ(value_of(report(), "slip"), "left spinning");
-  EXPECT_EQ(value_of(report(), "slip: spinning"), "a wheel turns faster than the ground passes (accelerate less)");
+  EXPECT_EQ(value_of(report(), "slip: spinning"), "a wheel turns faster than the ground passes");
+  EXPECT_EQ(value_of(report(), "slip remedy: spinning"), "accelerate less");
+  EXPECT_EQ(value_of(report(), "slip remedy: left"), "(none)");
   state_.slip = 0;
   EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
   EXPECT_THAT(report(kSlipSideways).message().message, HasSubstr("the robot slides sideways"));
@@ -135,7 +139,8 @@ TEST(CommandReasons, AreEachAValueInWords) {
   DiagnosticReport report("diff_drive_controller", "diffbot");
   report_command(report, command, command.reasons, {});
   EXPECT_EQ(value_of(report, "reasons"), "timed_out holding");
-  EXPECT_THAT(value_of(report, "command: timed_out"), HasSubstr("older than cmd_vel_timeout (publish on cmd_vel"));
+  EXPECT_EQ(value_of(report, "command: timed_out"), "the last cmd_vel is older than cmd_vel_timeout");
+  EXPECT_THAT(value_of(report, "command remedy: timed_out"), HasSubstr("publish on cmd_vel"));
   EXPECT_EQ(value_of(report, "command: holding"), "standing with zero command: the brake holds the position");
   EXPECT_EQ(value_of(report, "command: no_command"), "(none)");
   EXPECT_EQ(value_of(report, "requested_m_s"), "0.5");
@@ -175,7 +180,8 @@ TEST(GateReasons, AreEachAValueInWords) {
   sensors.gate.reasons = kGatePermitBrake;
   DiagnosticReport report("mujoco_plant", "diffbot");
   report_driver(report, sensors, 1.0);
-  EXPECT_EQ(value_of(report, "gate: permit_brake"), "the permit orders the brake (read the cause in safety_status)");
+  EXPECT_EQ(value_of(report, "gate: permit_brake"), "the permit orders the brake");
+  EXPECT_EQ(value_of(report, "gate remedy: permit_brake"), "read the cause in safety_status");
 }
 
 }  // namespace

@@ -10,7 +10,6 @@ namespace robot_control {
 namespace {
 
 using testing::ElementsAre;
-using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -111,7 +110,8 @@ TEST_F(SafetyStatusTest, AsksForAResetOfWhatLatchedAlone) {
   const msg::SafetyStatus status = message();
   ASSERT_THAT(status.causes, ElementsAre("e_stop_service", "imu_lost"));
   EXPECT_EQ(status.remedies[0], "call e_stop_reset");
-  EXPECT_THAT(status.remedies[1], EndsWith(", then call e_stop_reset"));
+  EXPECT_THAT(status.remedies_before_reset, ElementsAre("", Not(HasSubstr("e_stop_reset"))));
+  EXPECT_EQ(status.remedies[1], status.remedies_before_reset[1] + ", then call e_stop_reset");
   ASSERT_EQ(status.warning_sentences.size(), 1u);
   EXPECT_THAT(status.warning_sentences[0], Not(HasSubstr("e_stop_reset")));
 }

@@ -22,7 +22,7 @@ from robot_control.why.screen import Look, render
 E_STOP = Cause(
     "e_stop_topic",
     "the topic e_stop said true",
-    "publish false on e_stop, then call e_stop_reset",
+    "publish false on e_stop",
     "operator",
     first=True,
     active=True,
@@ -30,7 +30,7 @@ E_STOP = Cause(
 FAST = Cause(
     "wheel_speed",
     "a wheel is faster than allowed",
-    "look at load, slope, encoder and motor of that wheel, then call e_stop_reset",
+    "look at load, slope, encoder and motor of that wheel",
     "technician",
     "17.3 rad/s, limit 15 rad/s, left_wheel_joint",
 )
@@ -62,10 +62,15 @@ def without(facts: Facts, *nodes: str) -> Facts:
     return replace(facts, reports=reports, safety=safety, measured=None)
 
 
-def saying(facts: Facts, node: str, **values: str) -> Facts:
-    """A node reports these values, too; `gate__x` stands for the key "gate: x"."""
+def saying(facts: Facts, node: str, **values: str | tuple[str, str]) -> Facts:
+    """A node reports these values, too; `gate__x="sentence"` and `gate__x=("sentence", "remedy")`: reason "gate: x"."""
     old = facts.reports[node]
-    keys = {key.replace("__", ": "): value for key, value in values.items()}
+    keys = {}
+    for key, value in values.items():
+        sentence, remedy = value if isinstance(value, tuple) else (value, "")
+        keys[key.replace("__", ": ")] = sentence
+        if remedy:
+            keys[key.replace("__", " remedy: ")] = remedy
     return replace(facts, reports={**facts.reports, node: replace(old, values={**old.values, **keys})})
 
 
@@ -190,9 +195,7 @@ def test_a_ramp_is_told_as_going_on(driving):
 
 
 def test_a_lost_node_is_started_first(driving):
-    cause = Cause(
-        "controller_lost", "the controller published no command", "look whether it runs, then call e_stop_reset"
-    )
+    cause = Cause("controller_lost", "the controller published no command", "look whether it runs")
     facts = stopped(without(driving, CONTROLLER), cause)
     facts = replace(facts, safety=replace(facts.safety, missing=(CONTROLLER,)))
     assert judge(facts).commands[0] == "rosrun robot_control diff_drive_controller"
@@ -213,7 +216,7 @@ def test_a_paused_simulation_is_told_before_a_stop(driving):
 
 def test_nobody_who_commands_is_no_fault(driving):
     facts = saying(
-        driving, CONTROLLER, command__no_command="nothing was received on cmd_vel in this run (publish on cmd_vel)"
+        driving, CONTROLLER, command__no_command=("nothing was received on cmd_vel in this run", "publish on cmd_vel")
     )
     answer = judge(replace(facts, senders=(), limited=(0.0, 0.0), measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.IDLE
@@ -226,7 +229,7 @@ def test_nobody_who_commands_is_no_fault(driving):
 
 def test_a_silent_sender_is_named(driving):
     facts = saying(
-        driving, CONTROLLER, command__timed_out="the last cmd_vel is older than cmd_vel_timeout (publish more often)"
+        driving, CONTROLLER, command__timed_out=("the last cmd_vel is older than cmd_vel_timeout", "publish more often")
     )
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert "older than cmd_vel_timeout" in answer.headline
@@ -240,7 +243,7 @@ def test_many_senders_are_named_where_one_sender_forbids_them(driving):
         senders="/teleop, /navigation",
         requested_m_s="0",
         requested_rad_s="0",
-        command__many_senders="more than one node sends commands, which one_sender forbids (stop all but one)",
+        command__many_senders=("more than one node sends commands, which one_sender forbids", "stop all but one"),
     )
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.STOPPED
@@ -258,8 +261,8 @@ def test_a_sender_with_a_wrong_clock_is_told_as_such(driving):
     facts = saying(
         driving,
         CONTROLLER,
-        command__no_command="nothing was received on cmd_vel in this run (publish on cmd_vel)",
-        command__stale="the last cmd_vel_stamped was older than cmd_vel_timeout (synchronise the sender's clock)",
+        command__no_command=("nothing was received on cmd_vel in this run", "publish on cmd_vel"),
+        command__stale=("the last cmd_vel_stamped was older than cmd_vel_timeout", "synchronise the sender's clock"),
     )
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.IDLE
@@ -284,12 +287,12 @@ def test_several_senders_are_all_named(driving):
     assert "published by /send_cmd, /teleop (2 senders: each message overrides the one before)" in lines
 
 
-def test_a_gate_that_brakes_by_itself_is_told(driving):
+def test_a_gate_that_brakes_by_itself_is_reported(driving):
     facts = saying(
         driving,
         PLANT,
         gate_verdict="brake",
-        gate__no_command="there is no command of the last 4 cycles (look whether diff_drive_controller runs)",
+        gate__no_command=("there is no command of the last 4 cycles", "look whether diff_drive_controller runs"),
     )
     answer = judge(facts)
     assert answer.headline == "The gate brakes: there is no command of the last 4 cycles."
@@ -302,7 +305,9 @@ def test_a_gate_that_obeys_a_permit_of_a_second_ago_is_no_answer(driving):
 
 
 def test_a_controller_without_state_is_told(driving):
-    facts = saying(driving, CONTROLLER, command__no_state="the state of this cycle is missing (start state_estimator)")
+    facts = saying(
+        driving, CONTROLLER, command__no_state=("the state of this cycle is missing", "start state_estimator")
+    )
     assert judge(facts).headline == "The controller brakes: the state of this cycle is missing."
 
 
@@ -358,8 +363,8 @@ def test_slip_is_shown_with_the_wheel_and_lost_sensors_by_what_is_left(driving):
         ESTIMATOR,
         flags="valid slip no_gyro",
         slip__left="the left wheels do not roll",
-        slip__spinning="a wheel turns faster than the ground passes (accelerate less)",
-        estimate__no_gyro="yaw comes from the wheels alone (look at the IMU)",
+        slip__spinning=("a wheel turns faster than the ground passes", "accelerate less"),
+        estimate__no_gyro=("yaw comes from the wheels alone", "look at the IMU"),
     )
     shown = text(facts)
     assert "the left wheels do not roll; a wheel turns faster than the ground passes" in " ".join(shown.split())

@@ -20,7 +20,7 @@ class Cause:
 
     name: str
     sentence: str
-    remedy: str
+    remedy: str = ""  # before the reset
     actor: str = ""  # operator, integrator, technician
     detail: str = ""  # measured value and limit
     first: bool = False  # it came first
@@ -90,6 +90,10 @@ class Facts:
     def reasons(self, node: str, whose: str) -> dict[str, str]:
         """Likewise."""
         return self.reports[node].reasons(whose) if self.there(node) else {}
+
+    def remedies(self, node: str, whose: str) -> dict[str, str]:
+        """Name of a reason → its remedy, for those that have one."""
+        return self.reasons(node, f"{whose} remedy")
 
     def commanders(self) -> tuple[str, ...]:
         """Nodes that send commands: as the controller reports, where it runs; else by registrations."""
@@ -232,10 +236,9 @@ def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iter
         yield "integrator", f"start {node}"
     named = set()
     for cause in causes:
-        remedy = cause.remedy.removesuffix("then call e_stop_reset").rstrip(", ")
-        if remedy and remedy != "call e_stop_reset" and remedy not in named:
-            named.add(remedy)
-            yield cause.actor, remedy
+        if cause.remedy and cause.remedy not in named:
+            named.add(cause.remedy)
+            yield cause.actor, cause.remedy
     asked = _asked(facts)
     if asked and facts.senders:
         yield "operator", f"stop {', '.join(facts.senders)}: while a motion is asked for, a reset is refused"
@@ -258,8 +261,8 @@ def _gate(facts: Facts) -> Answer | None:
         return None
     return Answer(
         Verdict.STOPPED,
-        f"The gate brakes: {bare(next(iter(reasons.values())))}.",
-        tuple(("integrator", remedy_of(text)) for text in reasons.values() if remedy_of(text)),
+        f"The gate brakes: {next(iter(reasons.values()))}.",
+        tuple(("integrator", text) for name, text in facts.remedies(PLANT, "gate").items() if name in reasons),
     )
 
 
@@ -287,26 +290,24 @@ def _controller(facts: Facts) -> Answer | None:
             tuple(("integrator", f"start {node}") for node in absent),
             tuple(_run(facts, node) for node in absent),
         )
-    reasons = facts.reasons(CONTROLLER, "command")
+    reasons, remedies = facts.reasons(CONTROLLER, "command"), facts.remedies(CONTROLLER, "command")
     for name in ("bad_sensors", "no_state", "no_permit"):
         if name in reasons:
-            return Answer(
-                Verdict.STOPPED, f"The controller brakes: {bare(reasons[name])}.", (("", remedy_of(reasons[name])),)
-            )
+            return Answer(Verdict.STOPPED, f"The controller brakes: {reasons[name]}.", (("", remedies.get(name, "")),))
     if "many_senders" in reasons:
         return Answer(
             Verdict.STOPPED,
-            f"Commands are refused: {bare(reasons['many_senders'])}.",
-            (("operator", f"{remedy_of(reasons['many_senders'])} of {', '.join(facts.commanders())}"),),
+            f"Commands are refused: {reasons['many_senders']}.",
+            (("operator", f"{remedies.get('many_senders', '')} of {', '.join(facts.commanders())}"),),
         )
     silent = "timed_out" in reasons or "no_command" in reasons
     for name in ("refused", *(["stale"] if silent else []), "timed_out", "no_command"):
         if name not in reasons:
             continue
-        text = bare(reasons[name])
+        text = reasons[name]
         if name == "timed_out" and facts.value(CONTROLLER, "requested_m_s"):
             text += " and so is taken for zero"
-        remedy = remedy_of(reasons[name])
+        remedy = remedies.get(name, "")
         if facts.senders:
             remedy = f"look at {', '.join(facts.senders)}: {remedy}"
         return Answer(
@@ -361,13 +362,3 @@ def _moving(facts: Facts) -> Answer:
             (("", "if it stays so: look at ground, motors and torque limits"),),
         )
     return Answer(Verdict.IDLE, f"It may move{slow}; nothing stands against it, and nothing is asked of it.")
-
-
-def bare(text: str) -> str:
-    """A sentence without the remedy in brackets behind it."""
-    return text.partition(" (")[0]
-
-
-def remedy_of(text: str) -> str:
-    """The remedy in brackets behind a sentence; empty where there is none."""
-    return text.partition(" (")[2].removesuffix(")")

@@ -8,7 +8,9 @@ from robot_control.why.diagnosis import LOOP, Cause, Safety
 
 def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:
     """What a message says; `held` s in its state, `age` s since it was received."""
-    causes = zip(status.causes, status.sentences, status.remedies, status.actors, status.details, strict=True)
+    causes = zip(
+        status.causes, status.sentences, status.remedies_before_reset, status.actors, status.details, strict=True
+    )
     return Safety(
         state=status.state_name,
         permit=status.permit_name,

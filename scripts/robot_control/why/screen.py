@@ -13,7 +13,6 @@ from robot_control.why.diagnosis import (
     Facts,
     Safety,
     Verdict,
-    bare,
     judge,
     missing_nodes,
     senders_in_words,
@@ -134,16 +133,16 @@ def _command(facts: Facts, look: Look) -> Rows:
         parts.append(f"measured {speeds(facts.measured)}")
     if parts:
         yield "", "; ".join(parts), ""
-    reasons = facts.reasons(CONTROLLER, "command").values()
+    reasons = "; ".join(facts.reasons(CONTROLLER, "command").values())
     if reasons:
-        yield "controller", "; ".join(bare(text) for text in reasons), ""
+        yield "controller", reasons, ""
 
 
 def _gate(facts: Facts) -> Rows:
     verdict = facts.value(PLANT, "gate_verdict")
     if not verdict:
         return
-    reasons = "; ".join(bare(text) for text in facts.reasons(PLANT, "gate").values())
+    reasons = "; ".join(facts.reasons(PLANT, "gate").values())
     yield "gate", f"{verdict}: {reasons}" if reasons else verdict, ""
 
 
@@ -156,10 +155,10 @@ def _circumstances(facts: Facts) -> Rows:
         yield "wheels", unloaded, "33"
     slip = facts.reasons(ESTIMATOR, "slip").values()
     if slip or "slip" in facts.value(ESTIMATOR, "flags").split():
-        yield "slip", "; ".join(map(bare, slip)) or "wheels and inertial sensors disagree", "33"
+        yield "slip", "; ".join(slip) or "wheels and inertial sensors disagree", "33"
     lost = facts.reasons(ESTIMATOR, "estimate").values()
     if lost:
-        yield "odometry", "; ".join(map(bare, lost)), "33"
+        yield "odometry", "; ".join(lost), "33"
     if not facts.master_answers and facts.received() is not None:
         yield (
             "master",

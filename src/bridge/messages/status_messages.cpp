@@ -36,21 +36,17 @@ std::string quantity(double value, std::string_view unit) {
   return std::string(text.data()).append(unit);
 }
 
-/// "the battery is low: 20.9 V, limit 21 V (charge it soon)"
-/// By whatever reaction it was set to: what warns needs no reset, what latched needs one.
-std::string remedy_of(const BitName& row, bool latched) {
-  constexpr std::string_view kReset = "call e_stop_reset";
-  constexpr std::string_view kThenReset = ", then call e_stop_reset";
-  std::string text(row.remedy);
-  if (latched && !text.ends_with(kReset)) text.append(kThenReset);
-  if (!latched && text.ends_with(kThenReset)) text.resize(text.size() - kThenReset.size());
-  return text;
+/// "free the wheel, then call e_stop_reset"
+std::string with_reset(std::string_view remedy) {
+  return std::string(remedy).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
 }
 
+/// "the battery is low: 20.9 V, limit 21 V (charge it soon)"
 std::string warning_sentence(const BitName& row, const std::string& measured) {
   std::string text(row.sentence);
   if (!measured.empty()) text.append(": ").append(measured);
-  return text.append(" (").append(remedy_of(row, false)).append(")");
+  if (!row.remedy.empty()) text.append(" (").append(row.remedy).append(")");
+  return text;
 }
 
 }  // namespace
@@ -88,7 +84,8 @@ msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, c
     if ((permit.causes & row.bit) == 0) continue;
     message.causes.emplace_back(row.name);
     message.sentences.emplace_back(row.sentence);
-    message.remedies.push_back(remedy_of(row, true));
+    message.remedies.push_back(with_reset(row.remedy));
+    message.remedies_before_reset.emplace_back(row.remedy);
     message.actors.emplace_back(row.actor);
     message.details.push_back(detail(permit, row.bit, robot));
   }

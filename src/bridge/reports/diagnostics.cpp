@@ -36,7 +36,9 @@ void DiagnosticReport::value(const std::string& key, double number) {
 
 void DiagnosticReport::reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits) {
   for (const BitName& row : table) {
-    if ((bits & row.bit) != 0) value(subject + ": " + std::string(row.name), sentences_of({&row, 1}, row.bit));
+    if ((bits & row.bit) == 0) continue;
+    value(subject + ": " + std::string(row.name), std::string(row.sentence));
+    if (!row.remedy.empty()) value(subject + " remedy: " + std::string(row.name), std::string(row.remedy));
   }
 }
 
@@ -129,7 +131,7 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
 }
 
 void report_permit(DiagnosticReport& report, const Permit& permit) {
-  if (permit.causes != 0) report.error(sentences_of(kStopCauseNames, permit.causes));
+  if (permit.causes != 0) report.error(sentences_of(kStopCauseNames, permit.causes) + "; then call e_stop_reset");
   if (permit.warnings != 0) report.warn(sentences_of(kStopCauseNames, permit.warnings));
   report.value("cycle", permit.head.cycle);
   report.value("state", std::string(name_of(permit.state)));

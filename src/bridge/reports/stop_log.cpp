@@ -8,9 +8,6 @@
 namespace robot_control {
 namespace {
 
-constexpr std::string_view kReset = "call e_stop_reset";
-constexpr std::string_view kAndReset = ", then call e_stop_reset";
-
 bool may_drive(const msg::SafetyStatus& status) {
   return status.state == msg::SafetyStatus::READY || status.state == msg::SafetyStatus::DRIVE;
 }
@@ -20,12 +17,6 @@ std::string cause_text(const msg::SafetyStatus& status, std::size_t i) {
   std::string text = status.causes[i] + ": " + status.sentences[i];
   if (!status.details[i].empty()) text += " (" + status.details[i] + ")";
   return text;
-}
-
-/// A remedy without its reset, which is named once for all of them.
-std::string repair(std::string remedy) {
-  if (remedy.ends_with(kAndReset)) remedy.resize(remedy.size() - kAndReset.size());
-  return remedy == kReset ? "" : remedy;
 }
 
 std::string speed_text(double speed) {
@@ -51,19 +42,19 @@ std::vector<ReportLine> StopLog::look(const msg::SafetyStatus& status) {
 
 void StopLog::look_at_causes(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
   std::string causes;
-  std::string repairs;
+  std::string remedies;
   for (std::size_t i = 0; i < status.causes.size(); ++i) {
     if (!latched_.insert(status.causes[i]).second) continue;
     const std::string text = cause_text(status, i);
     const bool first = status.causes[i] == status.first_cause;
     causes = causes.empty() ? text : first ? text + "; " + causes : causes + "; " + text;
-    const std::string mend = repair(status.remedies[i]);
-    if (!mend.empty() && repairs.find(mend) == std::string::npos) repairs += (repairs.empty() ? "" : "; ") + mend;
+    const std::string& remedy = status.remedies_before_reset[i];
+    if (remedies.find(remedy) == std::string::npos) remedies += (remedies.empty() ? "" : "; ") + remedy;
   }
   const bool stopping = status.state == msg::SafetyStatus::STOPPING;
   if (!causes.empty()) {
-    lines.push_back({true, status.state_name + ": " + causes + ". To drive again: " + repairs +
-                               (repairs.empty() ? "" : ", then ") + std::string(kReset)});
+    lines.push_back({true, status.state_name + ": " + causes + ". To drive again: " + remedies +
+                               (remedies.empty() ? "" : ", then ") + "call e_stop_reset"});
   } else if (stopping_ && status.state == msg::SafetyStatus::STOPPED) {
     lines.push_back({false, "STOPPED: the ramp has ended, the robot brakes"});
   }
