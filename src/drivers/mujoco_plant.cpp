@@ -36,6 +36,7 @@ MujocoPlant::MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& p
       wheels_(model_, parameters),
       parameters_(parameters),
       motor_faults_(model_.robot, parameters.seed, model_.model->opt.timestep),
+      specific_force_(model_),
       sensor_errors_(model_.robot, parameters, period),
       sensor_faults_(model_.robot, parameters.seed),
       actuator_delay_(checked_delay("actuator_delay", parameters.actuator_delay)) {
@@ -94,6 +95,7 @@ void MujocoPlant::settle() {
   const double step = model_.model->opt.timestep;
   mj_step1(model_.model.get(), data_.get());
   wheels_.observe(*data_);
+  specific_force_.reset(*data_);
   set_origin();
   double rested = 0;
   for (double time = 0; time < kSettleTime && rested < kRestTime; time += model_.substeps * step) {
@@ -186,7 +188,7 @@ std::span<const JointCommand> MujocoPlant::received(std::span<const JointCommand
 void MujocoPlant::simulate(std::span<const JointCommand> commands) noexcept {
   effort_sum_ = {};
   normal_force_sum_ = {};
-  acceleration_sum_ = {};
+  specific_force_sum_.setZero();
   if (parameters_.contact_sensors) force_sum_.fill(Eigen::Vector3d::Zero());
   power_sum_ = 0;
   for (int i = 0; i < model_.substeps; ++i) {
@@ -246,9 +248,7 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     return false;
   }
   wheels_.observe(*data_);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    acceleration_sum_[axis] += data_->sensordata[static_cast<std::size_t>(model_.accelerometer) + axis];
-  }
+  specific_force_sum_ += specific_force_.step(*data_);
   for (std::size_t wheel = 0; wheel < laws_.size(); ++wheel) normal_force_sum_[wheel] += wheels_.normal_force(wheel);
   if (parameters_.contact_sensors) {
     for (std::size_t i = 0; i < std::min(wheels_.count(), kMaxContacts); ++i) force_sum_[i] += wheels_.force(i);
@@ -276,9 +276,7 @@ void MujocoPlant::collect() noexcept {
     sample.effort = effort_sum_[joint] / model_.substeps;
   }
   std::copy_n(data_->sensordata + model_.gyro, 3, exact_.imu.angular_velocity.begin());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    exact_.imu.linear_acceleration[axis] = acceleration_sum_[axis] / model_.substeps;
-  }
+  Eigen::Map<Eigen::Vector3d>(exact_.imu.linear_acceleration.data()) = specific_force_sum_ / model_.substeps;
   if (parameters_.contact_sensors) {
     for (std::size_t i = 0; i < kMaxContacts; ++i) {
       Eigen::Map<Eigen::Vector3d>(exact_.contact_forces[i].data()) = force_sum_[i] / model_.substeps;
@@ -326,8 +324,7 @@ bool MujocoPlant::finite() const noexcept {
   return std::all_of(data_->qpos, data_->qpos + model_.model->nq, is_finite) &&
          std::all_of(data_->qvel, data_->qvel + model_.model->nv, is_finite) &&
          std::all_of(data_->sensordata, data_->sensordata + model_.model->nsensordata, is_finite) &&
-         std::all_of(acceleration_sum_.begin(), acceleration_sum_.end(), is_finite) &&
-         std::all_of(normal_force_sum_.begin(), normal_force_sum_.end(), is_finite);
+         specific_force_sum_.allFinite() && std::all_of(normal_force_sum_.begin(), normal_force_sum_.end(), is_finite);
 }
 
 void MujocoPlant::fail(std::uint64_t fault, const char* message) noexcept {

@@ -7,9 +7,9 @@
 ///   →  mj_step1 (kinematics of the new state)
 ///
 /// and collects what `read` and `truth` hand out, so that after `write` k everything describes t_k+1: positions,
-/// velocities and gyro at that instant; accelerometer, contact forces and efforts as means over [t_k, t_k+1), as
-/// SensorFrame promises. Joints that are no wheels take no commands (JointRole): passive ones move freely, held ones
-/// stand by friction.
+/// velocities and gyro at that instant; accelerometer (specific_force.h), contact forces and efforts as means over
+/// [t_k, t_k+1), as SensorFrame promises. Joints that are no wheels take no commands (JointRole): passive ones move
+/// freely, held ones stand by friction.
 ///
 /// `start` sets the robot down on the site `start` of the scene and lets it settle with the brakes on, at most for
 /// 20 s; where it then rests is time zero and the origin of truth. It rests when its base has moved slower than
@@ -48,6 +48,7 @@
 #include "drivers/mujoco_plant_parameters.h"
 #include "drivers/sensors/sensor_errors.h"
 #include "drivers/sensors/sensor_faults.h"
+#include "drivers/sensors/specific_force.h"
 #include "hal/driver.h"
 #include "robot/robot_model.h"
 
@@ -99,6 +100,7 @@ class MujocoPlant final : public Driver {
   std::vector<JointLaw> laws_;  ///< per drive wheel
   std::vector<Motor> motors_;   ///< per drive wheel
   MotorFaults motor_faults_;
+  SpecificForce specific_force_;
   SensorErrors sensor_errors_;
   SensorFaults sensor_faults_;
   std::vector<JointCommand> brakes_;
@@ -116,7 +118,7 @@ class MujocoPlant final : public Driver {
   // sums over the steps of a period
   std::array<double, kMaxJoints> effort_sum_{};
   std::array<double, kMaxWheels> normal_force_sum_{};
-  std::array<double, 3> acceleration_sum_{};
+  Eigen::Vector3d specific_force_sum_ = Eigen::Vector3d::Zero();
   std::array<Eigen::Vector3d, kMaxContacts> force_sum_{};
   double power_sum_ = 0;
 

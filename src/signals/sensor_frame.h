@@ -14,8 +14,8 @@ namespace robot_control {
 
 inline constexpr std::size_t kMaxContacts = 8;
 
-/// In the IMU link's own axes. Angular velocity belongs to t_k, linear acceleration (specific force,
-/// +g upwards at rest) to [t_k-1, t_k).
+/// In the IMU link's own axes. Angular velocity belongs to t_k, linear acceleration (specific force, +g upwards at
+/// rest) to [t_k-1, t_k): in world axes, plus gravity, times the period, it is by how much the IMU's velocity changed.
 struct ImuSample {
   Vector3 angular_velocity{};     ///< rad/s
   Vector3 linear_acceleration{};  ///< m/s²

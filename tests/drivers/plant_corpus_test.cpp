@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "integrated_force.h"
 #include "plant_fixture.h"
 #include "support/corpus.h"
 
@@ -121,6 +122,27 @@ TEST_P(RealRobot, TurnsWithoutHopping) {
   }
   EXPECT_GT(grounded, 1980);
   EXPECT_GT(truth().twist_base.angular[2], 0.8 * 2 * rim / robot_.effective_wheel_base()) << "it does turn";
+}
+
+// From rest to full speed, a turn, and the brake: the accelerometer integrates to the velocity (SensorFrame).
+TEST_P(RealRobot, MeasuresTheForceThatMovesIt) {
+  IntegratedForce force(robot_.imu_in_base, 0.001);
+  const auto look = [&] {
+    SensorFrame sensors;
+    plant_->read(sensors);
+    force.add(sensors, truth());
+  };
+  const double turn = std::min(0.25 * robot_.effective_wheel_base(), 0.6 * full_speed());
+  for (int k = 0; k < 4000; ++k) {
+    if (k < 2000)
+      step(std::min(1.0, k / 1000.0) * full_speed(), std::min(1.0, k / 1000.0) * full_speed());
+    else if (k < 3000)
+      step(-turn, turn);
+    else
+      brake(1);
+    look();
+  }
+  EXPECT_LT(force.worst(), 0.001);
 }
 
 class RealRobotOnIce : public RealRobot {

@@ -61,8 +61,7 @@ class Writer {
     text += "<statistic extent=\"1\"" + attribute("center", mjcf_numbers(base.translation())) + "/>\n";
     text += "<asset>\n" + assets_ + "</asset>\n<worldbody>\n" + bodies_ + "</worldbody>\n";
     text += "<equality>\n" + equalities_ + "</equality>\n<sensor>\n";
-    text += "<gyro" + attribute("name", kMjcfGyro) + attribute("site", kMjcfImu) + " noise=\"0\" cutoff=\"0\"/>\n";
-    text += "<accelerometer" + attribute("name", kMjcfAccelerometer) + attribute("site", kMjcfImu) +
+    text += "<gyro" + attribute("name", kMjcfGyro) + attribute("site", kMjcfImu) +
             " noise=\"0\" cutoff=\"0\"/>\n</sensor>\n</mujoco>\n";
     return text;
   }

@@ -39,7 +39,6 @@ namespace robot_control {
 /// Names inside the MuJoCo model; joints and bodies bear their URDF names, but for what MuJoCo itself calls "world".
 inline constexpr const char* kMjcfImu = "robot_control/imu";
 inline constexpr const char* kMjcfGyro = "robot_control/gyro";
-inline constexpr const char* kMjcfAccelerometer = "robot_control/accelerometer";
 inline constexpr const char* kMjcfStart = "start";
 
 /// The body that the joint of this link moves.

@@ -118,7 +118,7 @@ void find_addresses(MujocoModel& result) {
     result.wheel_shape.push_back(find(model, mjOBJ_GEOM, mjcf_wheel_name(wheel)));
   }
   result.gyro = model.sensor_adr[find(model, mjOBJ_SENSOR, kMjcfGyro)];
-  result.accelerometer = model.sensor_adr[find(model, mjOBJ_SENSOR, kMjcfAccelerometer)];
+  result.imu = find(model, mjOBJ_SITE, kMjcfImu);
 }
 
 /// ", such as flat, kerb in its folder"; empty: there is none.

@@ -48,7 +48,7 @@ struct MujocoModel {
   std::size_t drive_wheels = 0;
   std::array<double, 3> up{0, 0, 1};  ///< z axis of the site `start`, world axes
   int gyro = 0;                       ///< into sensordata
-  int accelerometer = 0;              ///< into sensordata
+  int imu = 0;                        ///< site
 };
 
 /// Throws DriverError: a scene that does not compile (with MuJoCo's own message), has no site `start` or changes the
