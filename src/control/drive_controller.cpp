@@ -79,13 +79,19 @@ void DriveController::reset(const VelocityCommand& inbox, bool with_zero) noexce
 void DriveController::tune(const DriveTuning& tuning) noexcept {
   watch_.set_timeout(tuning.cmd_vel_timeout);
   limiter_.set_limits(speed_limits(tuning));
-  const auto planned = [&] { return feed_forward_.efforts(limiter_.value(), limiter_.acceleration()); };
-  const WheelValues before = planned();
+  const auto planned = [&](const PlanarTwist& acceleration) {
+    return feed_forward_.efforts(limiter_.value(), acceleration);
+  };
+  const WheelValues before = planned(limiter_.acceleration()), steady_before = planned({});
   feed_forward_.tune(tuning);
-  const WheelValues after = planned();
+  const WheelValues after = planned(limiter_.acceleration()), steady_after = planned({});
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    const double less = driving_ && in_control_ ? before[i] - after[i] : 0;
-    loops_[i].tune(wheel_loop_gains(tuning.wheels[i]), tuning.tracking_bandwidth, less);
+    FeedForwardDecrease decrease;
+    if (driving_ && in_control_) {
+      decrease.steady = steady_before[i] - steady_after[i];
+      decrease.inertial = before[i] - after[i] - decrease.steady;
+    }
+    loops_[i].tune(wheel_loop_gains(tuning.wheels[i]), tuning.tracking_bandwidth, decrease);
   }
 }
 

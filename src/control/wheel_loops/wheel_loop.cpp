@@ -6,7 +6,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kIntegralDecayTime = 0.1;  // s
+constexpr double kDecayTime = 0.1;  // s
 
 }  // namespace
 
@@ -16,20 +16,22 @@ WheelLoop::WheelLoop(const WheelLoopGains& gains, double bandwidth, double effor
 void WheelLoop::reset() noexcept {
   tracked_ = false;
   integral_ = 0;
+  hand_over_ = 0;
   load_ = 0;
   effort_residual_ = 0;
   last_gains_.reset();
   saturated_ = false;
 }
 
-void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, double feed_forward_decrease) noexcept {
+void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, const FeedForwardDecrease& decrease) noexcept {
   tracking_.tune(bandwidth, effort_residual_ / gains_.model_inertia - effort_residual_ / gains.model_inertia);
   if (!last_gains_ && (gains.kp != gains_.kp || gains.kd != gains_.kd)) last_gains_ = gains_;
   gains_ = gains;
-  integral_ = std::clamp(integral_ + feed_forward_decrease, -effort_limit_, effort_limit_);
+  integral_ = std::clamp(integral_ + decrease.steady, -effort_limit_, effort_limit_);
+  hand_over_ += decrease.inertial;
   // The torques under way were planned with the old feed-forward: without this the tracking loop would see a residual.
-  load_ += feed_forward_decrease;
-  for (WheelPlan& plan : plans_) plan.feed_forward -= feed_forward_decrease;
+  load_ += decrease.steady;
+  for (WheelPlan& plan : plans_) plan.feed_forward -= decrease.steady;
 }
 
 void WheelLoop::measure(const JointSample& sample, double periods, bool driven) noexcept {
@@ -49,6 +51,7 @@ void WheelLoop::measure(const JointSample& sample, double periods, bool driven) 
 
 void WheelLoop::reset_to_measured() noexcept {
   plans_.fill({.velocity = velocity()});
+  hand_over_ = 0;
   load_ = integral_;
   last_gains_.reset();
   saturated_ = false;
@@ -61,16 +64,18 @@ void WheelLoop::preload_integrator(double effort) noexcept {
 
 double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noexcept {
   const double error = plans_[1].velocity - velocity();
+  const double kept = 1 - std::min(1.0, periods * period_ / kDecayTime);
+  hand_over_ *= kept;
   const auto direct_with = [&](const WheelLoopGains& gains) {
-    return plan.feed_forward + gains.kp * error - gains.kd * tracking_.acceleration();
+    return plan.feed_forward + hand_over_ + gains.kp * error - gains.kd * tracking_.acceleration();
   };
-  const double direct = direct_with(gains_);
   if (last_gains_) {
     const double effort = std::clamp(direct_with(*last_gains_) + integral_, -effort_limit_, effort_limit_);
-    integral_ = std::clamp(effort - direct, -effort_limit_, effort_limit_);
+    hand_over_ += effort - integral_ - direct_with(gains_);
     last_gains_.reset();
   }
-  if (gains_.ki == 0) integral_ -= integral_ * std::min(1.0, periods * period_ / kIntegralDecayTime);
+  const double direct = direct_with(gains_);
+  if (gains_.ki == 0) integral_ *= kept;
   const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
   const bool at_limit = clamped || std::abs(direct + integral) > effort_limit_;
   const bool winds_up = at_limit && (direct + integral) * error > 0;
@@ -81,6 +86,7 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
   saturated_ = effort != unclamped_effort_;
   plans_[1] = plans_[0];
   plans_[0] = plan;
+  plans_[0].feed_forward += hand_over_;
   return effort;
 }
 

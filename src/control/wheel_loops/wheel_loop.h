@@ -3,7 +3,7 @@
 ///
 ///   error    = velocity_plan(k−2) − velocity
 ///   integral = integral + ki·error·dt
-///   effort   = feed_forward + kp·error + integral − kd·acceleration,   |effort| ≤ effort_limit
+///   effort   = feed_forward + hand_over + kp·error + integral − kd·acceleration,   |effort| ≤ effort_limit
 ///
 /// velocity, acceleration: of the tracking loop on the encoder angle. The torque of cycle k acts over [t_k+1, t_k+2),
 /// so at t_k an ideal wheel has the speed that was planned at k−2. Compared with that plan, a ramp that feed-forward
@@ -21,9 +21,12 @@
 /// with 0.1 s, the pace of derived gains. Bumpless: `preload_integrator` sets the integrator to the load that the brake
 /// was holding, so the first torque after a brake equals the torque before it, and a robot on a slope does not sag.
 ///
-/// Bumpless change of gains (`tune`): in their first cycle the integrator takes over the difference of the proportional
-/// and derivative parts between old and new gains, and the residual of the tracking loop takes over the change of the
-/// known acceleration; so torque, up to ki·error·dt, and tracked speed continue without a jump.
+/// Bumpless change of gains and feed-forward (`tune`): torque, up to ki·error·dt, and tracked speed continue without a
+/// jump, and nothing remains of it when the present ramp has ended. A difference of feed-forward at constant speed is a
+/// load that stays: the integrator takes it over. A difference of the part for the acceleration, and of the
+/// proportional and derivative parts between old and new gains, is `hand_over`, a torque that decays with 0.1 s: an
+/// integrator would keep it after the ramp, for 1/pace of the new gains. The residual of the tracking loop takes over
+/// the change of the known acceleration.
 ///
 /// Gains for 12 kg, 1 kHz, 20 Hz, as wheel_loop_gains.h derives them for that robot (wheel inertia J: lifted 0.005,
 /// turning 0.045, straight 0.065 kg·m²; derivation and margins: docs/derivations.md):
@@ -60,6 +63,12 @@ struct WheelPlan {
   double feed_forward = 0;  ///< N·m
 };
 
+/// Decrease of the feed-forward of the present plan by other parameters, N·m.
+struct FeedForwardDecrease {
+  double steady = 0;    ///< of the part for the speed
+  double inertial = 0;  ///< of the part for the acceleration
+};
+
 /// All values in the joint's own sign. Order in a cycle: `measure`; while this loop is not in control,
 /// `reset_to_measured` and, at standstill, `preload_integrator`; `step` if the wheel is to be driven, in the cycle of
 /// the hand-over after `reset_to_measured`.
@@ -71,9 +80,8 @@ class WheelLoop {
   /// A new run: the next sample initialises the tracking loop.
   void reset() noexcept;
 
-  /// Between two cycles: other gains and bandwidth, Hz. `feed_forward_decrease`, N·m: decrease of the plan's
-  /// feed-forward.
-  void tune(const WheelLoopGains& gains, double bandwidth, double feed_forward_decrease) noexcept;
+  /// Between two cycles: other gains and bandwidth, Hz.
+  void tune(const WheelLoopGains& gains, double bandwidth, const FeedForwardDecrease& decrease) noexcept;
 
   /// The next sample initialises the tracking loop; the integrator keeps the load.
   void restart_tracking() noexcept { tracked_ = false; }
@@ -104,6 +112,7 @@ class WheelLoop {
   TrackingLoop tracking_;
   std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
   double integral_ = 0;
+  double hand_over_ = 0;                      ///< N·m, header
   double unclamped_effort_ = 0;               ///< N·m, the last effort before the clamp
   double load_ = 0;                           ///< N·m, integral at the last hand-over
   double effort_residual_ = 0;                ///< N·m, the last measured torque less the planned one
