@@ -49,9 +49,9 @@ constexpr std::array<Key, 2> fact(std::string_view group) {
 }
 
 template <auto Condition>
-constexpr std::array<Key, 3> condition(std::string_view group, std::string_view unit, double min, double max,
-                                       unsigned traits = 0) {
+constexpr std::array<Key, 3> condition(std::string_view group, std::string_view unit, double min, double max) {
   using C = robot_control::Condition;
+  constexpr unsigned traits = (SafetyParameters{}.*Condition).limit ? 0U : unsigned{kOptional};
   return rows(std::to_array<Key>({{"limit", in_condition<Condition, &C::limit>, unit, min, max, traits, {}, group}}),
               fact<Condition>(group));
 }
@@ -229,28 +229,15 @@ constexpr auto kSafetyLimits = std::to_array<Key>({
     {"latch_file", in<&P::latch_file>, {}, 0, 0, kPath | kMayBeEmpty | kOptional},
 });
 
-constexpr auto kSafetyMonitor =
-    rows(kSafetyLimits,  //
-         condition<&Safety::wheel_speed>("wheel_speed", "rad/s", 0.01, 10000, kOptional),
-         condition<&Safety::wheel_acceleration>("wheel_acceleration", "rad/s²", 0.1, 1.0e7, kOptional),
-         condition<&Safety::wheel_effort>("wheel_effort", "of the effort limit", 0.01, 10),
-         condition<&Safety::power>("power", "W", 0.01, 1.0e7, kOptional),
-         condition<&Safety::torque_oscillation>("torque_oscillation", "of the effort limit", 0.01, 10),
-         condition<&Safety::stall>("stall", "rad", 0.001, 1000, kOptional),
-         condition<&Safety::runaway>("runaway", "rad/s", 0.001, 10000, kOptional),
-         condition<&Safety::wrong_direction>("wrong_direction", "rad/s", 0.001, 10000),
-         condition<&Safety::not_stopping>("not_stopping", "s", 0.01, 60, kOptional),
-         condition<&Safety::yaw_rate>("yaw_rate", "rad/s", 0.001, 100),
-         condition<&Safety::tilt>("tilt", "rad", 0.01, 1.5),  // below a right angle
-         condition<&Safety::tip_over>("tip_over", "rad/s", 0.001, 100),
-         condition<&Safety::free_fall>("free_fall", "m/s²", 0.01, 9),  // below gravity
-         condition<&Safety::lift>("lift", "of the weight", 0.001, 1),
-         condition<&Safety::impact>("impact", "m/s²", 0.1, 100000),
-         fact<&Safety::encoders_lost>("encoders_lost"),  //
-         fact<&Safety::imu_lost>("imu_lost"),            //
-         fact<&Safety::imu_stuck>("imu_stuck"), condition<&Safety::overruns>("overruns", "1/s", 0.01, 2000),
-         condition<&Safety::battery_low>("battery_low", "V", 0.1, 1000, kOptional),
-         condition<&Safety::battery_empty>("battery_empty", "V", 0.1, 1000, kOptional));
+// clang-format off
+constexpr auto kSafetyMonitor = rows(kSafetyLimits
+#define CAUSE(...)
+#define CONDITION(id, name, sentence, remedy, actor, unit, min, max, ...) \
+    , condition<&Safety::name>(#name, unit, min, max)
+#define FACT(id, name, ...) , fact<&Safety::name>(#name)
+#include "signals/stop_causes.def"
+    );
+// clang-format on
 
 constexpr auto kTelemetry = std::to_array<Key>({
     {"directory", in<&P::telemetry, &TelemetryParameters::directory>, {}, 0, 0, kMayBeEmpty},

@@ -22,6 +22,7 @@
 #include "python/offline_estimator.h"
 #include "python/recorder.h"
 #include "python/wheel_loops.h"
+#include "signals/cause_names.h"
 #include "simulation/closed_loop.h"
 #include "telemetry/columns.h"
 
@@ -182,6 +183,9 @@ PYBIND11_MODULE(_robot_control, module) {
                         "lockstep"_a = parameters.loop.clock == ClockMode::kLockstep);
       },
       py::arg("path"), py::arg("values"));
+  std::vector<std::string> causes;
+  for (const BitName& row : kStopCauseNames) causes.emplace_back(row.name);
+  module.attr("stop_causes") = causes;
   bind_offline_estimator(module);
   py::class_<ClosedLoop>(module, "ClosedLoop")
       .def(py::init([](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {

@@ -10,29 +10,14 @@ namespace {
 
 using Entry = std::pair<const char*, const Condition SafetyParameters::*>;
 
+// clang-format off
 constexpr Entry kConditions[] = {
-    {"wheel_speed", &SafetyParameters::wheel_speed},
-    {"wheel_acceleration", &SafetyParameters::wheel_acceleration},
-    {"wheel_effort", &SafetyParameters::wheel_effort},
-    {"power", &SafetyParameters::power},
-    {"torque_oscillation", &SafetyParameters::torque_oscillation},
-    {"stall", &SafetyParameters::stall},
-    {"runaway", &SafetyParameters::runaway},
-    {"wrong_direction", &SafetyParameters::wrong_direction},
-    {"not_stopping", &SafetyParameters::not_stopping},
-    {"yaw_rate", &SafetyParameters::yaw_rate},
-    {"tilt", &SafetyParameters::tilt},
-    {"tip_over", &SafetyParameters::tip_over},
-    {"free_fall", &SafetyParameters::free_fall},
-    {"lift", &SafetyParameters::lift},
-    {"impact", &SafetyParameters::impact},
-    {"encoders_lost", &SafetyParameters::encoders_lost},
-    {"imu_lost", &SafetyParameters::imu_lost},
-    {"imu_stuck", &SafetyParameters::imu_stuck},
-    {"overruns", &SafetyParameters::overruns},
-    {"battery_low", &SafetyParameters::battery_low},
-    {"battery_empty", &SafetyParameters::battery_empty},
+#define CAUSE(...)
+#define CONDITION(id, name, ...) {#name, &SafetyParameters::name},
+#define FACT(id, name, ...) {#name, &SafetyParameters::name},
+#include "signals/stop_causes.def"
 };
+// clang-format on
 
 [[noreturn]] void refuse(const std::string& name, double value, const char* rule) {
   throw std::invalid_argument("safety monitor: " + name + " is " + std::to_string(value) + ", must be " + rule);

@@ -31,49 +31,23 @@ enum class SupervisorState : std::uint64_t {
   kFault = 5,     ///< Latched brake; the cause needs repair (driver fault).
 };
 
-/// Bits of Permit::causes, active and warnings; what each means, from which fact and by which limit: safety/.
-enum StopCause : std::uint64_t {
-  kCauseEmergencyStopTopic = 1u << 0,
-  kCauseEmergencyStopService = 1u << 1,
-  kCauseEmergencyStopInput = 1u << 2,
-  kCauseDriverLost = 1u << 3,  ///< No sensor frame for 20 periods (wall clock only), or the driver was restarted.
-  kCauseDriverFault = 1u << 4,
-  kCauseControllerLost = 1u << 5,    ///< No command for loss_cycles cycles.
-  kCauseEstimatorLost = 1u << 6,     ///< No state for loss_cycles cycles.
-  kCauseHeartbeatLost = 1u << 7,     ///< The operator's heartbeat stopped.
-  kCauseMonitorRestarted = 1u << 8,  ///< The monitor was restarted while the driver ran on.
-  kCauseCorruptFrame = 1u << 9,      ///< A checksum was wrong in three cycles in a row.
-  kCauseNotFinite = 1u << 10,        ///< NaN or infinity in sensors or command, three cycles in a row.
-  kCauseMonitorLate = 1u << 11,      ///< The monitor itself missed more than loss_cycles cycles.
-  kCauseEncodersLost = 1u << 12,     ///< Joint samples missing or invalid.
-  kCauseImuLost = 1u << 13,          ///< Gyro or accelerometer, once there, is missing.
-  kCauseImuStuck = 1u << 14,         ///< Gyro or accelerometer repeats one sample while the robot moves.
-  kCauseCommandStale = 1u << 15,     ///< The commands descend from an old state.
-  kCauseWheelSpeed = 1u << 16,
-  kCauseWheelAcceleration = 1u << 17,
-  kCauseWheelEffort = 1u << 18,
-  kCausePower = 1u << 19,
-  kCauseStall = 1u << 20,           ///< A wheel stands although its target is not zero.
-  kCauseRunaway = 1u << 21,         ///< A wheel is faster than its target.
-  kCauseWrongDirection = 1u << 22,  ///< A wheel turns against its target.
-  kCauseNotStopping = 1u << 23,     ///< The robot still moves although it is commanded to stand.
-  kCauseYawRate = 1u << 24,         ///< Gyro and wheels disagree on how fast the robot turns.
-  kCauseTilt = 1u << 25,
-  kCauseTipOver = 1u << 26,  ///< Tilted, and tilting further fast.
-  kCauseFreeFall = 1u << 27,
-  kCauseLift = 1u << 28,  ///< The wheels carry too little of the weight.
-  kCauseImpact = 1u << 29,
-  kCauseGateRefuses = 1u << 30,   ///< The gate brakes in spite of the permit, or refuses frames.
-  kCauseGateDisobeys = 1u << 31,  ///< The gate let a command pass in spite of the permit.
-  kCauseOverruns = std::uint64_t{1} << 32,
-  kCauseBatteryLow = std::uint64_t{1} << 33,
-  kCauseBatteryEmpty = std::uint64_t{1} << 34,
-  kCauseLatchUnreadable = std::uint64_t{1} << 35,    ///< What an earlier monitor had latched cannot be read.
-  kCauseTorqueOscillation = std::uint64_t{1} << 36,  ///< A motor pulls to and fro for nothing.
+// clang-format off
+/// The bits in their order.
+enum class StopCauseBit : unsigned {
+#define CAUSE(id, ...) kBit##id,
+#include "signals/stop_causes.def"
+  kCount
 };
-inline constexpr std::size_t kStopCauses = 37;
 
-/// The measurement that made a cause active: `value` beyond `limit`, in the unit of its row in cause_names.h.
+/// Bits of Permit::causes, active and warnings: kCauseWheelSpeed, …; what each means: stop_causes.def.
+enum StopCause : std::uint64_t {
+#define CAUSE(id, ...) kCause##id = std::uint64_t{1} << static_cast<unsigned>(StopCauseBit::kBit##id),
+#include "signals/stop_causes.def"
+};
+// clang-format on
+inline constexpr auto kStopCauses = static_cast<std::size_t>(StopCauseBit::kCount);
+
+/// The measurement that made a cause active: `value` beyond `limit`, in the unit of its row in stop_causes.def.
 struct CauseEvidence {
   std::uint64_t cause = 0;           ///< one bit; 0: unused
   std::uint64_t cycle = 0;           ///< in which it became active

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""docs/parameters.md from the schema (ranges, units) and config/robot_params.yaml (defaults, meaning).
+"""docs/parameters.md from the schema (ranges, units) and config/robot_params.yaml (defaults, meaning); before that, the
+lines of this file for the conditions of the safety monitor from src/signals/stop_causes.def.
 
-tests/docs/parameters_page.py      after a build with tests; writes the page
+tests/docs/parameters_page.py      after a build with tests; writes both
 """
 
 import re
@@ -12,6 +13,8 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "parameters.md"
 YAML = ROOT / "config" / "robot_params.yaml"
 SCHEMA = ROOT / "build" / "robot_control" / "tests" / "parameters" / "print_schema"
+
+CONDITIONS = "  # (lines of src/signals/stop_causes.def, written by tests/docs/parameters_page.py)"
 
 HEAD = """# Parameters
 
@@ -130,10 +133,28 @@ def without_unit(text, allowed):
     return text
 
 
+def printed(*arguments):
+    return subprocess.run([SCHEMA, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+def with_conditions(yaml, table):
+    """The file with the conditions of `table` below the line that names their source."""
+    lines = []
+    for row in table.splitlines():
+        name, limit, persistence, reaction, meaning = row.split("\t")
+        given = "" if limit == "{}" else f"limit: {limit}, "
+        value = f"{{{given}persistence: {persistence}, reaction: {reaction[1:].lower()}}}"
+        lines.append(f"  {name + ':':<19} {value:<49} # {meaning}")
+    return re.sub(rf"(?<={re.escape(CONDITIONS)}\n).*?\n(?=\n)", "\n".join(lines) + "\n", yaml, flags=re.DOTALL)
+
+
 def written():
-    schema = subprocess.run([SCHEMA], capture_output=True, text=True, check=True).stdout
-    return page(schema, YAML.read_text())
+    """The YAML file and the page."""
+    yaml = with_conditions(YAML.read_text(), printed("conditions"))
+    return yaml, page(printed(), yaml)
 
 
 if __name__ == "__main__":
-    PAGE.write_text(written())
+    new_yaml, new_page = written()
+    YAML.write_text(new_yaml)
+    PAGE.write_text(new_page)

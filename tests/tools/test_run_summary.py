@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from robot_control.common.cause_names import STOP_CAUSES
 from robot_control.demo import run_picture
 from robot_control.demo.brakes import GATE_REASONS
 from robot_control.demo.run_picture import draw_run
@@ -104,9 +103,6 @@ def test_the_vocabulary_is_that_of_the_frames():
     assert tuple(re.findall(r'"(\w+)"', states)) == SUPERVISOR_STATES
     reasons = re.search(r"kGateReasonNames = .*?\n\}\);", names, re.DOTALL).group(0)
     assert tuple(re.findall(r'\{kGate\w+, "(\w+)"', reasons)) == GATE_REASONS
-    names = (ROOT / "src/signals/cause_names.h").read_text()
-    causes = re.search(r"kStopCauseNames = .*?\n\}\);", names, re.DOTALL).group(0)
-    assert tuple(re.findall(r'\{kCause\w+, "(\w+)"', causes)) == STOP_CAUSES
 
 
 def test_json_holds_the_figures_and_no_nan(run):

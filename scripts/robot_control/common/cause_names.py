@@ -5,45 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-STOP_CAUSES = (
-    "e_stop_topic",
-    "e_stop_service",
-    "e_stop_input",
-    "driver_lost",
-    "driver_fault",
-    "controller_lost",
-    "estimator_lost",
-    "heartbeat_lost",
-    "monitor_restarted",
-    "corrupt_frame",
-    "not_finite",
-    "monitor_late",
-    "encoders_lost",
-    "imu_lost",
-    "imu_stuck",
-    "command_stale",
-    "wheel_speed",
-    "wheel_acceleration",
-    "wheel_effort",
-    "power",
-    "stall",
-    "runaway",
-    "wrong_direction",
-    "not_stopping",
-    "yaw_rate",
-    "tilt",
-    "tip_over",
-    "free_fall",
-    "lift",
-    "impact",
-    "gate_refuses",
-    "gate_disobeys",
-    "overruns",
-    "battery_low",
-    "battery_empty",
-    "latch_unreadable",
-    "torque_oscillation",
-)
+from robot_control._robot_control import stop_causes
+
+STOP_CAUSES: tuple[str, ...] = tuple(stop_causes)
 """In the order of the bits of StopCause."""
 
 
