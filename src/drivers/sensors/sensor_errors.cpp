@@ -68,7 +68,7 @@ void InertialError::step(Vector3& value) noexcept {
 }
 
 SensorErrors::SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
-    : on_(parameters.sensor_errors),
+    : on_(parameters.sensor_errors != ErrorLevel::kIdeal),
       seed_(parameters.seed),
       period_(period),
       count_(parameters.encoder_resolution > 0 ? 2 * std::numbers::pi / parameters.encoder_resolution : 0),
