@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "drivers/sensors/errors.h"
+
 namespace robot_control {
 
 enum class TyreModel {
@@ -13,7 +15,7 @@ enum class TyreModel {
   kNative,  ///< MuJoCo's own contact friction
 };
 
-struct MujocoPlantParameters {
+struct MujocoPlantParameters : Errors {
   std::string scene;         ///< MJCF path: the world around the robot
   std::uint64_t seed = 0;    ///< of every random number in the plant
   std::uint64_t cycles = 0;  ///< the node ends by itself after so many cycles; 0 = never
@@ -44,22 +46,8 @@ struct MujocoPlantParameters {
   double motor_damping = 0;          ///< N·m·s/rad
   std::uint64_t actuator_delay = 0;  ///< cycles beyond the one of the bus
 
-  // The sensors (sensor_errors.h). Gyro and accelerometer are those of a Bosch BMI088 (data sheet BST-BMI088-DS001,
-  // section 1 "Specification", typical values): noise 0.014 °/s/√Hz and 175 µg/√Hz (mean of 160 in x and y, 190 in z),
-  // offset ±1 °/s and ±20 mg. It gives no bias walk; its temperature coefficients of the offset, 0.015 °/s/K and
-  // 0.2 mg/K, make that of a device whose temperature walks by 2 K in an hour. Its gyro's scale is right to
-  // ±1 % ("sensitivity tolerance"), to 0.1 % after a calibration on a turntable; that is an error itself, no spread.
-  bool sensor_errors = true;                ///< false: none of what follows
-  double encoder_resolution = 4096;         ///< counts per turn of a wheel; 0: exact
-  double gyro_noise = 2.44e-4;              ///< rad/s/√Hz
-  double gyro_bias = 0.01745;               ///< rad/s, standard deviation of each axis' draw
-  double gyro_bias_walk = 8.7e-6;           ///< rad/s/√s
-  double gyro_scale_error = 0;              ///< measured rate = true rate · (1 + error), every axis
-  double accelerometer_noise = 1.716e-3;    ///< m/s²/√Hz
-  double accelerometer_bias = 0.196;        ///< m/s², standard deviation of each axis' draw
-  double accelerometer_bias_walk = 6.5e-5;  ///< m/s²/√s
-  std::uint64_t sensor_delay = 0;           ///< cycles
-  bool contact_sensors = false;             ///< true: forces at wheels and casters (SensorFrame::contact_forces)
+  // The sensors.
+  bool contact_sensors = false;  ///< true: forces at wheels and casters (SensorFrame::contact_forces)
 
   // The battery (battery.h); it does not run down.
   double battery_voltage = 0;       ///< V, without load; 0: none is reported

@@ -84,6 +84,10 @@ class TreeReader {
     const auto entry = tree_.entries.find(path);
     if (entry != tree_.entries.end()) {
       if (read_value(entry->second, path, key, key.field(parameters_), problems_)) sound_.insert(path);
+      if (const std::string_view now = word_now(entry->second, key.field(parameters_)); !now.empty()) {
+        parameters_.warnings.push_back(path + " = " + as_written(entry->second) + " is an old value: write " +
+                                       std::string(now) + " [" + entry->second.origin + "]");
+      }
     } else if ((key.traits & kOptional) == 0) {
       const auto map = tree_.entries.find(group);
       const std::string& place = map == tree_.entries.end() ? source_ : map->second.origin;

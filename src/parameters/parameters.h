@@ -74,6 +74,7 @@ struct Parameters {
   std::string latch_file;  ///< path, see runtime/latch_file.h; empty: none
   ReportParameters report;
   TelemetryParameters telemetry;
+  std::vector<std::string> warnings;  ///< values that were accepted although they are written in an old way
 };
 
 /// One value laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate". A condition of the safety

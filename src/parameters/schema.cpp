@@ -122,6 +122,15 @@ constexpr auto kMujocoPlant = std::to_array<Key>({
     {"motor_damping", in<&P::plant, &Plant::motor_damping>, "N·m·s/rad", 0, 1000},
     {"actuator_delay", in<&P::plant, &Plant::actuator_delay>, "cycles", 0, 100},
     {"sensor_errors", in<&P::plant, &Plant::sensor_errors>},
+    {"roughness", in<&P::plant, &Plant::roughness>, {}, 0, 100},
+    {"accelerometer_vibration", in<&P::plant, &Plant::accelerometer_vibration>, "m/s²/√Hz", 0, 10},
+    {"gyro_vibration", in<&P::plant, &Plant::gyro_vibration>, "rad/s/√Hz", 0, 1},
+    {"accelerometer_slow_error", in<&P::plant, &Plant::accelerometer_slow_error>, "m/s²", 0, 10},
+    {"imu_delay", in<&P::plant, &Plant::imu_delay>, "s", 0, 0.5},
+    {"imu_jitter", in<&P::plant, &Plant::imu_jitter>, "s", 0, 0.1},
+    {"encoder_jitter", in<&P::plant, &Plant::encoder_jitter>, "s", 0, 0.1},
+    {"wheel_slip_noise", in<&P::plant, &Plant::wheel_slip_noise>, "m/√m", 0, 0.1},
+    {"centre_of_gravity_error", in<&P::plant, &Plant::centre_of_gravity_error>, {}, -0.2, 0.2},
     {"encoder_resolution", in<&P::plant, &Plant::encoder_resolution>, "counts", 0, 1.0e9, kZeroIsOff},
     {"gyro_noise", in<&P::plant, &Plant::gyro_noise>, "rad/s/√Hz", 0, 1},
     {"gyro_bias", in<&P::plant, &Plant::gyro_bias>, "rad/s", 0, 10},
@@ -269,6 +278,18 @@ constexpr auto kTyreWords = std::to_array<Word>({
     {"native", static_cast<int>(TyreModel::kNative)},
 });
 
+// true and false of the versions before there were levels.
+constexpr auto kErrorLevelWords = std::to_array<Word>({
+    {"ideal", static_cast<int>(ErrorLevel::kIdeal)},
+    {"data_sheet", static_cast<int>(ErrorLevel::kDataSheet)},
+    {"field", static_cast<int>(ErrorLevel::kField)},
+    {"true", static_cast<int>(ErrorLevel::kDataSheet), "data_sheet"},
+    {"yes", static_cast<int>(ErrorLevel::kDataSheet), "data_sheet"},
+    {"on", static_cast<int>(ErrorLevel::kDataSheet), "data_sheet"},
+    {"off", static_cast<int>(ErrorLevel::kIdeal), "ideal"},
+    {"no", static_cast<int>(ErrorLevel::kIdeal), "ideal"},
+});
+
 constexpr auto kFailActionWords = std::to_array<Word>({
     {"brake", static_cast<int>(FailAction::kBrake)},
     {"coast", static_cast<int>(FailAction::kCoast)},
@@ -329,28 +350,24 @@ std::string rule_of(const Key& key) {
   const auto whole = [&](auto*) { return range_of(key, "a whole number"); };
   const auto word = [&](auto*) {
     std::string rule = "one of ";
-    for (const Word& allowed : words_of(field)) rule += std::string(allowed.text) + ", ";
+    for (const Word& allowed : words_of(field)) {
+      if (allowed.now.empty()) rule += std::string(allowed.text) + ", ";
+    }
     return rule.substr(0, rule.size() - 2);
   };
   return std::visit(
       Cases{
-          [&](double* to) { return number(to); },
-          [&](std::optional<double>* to) { return number(to); },
+          [&](double* to) { return number(to); }, [&](std::optional<double>* to) { return number(to); },
           [&](Vector3*) { return range_of(key, "a list of three numbers, each"); },
           [&](std::optional<Vector3>*) { return range_of(key, "a list of three numbers, each"); },
-          [&](std::int64_t* to) { return whole(to); },
-          [&](std::uint64_t* to) { return whole(to); },
+          [&](std::int64_t* to) { return whole(to); }, [&](std::uint64_t* to) { return whole(to); },
           [&](bool*) { return std::string("true or false"); },
           [&](std::string*) {
             const std::string noun = (key.traits & kPath) != 0 ? "a path" : "a text";
             return (key.traits & kMayBeEmpty) != 0 ? noun + ", \"\" = none" : noun + ", not empty";
           },
           [&](std::vector<std::string>*) { return std::string("a name or a list of names, [] = found in the URDF"); },
-          [&](ClockMode* to) { return word(to); },
-          [&](RealtimePolicy* to) { return word(to); },
-          [&](TyreModel* to) { return word(to); },
-          [&](Reaction* to) { return word(to); },
-          [&](FailAction* to) { return word(to); },
+          [&](auto* to) { return word(to); },  // the enums
       },
       field);
 }
@@ -359,6 +376,7 @@ std::span<const Word> words_of(const Field& field) {
   if (std::holds_alternative<ClockMode*>(field)) return kClockWords;
   if (std::holds_alternative<RealtimePolicy*>(field)) return kRealtimeWords;
   if (std::holds_alternative<TyreModel*>(field)) return kTyreWords;
+  if (std::holds_alternative<ErrorLevel*>(field)) return kErrorLevelWords;
   if (std::holds_alternative<Reaction*>(field)) return kReactionWords;
   if (std::holds_alternative<FailAction*>(field)) return kFailActionWords;
   return {};

@@ -17,7 +17,7 @@ namespace robot_control {
 /// Where a value goes; the type of the pointer is the type of the parameter.
 using Field = std::variant<double*, std::optional<double>*, Vector3*, std::optional<Vector3>*, std::int64_t*,
                            std::uint64_t*, bool*, std::string*, std::vector<std::string>*, ClockMode*, RealtimePolicy*,
-                           TyreModel*, Reaction*, FailAction*>;
+                           TyreModel*, ErrorLevel*, Reaction*, FailAction*>;
 
 /// What a key allows beyond its range; bits of Key::traits.
 enum KeyTrait : unsigned {
@@ -64,6 +64,7 @@ std::string rule_of(const Key& key);
 struct Word {
   std::string_view text;
   int value;
+  std::string_view now = {};  ///< of an old word, which is accepted with a warning: the one that replaced it
 };
 std::span<const Word> words_of(const Field& field);
 

@@ -32,6 +32,16 @@ std::errc parse(std::string_view text, Number& number) {
   return error;
 }
 
+// YAML 1.1 (PyYAML, the parameter server) turns a plain `off` into a boolean. Old words are those of a boolean.
+const Word* find_word(const Entry& entry, const Field& field) {
+  const std::string small = lower(entry.text);
+  const std::string text = small == "false" ? "off" : entry.text;
+  for (const Word& allowed : words_of(field)) {
+    if (allowed.text == text || (!allowed.now.empty() && allowed.text == small)) return &allowed;
+  }
+  return nullptr;
+}
+
 class Reader {
  public:
   Reader(const Entry& entry, const std::string& path, const Key& key, const Field& field, ProblemList& problems)
@@ -88,6 +98,7 @@ class Reader {
   bool operator()(ClockMode* to) { return word(*to); }
   bool operator()(RealtimePolicy* to) { return word(*to); }
   bool operator()(TyreModel* to) { return word(*to); }
+  bool operator()(ErrorLevel* to) { return word(*to); }
   bool operator()(Reaction* to) { return word(*to); }
   bool operator()(FailAction* to) { return word(*to); }
 
@@ -133,14 +144,10 @@ class Reader {
 
   template <class Enum>
   bool word(Enum& to) {
-    // YAML 1.1 (PyYAML, the parameter server) turns a plain `off` into a boolean.
-    const std::string text = lower(entry_.text) == "false" ? "off" : entry_.text;
-    for (const Word& allowed : words_of(field_)) {
-      if (allowed.text != text) continue;
-      to = static_cast<Enum>(allowed.value);
-      return true;
-    }
-    return refuse("must be " + rule_of(key_));
+    const Word* allowed = find_word(entry_, field_);
+    if (allowed == nullptr) return refuse("must be " + rule_of(key_));
+    to = static_cast<Enum>(allowed->value);
+    return true;
   }
 
   const Entry& entry_;
@@ -172,6 +179,11 @@ std::string as_written(const Entry& entry) {
     text.append(i == 0 ? "" : ", ").append(item.kind == Entry::Kind::kList ? "[…]" : as_written(item));
   }
   return text.append(entry.items.size() > kShown ? ", …]" : "]");
+}
+
+std::string_view word_now(const Entry& entry, const Field& field) {
+  const Word* word = find_word(entry, field);
+  return word == nullptr ? std::string_view() : word->now;
 }
 
 bool read_value(const Entry& entry, const std::string& path, const Key& key, const Field& field,

@@ -11,6 +11,9 @@ namespace robot_control {
 /// Numbers are plain YAML numbers: a quoted "500" is a text.
 bool read_value(const Entry& entry, const std::string& path, const Key& key, const Field& field, ProblemList& problems);
 
+/// The word that replaced the old one that is written there; empty: it is none.
+std::string_view word_now(const Entry& entry, const Field& field);
+
 /// For messages: "500", "[a, b]", "(a block)".
 std::string as_written(const Entry& entry);
 

@@ -112,7 +112,11 @@ py::dict stand(const Parameters& parameters) {
 Parameters parameters_from(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
   std::vector<Overlay> overlays;
   for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
-  return read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
+  Parameters parameters = read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
+  for (const std::string& text : parameters.warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  }
+  return parameters;
 }
 
 }  // namespace

@@ -88,10 +88,10 @@ int run(const std::string& path) {
   MujocoPlantParameters brush = parameters.plant, native = parameters.plant;
   brush.tyre = TyreModel::kBrush;
   native.tyre = TyreModel::kNative;
-  brush.sensor_errors = true;
+  brush.sensor_errors = ErrorLevel::kDataSheet;
   MujocoPlant erring(robot, brush, period);
   erring.start();
-  brush.sensor_errors = false;
+  brush.sensor_errors = ErrorLevel::kIdeal;
   MujocoPlant plant(robot, brush, period);
   plant.start();
   std::vector<JointCommand> commands(robot.joints.size());

@@ -37,7 +37,7 @@ class Accelerometer : public testing::TestWithParam<std::tuple<double, double>> 
   static double worst(const RobotModel& robot, double damping, double period) {
     MujocoPlantParameters parameters;
     parameters.scene = kFlat;
-    parameters.sensor_errors = false;
+    parameters.sensor_errors = ErrorLevel::kIdeal;
     parameters.motor_damping = damping;
     MujocoPlant plant(robot, parameters, period);
     plant.start();

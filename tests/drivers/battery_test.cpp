@@ -45,7 +45,7 @@ class BatteryOfThePlant : public PlantTest {
  protected:
   BatteryOfThePlant() {
     parameters_.scene = kFlat;
-    parameters_.sensor_errors = false;
+    parameters_.sensor_errors = ErrorLevel::kIdeal;
     parameters_.battery_voltage = kVoltage;
     parameters_.battery_resistance = kResistance;
   }

@@ -15,7 +15,7 @@ class BrushTyreTest : public PlantTest {
  protected:
   std::unique_ptr<MujocoPlant> started(const MadeRobot& robot) {
     parameters_.scene = kFlat;
-    parameters_.sensor_errors = false;
+    parameters_.sensor_errors = ErrorLevel::kIdeal;
     auto plant = std::make_unique<MujocoPlant>(robot.model(), parameters_, period_);
     plant->start();
     return plant;

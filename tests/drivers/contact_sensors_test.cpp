@@ -17,7 +17,7 @@ class ContactSensors : public PlantTest, public testing::WithParamInterface<Tyre
  protected:
   ContactSensors() {
     parameters_.scene = kFlat;
-    parameters_.sensor_errors = false;
+    parameters_.sensor_errors = ErrorLevel::kIdeal;
     parameters_.contact_sensors = true;
     parameters_.tyre = GetParam();
   }

@@ -26,7 +26,7 @@ class RealRobot : public testing::TestWithParam<const char*> {
     setenv("ROS_PACKAGE_PATH", folder.c_str(), 1);
     MujocoPlantParameters parameters;
     parameters.scene = kFlat;
-    parameters.sensor_errors = false;
+    parameters.sensor_errors = ErrorLevel::kIdeal;
     parameters.ground_friction = ground_friction;
     robot_ = read_robot(load_description((folder / "robot.urdf").string()), {});
     plant_ = std::make_unique<MujocoPlant>(robot_, parameters, 0.001);

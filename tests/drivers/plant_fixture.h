@@ -50,7 +50,7 @@ class PlantTest : public testing::Test {
                                        double period = 0.001, const RobotParameters& robot = {}) {
     MujocoPlantParameters parameters;
     parameters.scene = scene;
-    parameters.sensor_errors = false;
+    parameters.sensor_errors = ErrorLevel::kIdeal;
     parameters.tyre = tyre_;
     period_ = period;
     auto plant = std::make_unique<MujocoPlant>(read_robot(description, robot), parameters, period);

@@ -14,7 +14,7 @@ class SceneTest : public PlantTest {
  protected:
   std::unique_ptr<MujocoPlant> in(const std::string& scene) {
     parameters_.scene = scene.front() == '/' ? scene : PROJECT_DIRECTORY "/urdf/scenes/" + scene;
-    parameters_.sensor_errors = false;
+    parameters_.sensor_errors = ErrorLevel::kIdeal;
     auto plant = std::make_unique<MujocoPlant>(robot_, parameters_, period_);
     plant->start();
     return plant;

@@ -347,7 +347,7 @@ TEST_F(SensorErrorsTest, RefuseADelayThatIsTooLong) {
 }
 
 TEST_F(SensorErrorsTest, AreNoneWhenSwitchedOff) {
-  parameters_.sensor_errors = false;
+  parameters_.sensor_errors = ErrorLevel::kIdeal;
   parameters_.sensor_delay = 5;
   SensorErrors none = errors();
   for (int k = 0; k < 20; ++k) {

@@ -19,7 +19,7 @@ constexpr std::uint64_t kNever = ~std::uint64_t{0};
 class BodyStops : public testing::Test {
  protected:
   BodyStops() : parameters_(read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml")) {
-    parameters_.plant.sensor_errors = false;
+    parameters_.plant.sensor_errors = ErrorLevel::kIdeal;
   }
 
   void in(const std::string& scene) { parameters_.plant.scene = PROJECT_DIRECTORY "/urdf/scenes/" + scene; }

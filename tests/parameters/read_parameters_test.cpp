@@ -167,7 +167,7 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
                                                   {"mujoco_plant.scene", "b.xml"},
                                                   {"mujoco_plant.tyre", "native"},
                                                   {"mujoco_plant.gear_ratio", "1"},
-                                                  {"mujoco_plant.sensor_errors", "false"},
+                                                  {"mujoco_plant.sensor_errors", "ideal"},
                                                   {"mujoco_plant.contact_sensors", "true"},
                                                   {"robot.fail_action", "coast"},
                                                   {"diff_drive_controller.keep_curvature", "yes"},
@@ -376,6 +376,32 @@ TEST_F(ReadParameters, ReadsTheWordsOfTheTyre) {
   EXPECT_EQ(read_parameters(file.path()).plant.tyre, TyreModel::kBrush);
   EXPECT_EQ(read_parameters(file.path(), {{"mujoco_plant.tyre", "native", "dict"}}).plant.tyre, TyreModel::kNative);
   EXPECT_THAT(file.refusal({{"mujoco_plant.tyre", "square", "dict"}}), HasSubstr("must be one of brush, native"));
+}
+
+TEST_F(ReadParameters, ReadsTheLevelOfSensorErrors) {
+  const auto read = [&](const char* text) {
+    return read_parameters(file.path(), {{"mujoco_plant.sensor_errors", text, "dict"}});
+  };
+  for (const auto& [text, level] : {std::pair{"ideal", ErrorLevel::kIdeal},
+                                    {"data_sheet", ErrorLevel::kDataSheet},
+                                    {"field", ErrorLevel::kField}}) {
+    EXPECT_EQ(read(text).plant.sensor_errors, level);
+    EXPECT_TRUE(read(text).warnings.empty());
+  }
+  EXPECT_THAT(file.refusal({{"mujoco_plant.sensor_errors", "some", "dict"}}),
+              HasSubstr("must be one of ideal, data_sheet, field"));
+}
+
+TEST_F(ReadParameters, TakesTheOldTruthValuesOfSensorErrorsWithAWarning) {
+  for (const auto& [text, level, now] : {std::tuple{"true", ErrorLevel::kDataSheet, "write data_sheet"},
+                                         {"True", ErrorLevel::kDataSheet, "write data_sheet"},
+                                         {"false", ErrorLevel::kIdeal, "write ideal"},
+                                         {"no", ErrorLevel::kIdeal, "write ideal"}}) {
+    const Parameters parameters = read_parameters(file.path(), {{"mujoco_plant.sensor_errors", text, "dict"}});
+    EXPECT_EQ(parameters.plant.sensor_errors, level) << text;
+    ASSERT_EQ(parameters.warnings.size(), 1u) << text;
+    EXPECT_THAT(parameters.warnings[0], HasSubstr(now));
+  }
 }
 
 TEST_F(ReadParameters, LeavesGainsAndBrakesToTheRobot) {

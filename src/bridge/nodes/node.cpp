@@ -205,6 +205,7 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
       ROS_INFO("removed the shared memory of %zu runs that have ended", ended);
     }
     for (const std::string& text : setup.unexpected_overrides) ROS_INFO("%s", text.c_str());
+    for (const std::string& text : setup.parameters.warnings) ROS_WARN("%s", text.c_str());
     if (!setup.unread_description.empty()) ROS_WARN("%s", setup.unread_description.c_str());
     node->connect(handle);
     ros::AsyncSpinner callbacks(kCallbackThreads);

@@ -51,8 +51,10 @@ WheelContacts::WheelContacts(const MujocoModel& model, const MujocoPlantParamete
       brush_(parameters.tyre == TyreModel::kBrush),
       sense_(parameters.contact_sensors),
       base_body_(model.base_body),
+      drive_wheels_(model.drive_wheels),
       ground_friction_(parameters.ground_friction),
-      wheel_of_(static_cast<std::size_t>(model_->ngeom), -1) {
+      wheel_of_(static_cast<std::size_t>(model_->ngeom), -1),
+      slip_noise_(model.robot, parameters) {
   for (std::size_t i = 0; i < model.wheel_shape.size(); ++i) {
     Wheel wheel;
     wheel.shape = model.wheel_shape[i];
@@ -60,6 +62,7 @@ WheelContacts::WheelContacts(const MujocoModel& model, const MujocoPlantParamete
     wheel.dof = model_->body_dofadr[wheel.body];
     wheel.radius = model_->geom_size[3 * wheel.shape];
     wheel.omni = i >= model.drive_wheels && model.robot.casters[i - model.drive_wheels].omni;
+    if (i < model.drive_wheels) wheel.side = model.robot.wheels[i].side;
     wheel_of_[static_cast<std::size_t>(wheel.shape)] = static_cast<int>(i);
     wheels_.push_back(wheel);
   }
@@ -100,7 +103,8 @@ void WheelContacts::measure_tyres(const MujocoModel& model) {
   }
 }
 
-void WheelContacts::reset() noexcept {
+void WheelContacts::reset() {
+  slip_noise_.reset();
   for (Wheel& wheel : wheels_) {
     wheel.contacts = {};
     wheel.normal_force = wheel.slip = 0;
@@ -108,7 +112,19 @@ void WheelContacts::reset() noexcept {
   }
 }
 
+/// The way of a side is the mean of its wheels'.
+void WheelContacts::roll_on(const mjData& data) noexcept {
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    double way = 0;
+    for (const Wheel& wheel : wheels_) {
+      if (wheel.side == side) way += std::abs(data.qvel[wheel.dof]) * wheel.radius * model_->opt.timestep;
+    }
+    slip_noise_.step(side, way / static_cast<double>(drive_wheels_ / 2));
+  }
+}
+
 void WheelContacts::observe(const mjData& data) noexcept {
+  roll_on(data);
   for (Wheel& wheel : wheels_) {
     wheel.slip = 0;
     for (Contact& contact : wheel.contacts) contact.touches = false;
@@ -152,11 +168,19 @@ void WheelContacts::observe(Wheel& wheel, const mjData& data, int index) noexcep
     input.velocity -= velocity(data, ground, contact.pos);
     input.turn_rate -= Vector(data.cvel + 6 * ground).dot(input.normal);
   }
+  if (wheel.side) input.velocity += added_speed(wheel, data, contact.pos);
   input.velocity -= input.velocity.dot(input.normal) * input.normal;
   if (wheel.omni) let_slide_aside(wheel, data, *slot);
   input.rim_speed = wheel.radius * data.qvel[wheel.dof];
   input.grip = friction(data, contact, other) * slot->normal_force;
   wheel.slip = std::max(wheel.slip, input.velocity.norm());
+}
+
+/// m/s, ε times what the turning of the wheel adds to the speed of its contact.
+Eigen::Vector3d WheelContacts::added_speed(const Wheel& wheel, const mjData& data, const mjtNum* point) const noexcept {
+  const Vector axle(data.xaxis + 3 * model_->body_jntadr[wheel.body]);
+  const Eigen::Vector3d arm = Vector(point) - Vector(data.geom_xpos + 3 * wheel.shape);
+  return slip_noise_.error(*wheel.side) * data.qvel[wheel.dof] * axle.cross(arm);
 }
 
 void WheelContacts::let_slide_aside(const Wheel& wheel, const mjData& data, Contact& contact) const noexcept {

@@ -15,6 +15,8 @@
 /// A caster that nothing turns into the direction of travel (WheelModel::omni) has friction along its rolling direction
 /// alone.
 ///
+/// On brush tyres the drive wheels of a robot in the field slip at random (slip_noise.h).
+///
 /// Where contact sensors are asked for, `weigh` also finds the whole force on each wheel, friction included.
 ///
 /// With native friction `apply` does nothing, MuJoCo's own forces act; regions then have no effect.
@@ -25,8 +27,10 @@
 #include <mujoco/mujoco.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "drivers/contact/slip_noise.h"
 #include "drivers/contact/tyre.h"
 #include "drivers/model/mujoco_model.h"
 #include "drivers/mujoco_plant_parameters.h"
@@ -39,7 +43,7 @@ class WheelContacts {
   WheelContacts(const MujocoModel& model, const MujocoPlantParameters& parameters);
 
   /// Nothing touches, all tyres are relaxed.
-  void reset() noexcept;
+  void reset();
 
   void observe(const mjData& data) noexcept;
   void apply(mjData& data) noexcept;
@@ -71,6 +75,7 @@ class WheelContacts {
     int shape = 0, body = 0, dof = 0;
     double radius = 0;
     bool omni = false;
+    std::optional<Side> side;  ///< of a drive wheel
     TyreParameters tyre;
     std::array<Contact, kContacts> contacts;
     double normal_force = 0;
@@ -79,6 +84,8 @@ class WheelContacts {
   };
 
   void observe(Wheel& wheel, const mjData& data, int contact) noexcept;
+  void roll_on(const mjData& data) noexcept;
+  Eigen::Vector3d added_speed(const Wheel& wheel, const mjData& data, const mjtNum* point) const noexcept;
   void let_slide_aside(const Wheel& wheel, const mjData& data, Contact& contact) const noexcept;
   double friction(const mjData& data, const mjContact& contact, int other) const noexcept;
   Eigen::Vector3d velocity(const mjData& data, int body, const mjtNum* point) const noexcept;
@@ -91,10 +98,12 @@ class WheelContacts {
   bool brush_;
   bool sense_;
   int base_body_;
+  std::size_t drive_wheels_;
   std::optional<double> ground_friction_;
   std::vector<int> wheel_of_;  ///< per geom; -1: none
   std::vector<int> regions_;   ///< geoms
   std::vector<Wheel> wheels_;  ///< drive wheels, then casters
+  SlipNoise slip_noise_;
 };
 
 }  // namespace robot_control

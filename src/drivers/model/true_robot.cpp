@@ -64,6 +64,12 @@ RobotModel true_robot(const RobotModel& described, const MujocoPlantParameters& 
     load(bodies->bodies[0], parameters.payload, {place[0], place[1], place[2]});
     load(robot, parameters.payload, place);
   }
+  if (parameters.sensor_errors == ErrorLevel::kField) {
+    const double off = parameters.centre_of_gravity_error * robot.wheel_base;
+    RigidBody& base = bodies->bodies[0];
+    for (const Eigen::Index axis : {0, 1}) base.centre_of_gravity[axis] += off * robot.mass / base.mass;
+    for (const std::size_t axis : {0u, 1u}) robot.centre_of_gravity_base[axis] += off;
+  }
   robot.bodies = std::move(bodies);
   return robot;
 }

@@ -6,6 +6,8 @@
 ///   wheel base  every wheel moved sideways by wheel_base_error · wheel_base / 2, outwards
 ///   inertia     of a wheel about its axle: + gear_ratio² · rotor_inertia
 ///   payload     a point mass, fixed to the base
+///   centre of gravity   in the field (errors.h), ahead and to the left of the described one by
+///               centre_of_gravity_error · wheel_base, by moving that of the root link
 ///
 /// Effort limits are the described ones: they belong to the drive.
 

@@ -19,31 +19,6 @@ constexpr std::uint64_t kAccelerometerDevice = 1;
 
 }  // namespace
 
-void NormalStream::seed(std::uint64_t seed, std::uint64_t stream) {
-  std::seed_seq words{seed & 0xFFFFFFFFu, seed >> 32, stream};
-  engine_.seed(words);
-  has_spare_ = false;
-}
-
-/// −1 ≤ x < 1
-double NormalStream::uniform() noexcept {
-  return static_cast<double>(static_cast<std::int64_t>(engine_()) >> 11) * 0x1p-52;
-}
-
-double NormalStream::next() noexcept {
-  has_spare_ = !has_spare_;
-  if (!has_spare_) return spare_;
-  double x = 0, y = 0, square = 0;
-  while (square == 0 || square >= 1) {
-    x = uniform();
-    y = uniform();
-    square = x * x + y * y;
-  }
-  const double scale = std::sqrt(-2 * std::log(square) / square);
-  spare_ = y * scale;
-  return x * scale;
-}
-
 InertialError::InertialError(double noise, double bias, double walk, double period, std::uint64_t device)
     : noise_(noise / std::sqrt(period)), draw_(bias), walk_(walk * std::sqrt(kWalkCycles * period)), device_(device) {}
 
@@ -68,7 +43,7 @@ void InertialError::step(Vector3& value) noexcept {
 }
 
 SensorErrors::SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period)
-    : on_(parameters.sensor_errors),
+    : level_(parameters.sensor_errors),
       seed_(parameters.seed),
       period_(period),
       count_(parameters.encoder_resolution > 0 ? 2 * std::numbers::pi / parameters.encoder_resolution : 0),
@@ -76,6 +51,9 @@ SensorErrors::SensorErrors(const RobotModel& robot, const MujocoPlantParameters&
       gyro_(parameters.gyro_noise, parameters.gyro_bias, parameters.gyro_bias_walk, period, kGyroDevice),
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
                      period, kAccelerometerDevice),
+      vibration_(robot, parameters, period),
+      late_imu_(parameters.imu_delay, parameters.imu_jitter, period, kImuLateStream),
+      late_encoders_(0, parameters.encoder_jitter, period, kEncodersLateStream),
       delay_(checked_delay("sensor_delay", parameters.sensor_delay)) {
   for (const WheelModel& wheel : robot.wheels) wheels_.push_back(wheel.joint);
   reset();
@@ -85,6 +63,9 @@ void SensorErrors::reset() {
   first_ = true;
   gyro_.reset(seed_);
   accelerometer_.reset(seed_);
+  vibration_.reset(seed_);
+  late_imu_.reset(seed_);
+  late_encoders_.reset(seed_);
 }
 
 void SensorErrors::encode(Measurement& measurement) noexcept {
@@ -97,12 +78,27 @@ void SensorErrors::encode(Measurement& measurement) noexcept {
   }
 }
 
+/// Efforts are not sampled by the encoder: they stay those of this cycle.
+void SensorErrors::make_late(Measurement& measurement) noexcept {
+  late_imu_.step(measurement.imu);
+  Encoders encoders{};
+  for (std::size_t i = 0; i < wheels_.size(); ++i) encoders[i] = measurement.joints[wheels_[i]];
+  late_encoders_.step(encoders);
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    JointSample& joint = measurement.joints[wheels_[i]];
+    joint.position = encoders[i].position;
+    joint.velocity = encoders[i].velocity;
+  }
+}
+
 void SensorErrors::step(Measurement& measurement) noexcept {
-  if (!on_) return;
+  if (level_ == ErrorLevel::kIdeal) return;
+  if (level_ == ErrorLevel::kField) vibration_.step(measurement);
   if (count_ > 0) encode(measurement);
   for (double& rate : measurement.imu.angular_velocity) rate *= gyro_scale_;
   gyro_.step(measurement.imu.angular_velocity);
   accelerometer_.step(measurement.imu.linear_acceleration);
+  if (level_ == ErrorLevel::kField) make_late(measurement);
   if (first_) delay_.fill(measurement);
   delay_.step(measurement);
   first_ = false;

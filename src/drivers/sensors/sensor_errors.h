@@ -21,6 +21,9 @@
 /// for 3D Attitude Estimation", 2005). It walks every m = kWalkCycles cycles: a step in each of them would be 4·10⁻⁵ of
 /// the noise and twice the work.
 ///
+/// In the field a moving robot shakes both (vibration.h), and the samples of the IMU, of the encoders where asked for,
+/// arrive late and at irregular times (late_samples.h).
+///
 /// Then all samples are `sensor_delay` cycles late together, under the head of the present cycle; until there is one
 /// so old, the first one comes.
 ///
@@ -30,42 +33,19 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <random>
 #include <vector>
 
-#include "drivers/motors/battery.h"
 #include "drivers/mujoco_plant_parameters.h"
+#include "drivers/sensors/late_samples.h"
+#include "drivers/sensors/measurement.h"
+#include "drivers/sensors/normal_stream.h"
+#include "drivers/sensors/vibration.h"
 #include "faults/delay_line.h"
 #include "robot/robot_model.h"
-#include "signals/sensor_frame.h"
 
 namespace robot_control {
 
 inline constexpr std::size_t kLongestDelay = 100;  ///< cycles, of sensors as of actuators
-
-/// Everything that a sensor of the plant reports of one instant.
-struct Measurement {
-  std::array<JointSample, kMaxJoints> joints{};
-  ImuSample imu;
-  std::array<Vector3, kMaxContacts> contact_forces{};
-  BatterySample battery;
-  std::uint64_t digital_inputs = 0;  ///< DigitalInput bits
-};
-
-/// Independent standard normal numbers: G. Marsaglia's polar method (SIAM Review 6, 1964, p. 260), a quarter of the
-/// time that libstdc++'s distribution takes, and the same bits with any standard library.
-class NormalStream {
- public:
-  void seed(std::uint64_t seed, std::uint64_t stream);
-  double next() noexcept;
-
- private:
-  double uniform() noexcept;
-
-  std::mt19937_64 engine_;
-  double spare_ = 0;  ///< the method gives two at a time
-  bool has_spare_ = false;
-};
 
 /// The noise and the bias of a device with three axes.
 class InertialError {
@@ -92,7 +72,7 @@ class InertialError {
 
 class SensorErrors {
  public:
-  /// Throws DriverError: a delay of more than kLongestDelay cycles. With `sensor_errors` off all steps change nothing.
+  /// Throws DriverError: a delay of more than kLongestDelay cycles. At kIdeal all steps change nothing.
   SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
   /// Ordinary thread: restarts.
@@ -106,8 +86,9 @@ class SensorErrors {
 
  private:
   void encode(Measurement& measurement) noexcept;
+  void make_late(Measurement& measurement) noexcept;
 
-  bool on_;
+  ErrorLevel level_;
   std::uint64_t seed_;
   double period_;
   double count_;  ///< rad, δ; 0: exact
@@ -116,6 +97,10 @@ class SensorErrors {
   bool first_ = true;
   double gyro_scale_;  ///< 1 + e
   InertialError gyro_, accelerometer_;
+  Vibration vibration_;
+  LateSamples<ImuSample> late_imu_;
+  using Encoders = std::array<JointSample, kMaxWheels>;
+  LateSamples<Encoders> late_encoders_;
   DelayLine<Measurement, kLongestDelay> delay_;
 };
 

@@ -1,0 +1,71 @@
+#pragma once
+/// A device whose samples arrive after a delay that varies: what a driver reads that polls a serial line or a USB port.
+/// Sample i, taken in cycle i, arrives at
+///
+///   a(i) = max(a(i−1), i·T + delay + |jitter·w(i)|)      w independent standard normal numbers, at most 6
+///
+/// and in cycle k the driver reports the newest one that has arrived, the first sample until there is one: one sample
+/// may be reported in several cycles, another in none, and their order holds. The frame's stamp is the time of the
+/// cycle, not of the sample, as a driver's is that knows no better: how old a sample is, its receiver has to find out
+/// or to cover.
+///
+/// Holds all that is on its way itself: no allocation after construction.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "drivers/sensors/normal_stream.h"
+
+namespace robot_control {
+
+template <class Value>
+class LateSamples {
+ public:
+  /// `delay`, `jitter` ≥ 0, `period` > 0, in s.
+  LateSamples(double delay, double jitter, double period, ErrorStream stream)
+      : delay_(delay / period),
+        jitter_(jitter / period),
+        stream_(stream),
+        on_the_way_(static_cast<std::size_t>(std::ceil(delay_ + kMost * jitter_)) + 2) {}
+
+  void reset(std::uint64_t seed) {
+    random_.seed(seed, stream_);
+    cycle_ = sent_ = arrived_ = 0;
+    last_arrival_ = 0;
+  }
+
+  /// In goes the sample of this cycle, out comes what the driver reports, in its place.
+  void step(Value& value) noexcept {
+    if (delay_ == 0 && jitter_ == 0) return;
+    if (cycle_ == 0) reported_ = value;
+    const auto now = static_cast<double>(cycle_++);
+    const double late = jitter_ > 0 ? jitter_ * std::min(kMost, std::abs(random_.next())) : 0;
+    last_arrival_ = std::max(last_arrival_, now + delay_ + late);
+    on_the_way_[sent_++ % on_the_way_.size()] = {value, last_arrival_};
+    while (arrived_ < sent_ && on_the_way_[arrived_ % on_the_way_.size()].arrival <= now + kRounding) {
+      reported_ = on_the_way_[arrived_++ % on_the_way_.size()].value;
+    }
+    value = reported_;
+  }
+
+ private:
+  static constexpr double kMost = 6;         ///< standard deviations
+  static constexpr double kRounding = 1e-6;  ///< cycles
+
+  struct Sample {
+    Value value{};
+    double arrival = 0;  ///< cycles
+  };
+
+  double delay_, jitter_;  ///< cycles
+  ErrorStream stream_;
+  NormalStream random_;
+  std::uint64_t cycle_ = 0, sent_ = 0, arrived_ = 0;
+  double last_arrival_ = 0;
+  Value reported_{};
+  std::vector<Sample> on_the_way_;
+};
+
+}  // namespace robot_control
