@@ -26,7 +26,7 @@ GRACE = 0.1
 """s for roscpp's subscribers, which drop what they have not yet read when the master says that the publisher is gone"""
 LOOK = 0.005
 """s between two looks at the connections"""
-NUMBERS = (signal.SIGINT, signal.SIGTERM)
+NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Publisher(Protocol):
@@ -61,12 +61,16 @@ class Sender:
 
 
 class Signals:
-    """SIGINT and SIGTERM, noted; one that comes when the end has had its time ends the program as it is."""
+    """SIGINT, SIGTERM and SIGHUP, noted; one that comes when the end has had its time ends the program as it is.
+
+    A SIGHUP that is ignored stays so (nohup).
+    """
 
     def __init__(self) -> None:
         self._came_at = math.inf
         for number in NUMBERS:
-            signal.signal(number, self._note)
+            if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, self._note)
 
     @property
     def came(self) -> bool:
@@ -94,7 +98,8 @@ def ended_by_signals() -> Iterator[Signals]:
     finally:
         rospy.signal_shutdown("a signal came" if signals.came else "all is done")
         for number in NUMBERS:
-            signal.signal(number, signal.SIG_DFL)
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, signal.SIG_DFL)
 
 
 def written(publisher: Publisher) -> dict[int, int]:

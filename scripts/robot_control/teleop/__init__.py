@@ -1,0 +1,1 @@
+"""teleop.py: drives the robot with the keyboard of a terminal."""

@@ -1,0 +1,185 @@
+"""The dead-man switch of a terminal, which reports no key release: a key is held while its byte repeats. Pure.
+
+    press              the first byte of a key; it holds for `first_hold`, and only slowly until the first repeat
+    repeat             a later byte of the same key; it holds for `hold`
+    burst              bytes less than BURST apart, which no keyboard sends: a link that had stalled delivers them. They
+                       count as one byte, and after a stop among them no motion key of the same burst counts
+    change of keys     while one key is held, another takes over at once and at the same speed
+    max_hold           a key that repeats for so long without a pause ends in zero, until it has paused for `first_hold`
+
+`first_hold` has to exceed the keyboard's delay until the first repeat, which is measured (RepeatDelay).
+Times are s of any one clock that never turns back.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+
+BURST = 0.01
+"""s; the fastest keyboards repeat every 20 ms"""
+SHORTEST_DELAY = 0.15
+"""s; below the shortest usual delay until the first repeat (0.25 s), above the time between two quick taps"""
+SLOWEST_REPEAT = 0.12
+"""s; keyboards repeat at 10 to 50 Hz"""
+MARGIN = 0.1
+"""s that the first hold exceeds the measured delay by"""
+
+
+@dataclass(frozen=True)
+class HoldParameters:
+    """How long what holds."""
+
+    first_hold: float = 0.7  # s; most desktops repeat after 0.25 to 0.66 s
+    hold: float = 0.3  # s
+    max_hold: float = 30.0  # s
+    announce: float = 5.0  # s before the end of max_hold
+    slow: float = 0.5  # share of the chosen speed until the first repeat
+
+
+@dataclass(frozen=True)
+class Held:
+    """What is held now."""
+
+    key: str
+    share: float  # of the chosen speed
+    left: float  # s until max_hold
+
+
+class RepeatDelay:
+    """The keyboard's delay until the first repeat, from presses that were followed by a regular train of bytes."""
+
+    def __init__(self, longest: float) -> None:
+        self._longest = longest
+        self._key = ""
+        self._times: list[float] = []
+        self._measured: deque[float] = deque(maxlen=5)
+
+    @property
+    def measured(self) -> float | None:
+        """s, the longest of the last five; None: not known yet."""
+        return max(self._measured) if self._measured else None
+
+    def byte(self, key: str, now: float) -> None:
+        """One byte of a motion key."""
+        if key != self._key or (self._times and now - self._times[-1] > self._longest):
+            self._key, self._times = key, []
+        if len(self._times) == 4:
+            self._times[-1] = now  # a train is measured once
+            return
+        self._times.append(now)
+        if len(self._times) == 4:
+            delay, second, third = (b - a for a, b in zip(self._times, self._times[1:], strict=False))
+            if delay >= SHORTEST_DELAY and max(second, third) <= SLOWEST_REPEAT:
+                self._measured.append(delay)
+
+
+class DeadMan:
+    """Which motion key is held."""
+
+    def __init__(self, parameters: HoldParameters | None = None) -> None:
+        self._parameters = parameters or HoldParameters()
+        self._delay = RepeatDelay(self._parameters.first_hold)
+        self._key = ""
+        self._until = 0.0
+        self._since = 0.0
+        self._bytes = 0
+        self._fast = False
+        self._last_key, self._last_byte = "", float("-inf")
+        self._stopped_in_burst = False
+        self._blocked: set[str] | None = None  # None: no key is; else these, or with an empty set all
+        self._blocked_byte = 0.0
+
+    @property
+    def first_hold(self) -> float:
+        """s that the first byte of a press holds, as it is now."""
+        measured = self._delay.measured
+        longest = self._parameters.first_hold
+        return longest if measured is None else min(longest, measured + MARGIN)
+
+    def press(self, key: str, now: float, *, repeat: bool = False) -> None:
+        """A byte of a motion key came; `repeat`: the terminal says that it is no first one."""
+        burst = now - self._last_byte < BURST
+        again = key == self._last_key
+        gap = now - self._last_byte
+        self._last_key, self._last_byte = key, now
+        if burst and (again or self._stopped_in_burst):
+            return
+        self._stopped_in_burst = False
+        self._delay.byte(key, now)
+        held = self.look(now)
+        if self._is_blocked(key, now):
+            return
+        if held is None:
+            self._begin(key, now, fast=False)
+        elif held.key != key:
+            self._begin(key, now, fast=self._fast)
+        else:
+            self._bytes += 1
+            tapped = self._bytes == 2 and gap < SHORTEST_DELAY and not repeat
+            self._fast = self._fast or not tapped
+            self._until = now + (self.first_hold if tapped else self._parameters.hold)
+
+    def release(self, key: str) -> None:
+        """The terminal reports that this key was released."""
+        if key == self._key:
+            self._key = ""
+        if self._blocked is not None and (not self._blocked or key in self._blocked):
+            self._blocked = None
+
+    def stop(self, now: float) -> None:
+        """A key that stops came."""
+        self._key = ""
+        self._last_key, self._last_byte = "", now
+        self._stopped_in_burst = True
+
+    def block(self, key: str, now: float) -> None:
+        """A byte of `key` comes while there can be no motion: none until all keys have paused."""
+        self._key = ""
+        self._last_key, self._last_byte = key, now
+        self._blocked, self._blocked_byte = set(), now
+
+    def end(self, now: float) -> None:
+        """The motion ends for another reason than the keys: what is pressed now has to pause first."""
+        self._key = ""
+        if now - self._last_byte <= self._parameters.first_hold:
+            self._blocked, self._blocked_byte = set(), self._last_byte
+
+    def look(self, now: float) -> Held | None:
+        """What is held; None: nothing."""
+        if not self._key or now >= self._until:
+            self._key = ""
+            return None
+        left = self._since + self._parameters.max_hold - now
+        if left <= 0:
+            self._blocked, self._blocked_byte = {self._key}, now
+            self._key = ""
+            return None
+        return Held(self._key, 1.0 if self._fast else self._parameters.slow, left)
+
+    def ends_soon(self, held: Held) -> bool:
+        """The end by max_hold is to be announced."""
+        return held.left <= self._parameters.announce
+
+    @property
+    def overlong(self) -> bool:
+        """The last motion was ended by max_hold."""
+        return bool(self._blocked)
+
+    def blocked(self, now: float) -> bool:
+        """A key has to be released first."""
+        return self._blocked is not None and now - self._blocked_byte <= self._parameters.first_hold
+
+    def _begin(self, key: str, now: float, *, fast: bool) -> None:
+        self._key, self._since, self._bytes, self._fast = key, now, 1, fast
+        self._until = now + self.first_hold
+
+    def _is_blocked(self, key: str, now: float) -> bool:
+        if self._blocked is None:
+            return False
+        if self._blocked and key not in self._blocked:
+            self._blocked = None  # another key: a person is there
+            return False
+        paused = now - self._blocked_byte > self._parameters.first_hold
+        self._blocked_byte = now
+        if paused:
+            self._blocked = None
+        return not paused

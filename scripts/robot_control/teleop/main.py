@@ -1,0 +1,188 @@
+"""teleop.py's ROS side: keys in, commands and heartbeat out, one screen."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import threading
+import time
+
+import rosgraph
+import rospy
+from geometry_msgs.msg import TwistStamped
+from std_msgs.msg import Empty
+
+from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
+from robot_control.drive.send_plan import positive
+from robot_control.teleop.dead_man import HoldParameters
+from robot_control.teleop.key_map import KEY_MAPS
+from robot_control.teleop.keyboard import Decoder, Event
+from robot_control.teleop.operator import Command, Operator, Request
+from robot_control.teleop.screen import View, render
+from robot_control.teleop.services import Services
+from robot_control.teleop.terminal import NoTerminalError, Terminal
+from robot_control.why.diagnosis import SILENCE
+from robot_control.why.listener import MASTER_PERIOD, Listener
+
+TOPIC = "cmd_vel_stamped"
+LOOK = 0.02
+"""s between two looks at keys and holds; a key is read at once"""
+SEND_PERIOD = 0.05
+"""s between two commands; a change is sent at once"""
+HEARTBEAT_PERIOD = 0.1
+"""s"""
+FRAME = 0.1
+"""s between two screens"""
+LATE = 0.3
+"""s that this program did not run, after which what is read then may be old"""
+DRIVABLE = {"READY", "DRIVE"}
+
+
+class Teleop:
+    """One loop: read keys, send, draw."""
+
+    def __init__(self, given: argparse.Namespace, terminal: Terminal) -> None:
+        self._terminal = terminal
+        self._keys = KEY_MAPS[given.keys]
+        hold = HoldParameters(first_hold=given.first_hold, max_hold=given.max_hold)
+        self._operator = Operator(self._keys, given.linear, given.angular, hold)
+        self._decoder = Decoder()
+        self._listener = Listener()
+        self._services = Services()
+        self._publisher = rospy.Publisher(TOPIC, TwistStamped, queue_size=1, tcp_nodelay=True)
+        self._sender = Sender(self._publisher, TwistStamped())
+        self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
+        self._sent: Command | None = None
+        self._sent_at: float | None = None
+        self._beat_at = self._drawn_at = float("-inf")
+        self._answer = ""
+        self._releases = False
+        threading.Thread(target=self._ask_master, daemon=True).start()
+
+    def run(self, signals: Signals) -> None:
+        """Until Ctrl-C, a signal, or the end of the terminal (NoTerminalError)."""
+        last = time.monotonic()
+        self._operator.start(last)
+        while signals.going_on():
+            data = self._terminal.read(LOOK)
+            now = time.monotonic()
+            if self._take(data, now, late=now - last > LATE):
+                return
+            last = now
+            safety = self._listener.safety(now)
+            fresh = safety is not None and safety.age < SILENCE
+            self._operator.permit(safety.state in DRIVABLE if safety is not None and fresh else None, now)
+            self._send(now)
+            self._take_answers()
+            if now - self._beat_at >= HEARTBEAT_PERIOD:
+                self._beat_at = now
+                self._heartbeat.publish(Empty())
+            if now - self._drawn_at >= FRAME:
+                self._drawn_at = now
+                self._draw(now)
+
+    def _take(self, data: bytes, now: float, *, late: bool) -> bool:
+        """True: the program shall end."""
+        for key in [*self._decoder.feed(data, now), *self._decoder.look(now)]:
+            if key.event is Event.SPEAKS_KITTY:
+                self._releases = True
+                self._terminal.report_releases()
+                continue
+            request = self._operator.key(key, now, late=late)
+            if request is Request.END:
+                return True
+            if request is Request.E_STOP:
+                self._services.e_stop()
+            elif request is Request.RESET:
+                self._answer = "the reset was asked for"
+                self._services.reset()
+        return False
+
+    def _send(self, now: float) -> None:
+        command = self._operator.command(now)
+        due = self._sent_at is None or now - self._sent_at >= SEND_PERIOD
+        if command is not None and (due or command != self._sent):
+            message = TwistStamped()
+            message.header.stamp = rospy.Time.now()
+            message.twist.linear.x, message.twist.angular.z = command.linear, command.angular
+            self._sender.send(message)
+            self._sent_at = now
+        self._sent = command
+
+    def _take_answers(self) -> None:
+        for answer in self._services.look():
+            what = "reset" if answer.service == "e_stop_reset" else "emergency stop"
+            self._answer = f"{what} {'accepted' if answer.accepted else 'REFUSED'}: {answer.text}"
+            if what == "reset" and answer.accepted:
+                self._operator.reset_accepted()
+
+    def _draw(self, now: float) -> None:
+        held = self._operator.held(now)
+        view = View(
+            keys=self._keys,
+            topic=self._publisher.resolved_name,
+            own_name=rospy.get_name(),
+            chosen=Command(self._operator.linear, self._operator.angular),
+            asked=self._sent,
+            held="" if held is None else f"key {held.key}" + (", slow until it repeats" if held.share < 1 else ""),
+            sent_age=None if self._sent_at is None else now - self._sent_at,
+            message=self._operator.message(now),
+            answer=self._answer,
+            releases=self._releases,
+        )
+        self._terminal.draw(render(self._listener.facts(), view))
+
+    def _ask_master(self) -> None:
+        while True:
+            self._listener.ask_master()
+            time.sleep(MASTER_PERIOD)
+
+
+def arguments(given: list[str]) -> argparse.Namespace:
+    """The command line, without the program's name; ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(
+        prog="teleop.py",
+        description="Drives the robot with the keyboard of this terminal. A key counts while it repeats: release it, "
+        f"and the robot stops. Commands go to {TOPIC}, a heartbeat to heartbeat.",
+        epilog="Another robot's: __ns:=robot2. Needs the wall clock: in lockstep every command times out.",
+    )
+    parser.add_argument(
+        "--keys",
+        choices=sorted(KEY_MAPS),
+        default="arrows",
+        help="arrows: arrow keys and w a s d; "
+        "classic: u i o j k l m , . of teleop_twist_keyboard (default %(default)s)",
+    )
+    parser.add_argument("--linear", type=positive, default=0.5, help="m/s, chosen speed (default %(default)s)")
+    parser.add_argument("--angular", type=positive, default=1.0, help="rad/s, chosen speed (default %(default)s)")
+    parser.add_argument(
+        "--first-hold",
+        type=positive,
+        default=HoldParameters.first_hold,
+        help="s that the first byte "
+        "of a key holds; more than the keyboard's delay until its first repeat (default %(default)s)",
+    )
+    parser.add_argument(
+        "--max-hold",
+        type=positive,
+        default=HoldParameters.max_hold,
+        help="s after which a key that was never released stops the robot (default %(default)s)",
+    )
+    return parser.parse_args(given)
+
+
+def main() -> None:
+    """Entry point of scripts/teleop.py."""
+    given = arguments(rospy.myargv(sys.argv)[1:])
+    if not rosgraph.is_master_online():
+        sys.exit(
+            f"no ROS master at {rosgraph.get_master_uri()}: start the robot first, "
+            "for instance with roslaunch robot_control sim.launch"
+        )
+    try:
+        with Terminal() as terminal:
+            rospy.init_node("teleop", anonymous=True)
+            with ended_by_signals() as signals:
+                Teleop(given, terminal).run(signals)
+    except NoTerminalError as error:
+        sys.exit(f"teleop.py: {error}")

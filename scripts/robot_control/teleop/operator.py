@@ -1,0 +1,138 @@
+"""From keys to a velocity command, an e-stop and a reset. Pure: time is an argument.
+
+Motion is asked for only while a key is held and the robot may drive. A robot that stopped, for whatever reason, does
+not move again under a key that was held all the time: keys count after they have paused. The first key of a reset arms
+it for RESET_WINDOW, the second one asks for it.
+"""
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from robot_control.teleop.dead_man import DeadMan, Held, HoldParameters
+from robot_control.teleop.key_map import E_STOPS, KeyMap
+from robot_control.teleop.keyboard import Event, Key
+
+RESET_WINDOW = 5.0
+"""s"""
+ZEROS = 1.0
+"""s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
+FASTEST = 100.0
+"""m/s, rad/s; a bound of the chosen speeds, the robot has its own limits"""
+
+
+class Request(Enum):
+    """What else a key asks for."""
+
+    E_STOP = auto()
+    RESET = auto()
+    END = auto()
+
+
+@dataclass(frozen=True)
+class Command:
+    """A velocity to send."""
+
+    linear: float = 0.0  # m/s
+    angular: float = 0.0  # rad/s
+
+
+class Operator:
+    """What the person at the keyboard asks for."""
+
+    def __init__(self, keys: KeyMap, linear: float, angular: float, hold: HoldParameters | None = None) -> None:
+        """Of the speeds chosen at first: `linear` in m/s, `angular` in rad/s."""
+        self._keys = keys
+        self.linear, self.angular = linear, angular
+        self._dead_man = DeadMan(hold)
+        self._drivable: bool | None = None
+        self._e_stopped = False
+        self._reset_until = float("-inf")
+        self._zeros_until = float("-inf")
+
+    def start(self, now: float) -> None:
+        """Zeros, so that the robot may be released."""
+        self._zeros_until = now + ZEROS
+
+    def key(self, key: Key, now: float, *, late: bool = False) -> Request | None:
+        """A key event; `late`: this program stood still before it read it, so it may be old."""
+        name = key.name
+        if key.event is Event.RELEASE:
+            self._dead_man.release(name)
+            return None
+        if name == "interrupt":
+            return Request.END
+        if name in E_STOPS:
+            self._stop(now)
+            self._e_stopped = True
+            return Request.E_STOP
+        if name in self._keys.stops:
+            self._stop(now)
+        elif late:
+            return None
+        elif name == "y" and now < self._reset_until:
+            self._reset_until = float("-inf")
+            self._stop(now)
+            return Request.RESET
+        elif name in self._keys.motions:
+            self._reset_until = float("-inf")
+            if self._drivable is False or self._e_stopped:
+                self._dead_man.block(name, now)
+            else:
+                self._dead_man.press(name, now, repeat=key.event is Event.REPEAT)
+        elif name == "r" and key.event is Event.PRESS:
+            self._stop(now)
+            self._reset_until = now + RESET_WINDOW
+        elif name in self._keys.speeds:
+            factor = self._keys.speeds[name]
+            self.linear = min(FASTEST, self.linear * factor.linear)
+            self.angular = min(FASTEST, self.angular * factor.angular)
+        return None
+
+    def permit(self, drivable: bool | None, now: float) -> None:  # noqa: FBT001 (a three-valued state)
+        """May the robot drive, by its safety monitor? None: it says nothing."""
+        if drivable is False and self._drivable is not False:
+            self._dead_man.end(now)
+            self._zeros_until = now + ZEROS
+        if drivable is True and self._drivable is False:
+            self._e_stopped = False
+        self._drivable = drivable
+
+    def reset_accepted(self) -> None:
+        """The answer to Request.RESET."""
+        self._e_stopped = False
+
+    def command(self, now: float) -> Command | None:
+        """What to send now; None: nothing."""
+        held = self.held(now)
+        if held is not None:
+            self._zeros_until = now + ZEROS
+            motion = self._keys.motions[held.key]
+            return Command(motion.linear * held.share * self.linear, motion.angular * held.share * self.angular)
+        return Command() if now < self._zeros_until or self._e_stopped else None
+
+    def held(self, now: float) -> Held | None:
+        """The key that moves the robot."""
+        held = self._dead_man.look(now)
+        return None if self._e_stopped else held
+
+    def message(self, now: float) -> str:
+        """What this program has to say about itself; empty: nothing."""
+        held = self.held(now)
+        if self._e_stopped:
+            text = "EMERGENCY STOP asked for; no motion until a reset (r, then y)"
+        elif held is not None and self._dead_man.ends_soon(held):
+            text = f"key {held.key}: held for long; the robot stops in {held.left:.0f} s unless it is pressed again"
+        elif self._dead_man.overlong:
+            text = "stopped: the key was held too long; release it, then press again"
+        elif self._dead_man.blocked(now) and self._drivable is not False:
+            text = "a key was held while the robot could not drive: release it, then press again"
+        else:
+            text = ""
+        if now < self._reset_until:
+            text = f"reset? y within {self._reset_until - now:.0f} s; any motion key cancels"
+        return text
+
+    def _stop(self, now: float) -> None:
+        self._dead_man.stop(now)
+        self._reset_until = float("-inf")
+        self._zeros_until = now + ZEROS

@@ -1,0 +1,165 @@
+"""A terminal that reports every key at once and shows one screen; it is as before after every end of the program.
+
+The terminal is opened a second time, non-blocking: a stalled link then delays no loop, and the shell's own descriptors
+stay as they are. What the program prints meanwhile goes to a file, and to the terminal at the end.
+
+An ordinary end restores the terminal here. A process of its own (`_guard`) waits for the end of the program and
+restores the terminal where the program could not: after SIGKILL or a crash.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import shutil
+import signal
+import sys
+import tempfile
+import termios
+from collections.abc import Sequence
+from contextlib import suppress
+from types import TracebackType
+from typing import Any, Self
+
+from robot_control.teleop.keyboard import ASK_RELEASES, END_RELEASES, REPORT_RELEASES
+
+BEGIN = b"\x1b[?1049h\x1b[?25l\x1b[2J" + ASK_RELEASES
+"""alternate screen, no cursor (xterm's control sequences)"""
+END = END_RELEASES + b"\x1b[?25h\x1b[?1049l"
+LONGEST_READ = 4096
+"""bytes"""
+
+
+class NoTerminalError(RuntimeError):
+    """The standard input is no terminal, or it is gone."""
+
+
+def undelayed(settings: list[Any]) -> list[Any]:
+    """Terminal settings (termios.tcgetattr): no echo, no lines, no flow control, no Ctrl-Z; Ctrl-C stays a signal."""
+    changed = [*settings[:6], list(settings[6])]
+    changed[0] &= ~(termios.IXON | termios.ICRNL)
+    changed[3] &= ~(termios.ECHO | termios.ICANON | termios.IEXTEN)
+    changed[6][termios.VMIN], changed[6][termios.VTIME] = 1, 0
+    for stop in (termios.VSUSP, termios.VQUIT):
+        changed[6][stop] = b"\x00"
+    return changed
+
+
+class Terminal:
+    """Use as `with Terminal() as terminal`."""
+
+    def __init__(self, descriptor: int = 0) -> None:
+        """Raises NoTerminalError."""
+        try:
+            self._settings = termios.tcgetattr(descriptor)
+            self._descriptor = os.open(os.ttyname(descriptor), os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
+        except (OSError, termios.error) as error:
+            raise NoTerminalError(
+                "the standard input is no terminal; start it in one (not in a launch file)"
+            ) from error
+        self._unwritten = b""
+        self._printed = tempfile.TemporaryFile()  # noqa: SIM115 (as long as this object)
+        self._outputs = [os.dup(number) for number in (1, 2)]
+        self._guard_pipe = -1
+        self._guard_process = 0
+
+    def __enter__(self) -> Self:
+        self._start_guard()
+        for number in (1, 2):
+            os.dup2(self._printed.fileno(), number)
+        termios.tcsetattr(self._descriptor, termios.TCSANOW, undelayed(self._settings))
+        self.write(BEGIN)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        self._unwritten = b""
+        _restore(self._descriptor, self._settings)
+        os.write(self._guard_pipe, b"restored")
+        os.close(self._guard_pipe)
+        os.waitpid(self._guard_process, 0)
+        for number, original in zip((1, 2), self._outputs, strict=True):
+            os.dup2(original, number)
+            os.close(original)
+        self._printed.seek(0)
+        with suppress(OSError), open(os.dup(1), "wb") as output:  # noqa: PTH123 (a descriptor; it may be gone)
+            shutil.copyfileobj(self._printed, output)
+
+    def read(self, timeout: float) -> bytes:
+        """What was typed, as soon as it was, after `timeout` s nothing.
+
+        Raises:
+            NoTerminalError: the terminal is gone.
+        """
+        if not select.select([self._descriptor], [], [], timeout)[0]:
+            return b""
+        try:
+            data = os.read(self._descriptor, LONGEST_READ)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            raise NoTerminalError("the terminal is gone") from error
+        if not data:
+            raise NoTerminalError("the terminal is gone")
+        return data
+
+    def report_releases(self) -> None:
+        """After the terminal said that it can."""
+        self.write(REPORT_RELEASES)
+
+    def size(self) -> tuple[int, int]:
+        """Columns and lines."""
+        try:
+            size = os.get_terminal_size(self._descriptor)
+        except OSError:
+            return 80, 24
+        return (size.columns, size.lines) if size.columns and size.lines else (80, 24)
+
+    def draw(self, lines: Sequence[str]) -> None:
+        """The screen, from its first line on; not at all while the one before is still on its way."""
+        columns, height = self.size()
+        if not self._flush():
+            return
+        shown = [line[:columns].encode(errors="replace") + b"\x1b[K" for line in lines[:height]]
+        self.write(b"\x1b[H" + b"\r\n".join(shown) + b"\x1b[J")
+
+    def write(self, data: bytes) -> None:
+        """Without waiting; what does not go out now does at the next call."""
+        self._unwritten += data
+        self._flush()
+
+    def _flush(self) -> bool:
+        try:
+            while self._unwritten:
+                self._unwritten = self._unwritten[os.write(self._descriptor, self._unwritten) :]
+        except OSError:
+            return False  # it stalls, or is gone: read() says so
+        return True
+
+    def _start_guard(self) -> None:
+        reading, self._guard_pipe = os.pipe()
+        self._guard_process = os.fork()
+        if self._guard_process == 0:
+            os.close(self._guard_pipe)
+            _guard(reading, self._descriptor, self._settings)
+        os.close(reading)
+
+
+def _restore(descriptor: int, settings: list[Any]) -> None:
+    with suppress(OSError, termios.error):  # it may be gone
+        os.write(descriptor, END)
+        termios.tcsetattr(descriptor, termios.TCSANOW, settings)
+
+
+def _guard(pipe: int, descriptor: int, settings: list[Any]) -> None:
+    """Another process: restores the terminal at the end of the program, unless that has."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGTTOU, signal.SIGTSTP):
+        signal.signal(number, signal.SIG_IGN)
+    try:
+        if not os.read(pipe, 16):
+            _restore(descriptor, settings)
+    finally:
+        os._exit(0)

@@ -1,0 +1,103 @@
+"""A program in a pseudo-terminal of its own, as a user's shell starts it."""
+
+import contextlib
+import fcntl
+import os
+import pty
+import select
+import signal
+import struct
+import subprocess
+import termios
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+LIMIT = 30.0
+"""s"""
+SHELL = 'trap : INT HUP; "$@"; exit $?'
+"""the session's leader, whose death would hang up the terminal; a signal's exit code is 128 + its number"""
+
+
+class PseudoTerminal:
+    """`type` writes keys, `written` is all that the program wrote; `close` hangs up."""
+
+    def __init__(
+        self, command: Sequence[str], environment: Mapping[str, str] | None = None, *, reading: bool = True
+    ) -> None:
+        """`reading`: else nothing takes what the program writes, like a link that stalls."""
+        self._master, self._slave = pty.openpty()
+        fcntl.ioctl(self._slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+        self.before = termios.tcgetattr(self._slave)
+        self._shell = subprocess.Popen(
+            ["setsid", "--ctty", "sh", "-c", SHELL, "sh", *command],
+            stdin=self._slave,
+            stdout=self._slave,
+            stderr=self._slave,
+            env={**os.environ, "TERM": "xterm", **(environment or {})},
+        )
+        self._written = b""
+        self._closed = threading.Event()
+        if reading:
+            self._reader = threading.Thread(target=self._read, daemon=True)
+            self._reader.start()
+
+    @property
+    def written(self) -> bytes:
+        return self._written
+
+    @property
+    def screen(self) -> str:
+        """The newest drawing, as lines."""
+        text = self._written.decode(errors="replace").rpartition("\x1b[H")[2]
+        return text.replace("\x1b[K", "").replace("\x1b[J", "").replace("\r", "")
+
+    def settings(self) -> list[object]:
+        """Of the terminal now."""
+        return termios.tcgetattr(self._slave)
+
+    def type(self, keys: str) -> None:
+        os.write(self._master, keys.encode())
+
+    def hold(self, key: str, seconds: float, delay: float = 0.3, period: float = 0.03) -> None:
+        """As a keyboard does."""
+        end = time.monotonic() + seconds
+        self.type(key)
+        time.sleep(delay)
+        while time.monotonic() < end:
+            self.type(key)
+            time.sleep(period)
+
+    def close(self) -> None:
+        """Hangs up."""
+        self._closed.set()
+        if hasattr(self, "_reader"):
+            self._reader.join()
+        os.close(self._slave)
+        os.close(self._master)
+
+    def send_signal(self, number: int) -> None:
+        """To the program."""
+        children = Path(f"/proc/{self._shell.pid}/task/{self._shell.pid}/children")
+        for pid in children.read_text().split():
+            os.kill(int(pid), number)
+
+    def wait(self) -> int:
+        return self._shell.wait(LIMIT)
+
+    def end(self) -> None:
+        """Whatever state it is in."""
+        if self._shell.poll() is None:
+            self.send_signal(signal.SIGCONT)
+            self.send_signal(signal.SIGKILL)
+            self._shell.kill()  # it may wait for room on the terminal
+            self._shell.wait()
+        if not self._closed.is_set():
+            self.close()
+
+    def _read(self) -> None:
+        while not self._closed.is_set():
+            if select.select([self._master], [], [], 0.05)[0]:
+                with contextlib.suppress(OSError):
+                    self._written += os.read(self._master, 65536)

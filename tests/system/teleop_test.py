@@ -1,0 +1,158 @@
+#!/usr/bin/python3
+"""teleop.py in a pseudo-terminal, beside a running robot: keys move it, and every end of the keys stops it."""
+
+import csv
+import signal
+import statistics
+import tempfile
+import time
+from pathlib import Path
+
+import roslib.packages
+import rospy
+import rostest
+from pseudo_terminal import PseudoTerminal
+from std_msgs.msg import Empty
+from system_support import MONITOR, Program, RobotTestCase, nightly, wait_for
+
+PRESSES = 11
+LATENCY = 0.3
+"""s, median; ten times what is promised, and the machine is busy"""
+
+
+class TeleopTest(RobotTestCase):
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.terminal = self.started()
+
+    def started(self, *arguments: str) -> PseudoTerminal:
+        """Ready: it shows that the robot may move."""
+        self.robot.await_rest()
+        terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0], *arguments])
+        self.addCleanup(terminal.end)
+        wait_for("its screen", lambda: "It may move" in terminal.screen)
+        return terminal
+
+    def drive(self) -> None:
+        """Holds w until the robot drives."""
+        end = time.monotonic() + 30.0
+        self.terminal.type("w")
+        while not self.robot.driving():
+            time.sleep(0.03)
+            self.terminal.type("w")
+            self.assertLess(time.monotonic(), end, self.terminal.screen)
+
+    def await_rest(self) -> None:
+        """By itself: nothing is sent from here."""
+        wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
+
+    def test_a_held_key_drives_and_its_release_stops(self) -> None:
+        self.drive()
+        self.assertIn("DRIVE", self.terminal.screen)
+        self.await_rest()
+        wait_for("its words", lambda: "nothing is sent on /cmd_vel_stamped" in " ".join(self.terminal.screen.split()))
+
+    def test_a_reported_release_stops(self) -> None:
+        self.terminal.type("\x1b[?0u")
+        wait_for("the request for releases", lambda: b"\x1b[>15u" in self.terminal.written)
+        end = time.monotonic() + 30.0
+        self.terminal.type("\x1b[119;1:1u")
+        while not self.robot.driving():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.03)
+            self.terminal.type("\x1b[119;1:2u")
+        self.terminal.type("\x1b[119;1:3u")
+        wait_for("zero", lambda: "asked                 0.00" in self.terminal.screen, limit=10.0)
+        self.await_rest()
+
+    def test_the_e_stop_latches_and_a_reset_takes_two_keys(self) -> None:
+        self.drive()
+        self.terminal.type("!")
+        wait_for("the stop", lambda: "e_stop_service" in self.robot.causes)
+        self.await_rest()
+        wait_for("its cause on the screen", lambda: "e_stop_trigger was called" in self.terminal.screen)
+        self.terminal.type("y")
+        wait_for("the release by two keys", lambda: not self.robot.causes, every=self.ask_for_reset)
+        wait_for("the answer", lambda: "reset accepted" in self.terminal.screen)
+
+    def ask_for_reset(self) -> None:
+        """Refused until the robot stands."""
+        self.terminal.type("r")
+        wait_for("the question or its answer", lambda: "reset?" in self.terminal.screen)
+        self.terminal.type("y")
+        wait_for("the answer", lambda: "reset?" not in self.terminal.screen)
+        time.sleep(0.3)
+
+    def test_a_hang_up_stops(self) -> None:
+        self.drive()
+        self.terminal.close()
+        self.await_rest()
+        self.assertNotEqual(self.terminal.wait(), 0)
+
+    def test_sigkill_and_sigstop_stop_within_the_command_timeout(self) -> None:
+        for number in (signal.SIGSTOP, signal.SIGKILL):
+            self.drive()
+            self.terminal.send_signal(number)
+            self.await_rest()
+            self.terminal.end()
+            self.terminal = self.started()
+
+    def test_ctrl_c_ends_it_and_the_terminal_is_as_before(self) -> None:
+        self.drive()
+        self.terminal.type("\x03")
+        self.assertEqual(self.terminal.wait(), 0, self.terminal.written[-2000:])
+        self.await_rest()
+        self.assertEqual(self.terminal.settings(), self.terminal.before)
+        self.assertNotIn(b"Traceback", self.terminal.written)
+
+    def test_it_publishes_heartbeat(self) -> None:
+        beats: list[Empty] = []
+        subscriber = rospy.Subscriber("heartbeat", Empty, beats.append)
+        self.addCleanup(subscriber.unregister)
+        wait_for("heartbeats", lambda: len(beats) > 5)
+
+    def test_a_killed_monitor_is_named_on_the_screen(self) -> None:
+        self.robot.nodes[MONITOR].kill()
+        try:
+            wait_for("its words", lambda: "safety_monitor does not run" in self.terminal.screen)
+        finally:
+            self.robot.start(MONITOR)
+            wait_for("the new one's word", lambda: "monitor_restarted" in self.robot.causes)
+            self.robot.release()
+
+    @nightly
+    def test_from_a_key_to_the_wheels_torque(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            telemetry = Program("telemetry", f"_directory:={folder}")
+            try:
+                wait_for("the log", lambda: any(Path(folder).rglob("run.csv")))
+                typed = []
+                for _ in range(PRESSES):
+                    time.sleep(2.5)
+                    typed.append(time.monotonic_ns())
+                    self.terminal.type("w")
+                time.sleep(1.0)
+            finally:
+                telemetry.end()
+            log = next(Path(folder).rglob("run.csv"))
+            with log.open() as file:
+                rows = [
+                    (
+                        float(row["stamp_ns"]),
+                        float(row["left_wheel_joint_effort_command"]),
+                        float(row["requested_linear"]),
+                    )
+                    for row in csv.DictReader(file)
+                    if row["stamp_ns"] and row["left_wheel_joint_effort_command"] and row["requested_linear"]
+                ]
+        delays = [
+            next(stamp for stamp, effort, asked in rows if stamp > at and asked > 0 and abs(effort) > 0.01) - at
+            for at in typed
+        ]
+        median = 1e-6 * statistics.median(delays)
+        print(f"key to wheel torque: median {median:.1f} ms, worst {1e-6 * max(delays):.1f} ms of {len(delays)}")
+        self.assertLess(median, 1000 * LATENCY)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "teleop", TeleopTest)

@@ -1,0 +1,117 @@
+"""Bytes of terminals → keys of teleop.py."""
+
+import random
+
+import pytest
+from robot_control.teleop.key_map import E_STOPS, KEY_MAPS
+from robot_control.teleop.keyboard import ESCAPE_WAIT, SEQUENCE_WAIT, Decoder, Event, Key
+
+
+def keys(data):
+    return Decoder().feed(data, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("data", "name"),
+    [
+        (b"w", "w"),
+        (b"W", "w"),  # Caps Lock
+        (b" ", "space"),
+        (b"\r", "enter"),
+        (b"!", "!"),
+        (b"\x03", "interrupt"),
+        (b"\x1b[A", "up"),
+        (b"\x1bOA", "up"),  # application mode
+        (b"\x1b[B", "down"),
+        (b"\x1b[C", "right"),
+        (b"\x1b[D", "left"),
+        (b"\x1b[119u", "w"),
+        (b"\x1b[119;1u", "w"),
+        (b"\x1b[119:87;2u", "w"),  # Shift
+        (b"\x1b[49:33;2u", "!"),
+        (b"\x1b[27u", "escape"),
+        (b"\x1b[32u", "space"),
+        (b"\x1b[99;5u", "interrupt"),  # Ctrl-C
+        (b"\x1b[1;129A", "up"),  # Num Lock
+    ],
+)
+def test_a_press(data, name):
+    assert keys(data) == [Key(name)]
+
+
+@pytest.mark.parametrize(("number", "event"), [(1, Event.PRESS), (2, Event.REPEAT), (3, Event.RELEASE)])
+def test_a_terminal_that_reports_releases(number, event):
+    assert keys(f"\x1b[119;1:{number}u\x1b[1;1:{number}A".encode()) == [Key("w", event), Key("up", event)]
+
+
+def test_the_answer_of_a_terminal_that_can_report_releases():
+    assert keys(b"\x1b[?0u") == [Key("", Event.SPEAKS_KITTY)]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"\x00",
+        b"\x7f",
+        b"\xc3\xa4",
+        b"\x1b[I",
+        b"\x1b[200~",
+        b"\x1b[57441u",
+        b"\x1b[119;5u",
+        b"\x1b[119;1:9u",
+        b"\x1b[99999999999u",
+    ],
+)
+def test_what_is_no_key_of_ours_is_none(data):
+    assert keys(data) == []
+
+
+def test_an_escape_alone_is_the_key_after_a_wait():
+    decoder = Decoder()
+    assert decoder.feed(b"\x1b", 1.0) == []
+    assert decoder.look(1.0 + ESCAPE_WAIT - 0.001) == []
+    assert decoder.look(1.0 + ESCAPE_WAIT) == [Key("escape")]
+    assert decoder.look(9.0) == []
+
+
+def test_an_escape_before_another_key_is_the_key_at_once():
+    assert keys(b"\x1bw") == [Key("escape"), Key("w")]
+    assert keys(b"\x1b\x1b[A") == [Key("escape"), Key("up")]
+
+
+def test_a_sequence_may_come_in_pieces_and_is_dropped_if_its_end_never_comes():
+    decoder = Decoder()
+    assert decoder.feed(b"\x1b[", 0.0) == []
+    assert decoder.feed(b"A", 0.5) == [Key("up")]
+    decoder.feed(b"\x1b[1;", 1.0)
+    assert decoder.look(1.0 + SEQUENCE_WAIT) == []
+    assert decoder.feed(b"w", 3.0) == [Key("w")]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_random_bytes_do_no_harm_and_plain_keys_are_read_afterwards(seed):
+    decoder = Decoder()
+    decoder.feed(random.Random(seed).randbytes(2000), 0.0)
+    decoder.look(SEQUENCE_WAIT)
+    assert decoder.feed(b"w", 2.0) == [Key("w")]
+
+
+@pytest.mark.parametrize("name", KEY_MAPS)
+def test_a_key_has_one_meaning(name):
+    keys = KEY_MAPS[name]
+    meanings = [keys.motions, keys.speeds, keys.stops, E_STOPS, {"r", "y"}]
+    assert sum(map(len, meanings)) == len(set().union(*meanings))
+
+
+@pytest.mark.parametrize("name", KEY_MAPS)
+def test_the_e_stop_does_not_lie_beside_a_motion_key(name):
+    """Of a US keyboard; Esc and ! (above 1) lie in its upper left corner."""
+    beside = {"1", "2", "`", "tab"}
+    assert not beside & set(KEY_MAPS[name].motions)
+
+
+@pytest.mark.parametrize("name", KEY_MAPS)
+def test_every_motion_has_its_opposite(name):
+    motions = {(motion.linear, motion.angular) for motion in KEY_MAPS[name].motions.values()}
+    assert motions == {(-linear, -angular) for linear, angular in motions}
+    assert len(motions) == 8

@@ -1,0 +1,146 @@
+"""From keys to commands, in virtual time."""
+
+import pytest
+from robot_control.teleop.key_map import ARROWS, CLASSIC, KEY_MAPS
+from robot_control.teleop.keyboard import Event, Key
+from robot_control.teleop.operator import RESET_WINDOW, ZEROS, Command, Operator, Request
+
+LINEAR, ANGULAR = 0.4, 0.8
+
+
+@pytest.fixture
+def operator():
+    operator = Operator(ARROWS, LINEAR, ANGULAR)
+    operator.permit(True, 0.0)
+    return operator
+
+
+def hold(operator, key, begin, seconds):
+    """Bytes of a held key; the time of the last one."""
+    times = [begin, *(begin + 0.5 + 0.03 * number for number in range(round((seconds - 0.5) / 0.03) + 1))]
+    for time in times:
+        operator.key(Key(key), time)
+    return times[-1]
+
+
+def test_a_held_key_asks_for_half_and_then_all_of_the_chosen_speed(operator):
+    operator.key(Key("w"), 1.0)
+    assert operator.command(1.0) == Command(LINEAR / 2, 0.0)
+    last = hold(operator, "w", 2.0, 2.0)
+    assert operator.command(last) == Command(LINEAR, 0.0)
+
+
+@pytest.mark.parametrize(("keys", "key", "signs"), [
+    (ARROWS, "up", (1, 0)), (ARROWS, "s", (-1, 0)), (ARROWS, "left", (0, 1)), (ARROWS, "d", (0, -1)),
+    (ARROWS, "q", (1, 1)), (ARROWS, "z", (-1, -1)),
+    (CLASSIC, "i", (1, 0)), (CLASSIC, ",", (-1, 0)), (CLASSIC, "j", (0, 1)), (CLASSIC, "m", (-1, -1)),
+])  # fmt: skip
+def test_forward_is_positive_and_left_is_positive(keys, key, signs):
+    operator = Operator(keys, LINEAR, ANGULAR)
+    last = hold(operator, key, 0.0, 2.0)
+    assert operator.command(last) == Command(signs[0] * LINEAR, signs[1] * ANGULAR)
+
+
+def test_after_a_release_zeros_follow_and_then_nothing_so_that_others_may_command(operator):
+    last = hold(operator, "w", 0.0, 2.0)
+    operator.command(last)
+    operator.key(Key("w", Event.RELEASE), last)
+    assert operator.command(last + ZEROS - 0.01) == Command()
+    assert operator.command(last + ZEROS) is None
+
+
+@pytest.mark.parametrize("name", KEY_MAPS)
+def test_space_stops_at_once(name):
+    operator = Operator(KEY_MAPS[name], LINEAR, ANGULAR)
+    last = hold(operator, next(iter(KEY_MAPS[name].motions)), 0.0, 2.0)
+    assert operator.key(Key("space"), last + 0.02) is None
+    assert operator.command(last + 0.02) == Command()
+
+
+@pytest.mark.parametrize("key", ["escape", "!"])
+def test_the_e_stop_ends_motion_and_no_key_moves_the_robot_until_a_reset(operator, key):
+    last = hold(operator, "w", 0.0, 2.0)
+    assert operator.key(Key(key), last + 0.01) is Request.E_STOP
+    assert operator.command(last + 0.01) == Command()
+    last = hold(operator, "a", 10.0, 2.0)
+    assert operator.command(last) == Command()
+    assert "EMERGENCY STOP" in operator.message(last)
+    operator.reset_accepted()
+    last = hold(operator, "a", 20.0, 2.0)
+    assert operator.command(last) == Command(0.0, ANGULAR)
+
+
+def test_a_reset_of_somebody_else_ends_the_block_too(operator):
+    operator.key(Key("!"), 1.0)
+    operator.permit(False, 1.1)
+    operator.permit(True, 5.0)
+    operator.key(Key("w"), 6.0)
+    assert operator.command(6.0) == Command(LINEAR / 2, 0.0)
+
+
+def test_a_reset_takes_two_steps_within_its_window(operator):
+    assert operator.key(Key("y"), 0.0) is None
+    assert operator.key(Key("r"), 1.0) is None
+    assert "reset?" in operator.message(1.0)
+    assert operator.key(Key("y"), 1.0 + RESET_WINDOW) is None
+    operator.key(Key("r"), 10.0)
+    assert operator.key(Key("y"), 10.0 + RESET_WINDOW - 0.01) is Request.RESET
+    assert operator.key(Key("y"), 10.0 + RESET_WINDOW - 0.01) is None
+
+
+def test_a_motion_key_cancels_a_reset(operator):
+    operator.key(Key("r"), 1.0)
+    operator.key(Key("w"), 1.2)
+    assert operator.key(Key("y"), 1.4) is None
+
+
+def test_a_robot_that_stopped_does_not_go_on_under_the_key_that_was_held(operator):
+    last = hold(operator, "w", 0.0, 2.0)
+    operator.permit(False, last + 0.01)
+    assert operator.command(last + 0.01) == Command()
+    for number in range(1, 100):
+        operator.key(Key("w"), last + 0.03 * number)
+    last += 0.03 * 99
+    operator.permit(True, last)
+    operator.key(Key("w"), last + 0.03)
+    assert operator.command(last + 0.03) is None or operator.command(last + 0.03) == Command()
+    assert "release it" in operator.message(last + 0.03)
+    operator.key(Key("w"), last + 1.0)
+    assert operator.command(last + 1.0) == Command(LINEAR / 2, 0.0)
+
+
+def test_a_silent_monitor_does_not_keep_commands_back():
+    operator = Operator(ARROWS, LINEAR, ANGULAR)
+    operator.permit(None, 0.0)
+    operator.key(Key("w"), 0.0)
+    assert operator.command(0.0) == Command(LINEAR / 2, 0.0)
+
+
+def test_what_was_typed_while_the_program_stood_moves_nothing_and_may_stop(operator):
+    operator.key(Key("w"), 1.0, late=True)
+    assert operator.command(1.0) is None
+    last = hold(operator, "w", 2.0, 2.0)
+    operator.key(Key("space"), last, late=True)
+    assert operator.command(last) == Command()
+    assert operator.key(Key("!"), last, late=True) is Request.E_STOP
+
+
+def test_speeds_change_by_a_tenth_and_have_a_bound(operator):
+    operator.key(Key("+"), 0.0)
+    operator.key(Key(","), 0.0)
+    assert (operator.linear, operator.angular) == pytest.approx((1.1 * LINEAR, 0.9 * ANGULAR))
+    for _ in range(200):
+        operator.key(Key("+"), 0.0)
+    assert operator.linear == 100.0
+
+
+def test_a_key_that_is_held_too_long_is_announced_and_explained(operator):
+    hold(operator, "w", 0.0, 26.0)
+    assert "stops in 4 s" in operator.message(26.1)
+    for number in range(200):
+        operator.key(Key("w"), 26.13 + 0.03 * number)
+    assert operator.message(32.2).startswith("stopped: the key was held too long")
+
+
+def test_ctrl_c_ends(operator):
+    assert operator.key(Key("interrupt"), 0.0) is Request.END

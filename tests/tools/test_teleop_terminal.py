@@ -1,0 +1,122 @@
+"""teleop.py's terminal is as before after every end of the program."""
+
+import os
+import signal
+import sys
+import time
+
+import pytest
+from robot_control.teleop.terminal import END, NoTerminalError, Terminal
+from system.pseudo_terminal import PseudoTerminal
+
+BEGIN = """
+import os, signal, sys, time
+from robot_control.teleop.terminal import NoTerminalError, Terminal
+with Terminal() as terminal:
+    print("printed meanwhile")
+    terminal.draw(["drawn"])
+"""
+LOOP = """
+    try:
+        while True:
+            data = terminal.read(0.02)
+            if data:
+                terminal.draw([f"read {data}"])
+    except NoTerminalError:
+        sys.exit(3)
+"""
+
+
+@pytest.fixture
+def started():
+    programs = []
+
+    def start(code, **given):
+        path = os.pathsep.join(sys.path)
+        programs.append(PseudoTerminal([sys.executable, "-c", BEGIN + code], {"PYTHONPATH": path}, **given))
+        return programs[-1]
+
+    yield start
+    for program in programs:
+        program.end()
+
+
+def wait_for(condition):
+    end = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def assert_restored(program):
+    """Settings and screen; a guard may still be at it after the program's end."""
+    wait_for(lambda: program.settings() == program.before)
+    wait_for(lambda: END in program.written)
+
+
+def test_within_the_block_keys_come_at_once_and_the_screen_is_drawn(started):
+    program = started(LOOP)
+    wait_for(lambda: "drawn" in program.screen)
+    assert program.settings() != program.before
+    program.type("w")
+    wait_for(lambda: "read b'w'" in program.screen)
+
+
+@pytest.mark.parametrize(
+    ("end", "code"),
+    [
+        ("pass", 0),
+        ("sys.exit(4)", 4),
+        ("1 / 0", 1),
+        ("os.kill(os.getpid(), signal.SIGKILL)", 128 + signal.SIGKILL),
+        ("os.kill(os.getpid(), signal.SIGSEGV)", 128 + signal.SIGSEGV),
+        ("os._exit(5)", 5),
+    ],
+)
+def test_it_is_as_before_after_every_end(started, end, code):
+    program = started(f"    {end}\n")
+    assert program.wait() == code
+    assert_restored(program)
+
+
+def test_what_was_printed_meanwhile_comes_afterwards(started):
+    program = started("    1 / 0\n")
+    program.wait()
+    wait_for(lambda: b"ZeroDivisionError" in program.written)
+    assert program.written.index(b"printed meanwhile") > program.written.index(END)
+
+
+def test_a_hang_up_is_noticed(started):
+    program = started("    signal.signal(signal.SIGHUP, signal.SIG_IGN)\n" + LOOP)
+    wait_for(lambda: "drawn" in program.screen)
+    program.close()
+    assert program.wait() == 3
+
+
+def test_a_terminal_that_takes_nothing_delays_nothing(started, tmp_path):
+    count = tmp_path / "count"
+    code = f"""
+    for number in range(200):
+        terminal.draw(["x" * 79] * 24)
+    open({str(count)!r}, "w").write("done")
+"""
+    started(code, reading=False)
+    wait_for(count.exists)
+
+
+def test_ctrl_c_is_a_signal_and_ctrl_z_and_ctrl_s_are_none(started):
+    program = started(LOOP)
+    wait_for(lambda: "drawn" in program.screen)
+    program.type("\x1a\x13\x1c")
+    wait_for(lambda: r"read b'\x1a\x13\x1c'" in program.screen)
+    program.type("\x03")
+    assert program.wait() == 128 + signal.SIGINT
+    assert_restored(program)
+
+
+def test_without_a_terminal_it_says_so():
+    reading, writing = os.pipe()
+    with pytest.raises(NoTerminalError, match="no terminal"):
+        Terminal(reading)
+    os.close(reading)
+    os.close(writing)
