@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <stdexcept>
 #include <vector>
+
+#include "bridge/messages/reconfigure_messages.h"
 
 namespace robot_control {
 namespace {
@@ -74,6 +77,14 @@ TEST(BoundedMessage, RefusesANameThatPointsBeyondTheMessage) {
     Bytes bytes = wire(stamped(5));
     set_length(bytes, kFrameIdLength, length);
     EXPECT_FALSE(read<BoundedTwistStamped>(bytes).accepted) << length;
+  }
+}
+
+TEST(MessageAllocator, AllocatesNoArrayThatOnlyItsLengthFieldAnnounces) {
+  for (const std::uint32_t length : {1u << 16, 1u << 24, 0xffffffffu}) {
+    Bytes bytes = wire(msg::ReconfigureRequest{});
+    set_length(bytes, 0, length);
+    EXPECT_THROW(read<msg::ReconfigureRequest>(bytes), std::length_error) << length;
   }
 }
 

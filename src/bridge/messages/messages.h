@@ -3,6 +3,10 @@
 ///
 /// The generated headers of ROS 1 ask the allocator for its member `rebind`, which std::allocator lost in C++20.
 /// MessageAllocator has it; names, checksums and bytes on the wire are templates over the allocator and stay.
+///
+/// It also bounds what a received message allocates: roscpp resizes an array to the length that the sender wrote, up to
+/// 2³² elements, before it looks whether the message is as long. Beyond kLargestArray bytes it throws std::length_error,
+/// which roscpp catches: the message or request is rejected.
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/TransformStamped.h>
@@ -22,13 +26,21 @@
 #include <std_srvs/TriggerResponse.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <cstddef>
 #include <memory>
+#include <stdexcept>
 
 namespace robot_control {
+
+inline constexpr std::size_t kLargestArray = std::size_t{1} << 20;  ///< bytes
 
 template <class T>
 struct MessageAllocator : std::allocator<T> {
   using std::allocator<T>::allocator;
+  T* allocate(std::size_t count) {
+    if (count > kLargestArray / sizeof(T)) throw std::length_error("an array of a message is longer than 1 MiB");
+    return std::allocator<T>::allocate(count);
+  }
   template <class U>
   struct rebind {
     using other = MessageAllocator<U>;
