@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+Table = tuple[FloatArray, FloatArray, FloatArray]
+Rows = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
 ABSENT = "no folder of recordings: set ROBOT_RECORDINGS"
 NAMES = (
@@ -94,7 +96,7 @@ def recording(name: str) -> Recording:
     folder = recordings_folder()
     if folder is None:
         raise FileNotFoundError(ABSENT)
-    kind = name.rstrip("abcd") if name.startswith(("skid", "vacuum")) else name.split("_")[0]
+    kind = name.rstrip("abcd") if name.startswith(("skid", "vacuum")) else name.split("_", maxsplit=1)[0]
     file = {"outdoor": "outdoor_skid_steer", "vehicle": "vehicle"}.get(kind, name)
     with np.load(folder / f"{file}.npz") as data:
         read = {"skid_steer_": _skid_steer, "vacuum_": _vacuum, "outdoor": _outdoor, "vehicle": _vehicle}[kind]
@@ -106,7 +108,7 @@ def _strictly_increasing(time: FloatArray) -> FloatArray:
     return np.asarray(steps)
 
 
-def _merged(wheels: tuple[FloatArray, FloatArray, FloatArray], imu: tuple[FloatArray, FloatArray, FloatArray]):
+def _merged(wheels: Table, imu: Table) -> Rows:
     """(time, left, right), (time, gyro, accel) → time, left, right, gyro, accel; one row per stamp."""
     both = np.concatenate([wheels[0], imu[0]])
     order = np.argsort(both, kind="stable")
@@ -120,7 +122,7 @@ def _merged(wheels: tuple[FloatArray, FloatArray, FloatArray], imu: tuple[FloatA
         column[position[:n]] = values
     for axis, values in zip(axes, imu[1:], strict=True):
         axis[position[n:]] = values
-    return time, *columns, *axes
+    return time, columns[0], columns[1], axes[0], axes[1]
 
 
 def _skid_steer(name: str, data: Mapping[str, FloatArray]) -> Recording:
