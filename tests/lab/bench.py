@@ -22,6 +22,7 @@ from typing import Any
 from robot_control.common.files import write_text
 
 from lab import markdown
+from lab.drives.sensor_errors import LEVELS
 from lab.faults.fault_sequence import ALL_RUNS
 from lab.runs import seed_programs
 from lab.runs.address import check_address
@@ -74,7 +75,7 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
     if name == "driving":
         from lab.drives import normal_driving
 
-        return normal_driving.bench(given.share, say, runner)
+        return normal_driving.bench(given.share, say, runner, given.errors)
     if name == "odometry":
         from lab.odometry import bench as odometry
 
@@ -166,6 +167,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
+    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving: of the sensors")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this machine alone")

@@ -701,3 +701,59 @@ def test_a_chunk_that_inflates_to_more_than_it_says_is_refused(rosbag, run, exac
     Path("in.bag").write_bytes(data[:at] + (1000).to_bytes(4, "little") + data[at + 4 :])
     _, message = run("in.bag", *ROBOT)
     assert "inflates to more than the 1000 bytes that it says" in message
+
+
+def test_a_robot_of_unknown_size_is_never_taken_for_the_installed_one(run, columns):
+    write_csv("in.csv", columns)
+    Path("mine.yaml").write_text("state_estimator: {gyro_noise: 1.0e-3}\n")
+    for given in ([], ["--params", "mine.yaml"]):
+        _, message = run("in.csv", *given)
+        assert "the robot is not given" in message
+        assert "--wheel-radius and --wheel-base, or --urdf FILE" in message
+    Path("mine.yaml").write_text(f"robot: {{wheel_base: {WHEEL_BASE}}}\n")
+    assert run("in.csv", "--params", "mine.yaml")[1] == ""
+
+
+@pytest.mark.parametrize("form", [["--imu-orientation=-1.5708,0,0"], ["--imu-orientation", "-1.5708,0,0"]])
+def test_an_imu_orientation_may_begin_with_a_minus(run, columns, form):
+    write_csv("in.csv", columns)
+    report, message = run("in.csv", *ROBOT, *form)
+    assert message == ""
+    assert "warning         gravity is 90° away" in report  # it was given, and is wrong
+    assert "--imu-orientation=0,0,0 fits" in report
+
+
+def test_late_stamps_of_the_imu_are_found_said_and_taken_out(run, exact):
+    wheels, imu = np.arange(0, 12, 0.02), np.arange(0.003, 12, 0.005)
+    late = columns_of(exact.at(imu))
+    late = {name: values for name, values in late.items() if name not in ("left", "right")}
+    of_wheels = {name: values for name, values in columns_of(exact.at(wheels)).items() if name in ("left", "right")}
+    streams = [
+        Stream(np.round((time + delay) * 1e9).astype(np.int64), np.column_stack(list(table.values())))
+        for time, delay, table in (
+            (wheels, 0.0, of_wheels),
+            (imu, 0.08, {k: v for k, v in late.items() if k != "time"}),
+        )
+    ]
+    time_ns, tables = merged(streams)
+    names = [name for name in late if name != "time"]
+    rows = dict(zip([*of_wheels, *names], np.column_stack(tables).T, strict=True))
+    write_csv("in.csv", {"time": time_ns / 1e9, **rows})
+    report, message = run("in.csv", *ROBOT, "--csv", "out.csv")
+    assert message == ""
+    assert "the IMU's stamps are +0.080 s after the wheels'" in report
+    assert_at(read_csv("out.csv"), exact)
+    for given in (["--imu-delay", "0"], ["--imu-delay", "-0.01"]):
+        assert "taken out" not in run("in.csv", *ROBOT, *given)[0]
+
+
+def test_counts_and_an_accelerometer_in_g_are_refused_at_once(run, columns):
+    counts = dict(columns)
+    for side in ("left", "right"):
+        counts[side] = np.round(columns[side] / (2 * np.pi) * 4096)
+    write_csv("in.csv", counts)
+    assert "--counts-per-turn" in run("in.csv", *ROBOT)[1]
+    in_g = columns | {f"accel_{axis}": columns[f"accel_{axis}"] / 9.80665 for axis in "xyz"}
+    write_csv("in.csv", in_g)
+    assert "--accel-unit g" in run("in.csv", *ROBOT)[1]
+    assert run("in.csv", *ROBOT, "--accel-unit", "g")[1] == ""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import yaml  # type: ignore[import-untyped]
 
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
@@ -17,9 +18,11 @@ from robot_control.common.files import NewFiles, fit_for_message
 from robot_control.estimate.bag_input import BagTopics, read_bag
 from robot_control.estimate.csv_input import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
 from robot_control.estimate.encoder import counts_per_turn
+from robot_control.estimate.input_check import check, check_angles
 from robot_control.estimate.output import BagSink, CsvSink, Sink
 from robot_control.estimate.report import Summary
-from robot_control.estimate.samples import InputError, IntArray, Samples
+from robot_control.estimate.samples import InputError, IntArray, Robot, Samples
+from robot_control.estimate.trust import Trust
 from robot_control.offline_estimator import Estimate, Estimator
 
 if TYPE_CHECKING:
@@ -39,13 +42,14 @@ IMU may have rates of their own. Its columns, under these names or by --columns:
 A run.csv of this package (telemetry, the demo) is known by its columns: the last run in it is estimated again.
 A bag is read by the stamps of its messages, needs no running ROS, and its topics are found where only one can be meant.
 
-The robot is --urdf, or --wheel-radius with --wheel-base (base_link mid-axle), or what --params says.
+The robot is --urdf, or --wheel-radius with --wheel-base (base_link mid-axle), or what --params says; it must be given,
+but for a run.csv.
 """
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Estimates, writes, prints; exits with 1 and one message when something is refused."""
-    options = _parser().parse_args(arguments)
+    options = _parser().parse_args(_with_negative_lists(sys.argv[1:] if arguments is None else arguments))
     try:
         print(estimate(options))
     except (InputError, ParameterError, RobotError, ValueError, RuntimeError, OSError) as error:
@@ -54,6 +58,17 @@ def main(arguments: list[str] | None = None) -> None:
         sys.exit("estimate.py: the recording needs more memory than there is; cut it into pieces")
     for path in _outputs(options):
         print(f"wrote {path}", file=sys.stderr)
+
+
+def _with_negative_lists(arguments: list[str]) -> list[str]:
+    """`--imu-orientation -1.57,0,0` as `--imu-orientation=-1.57,0,0`: argparse takes a leading minus for an option."""
+    joined: list[str] = []
+    for argument in arguments:
+        if joined and joined[-1] in {"--imu-position", "--imu-orientation"} and argument[:1] == "-":
+            joined[-1] += f"={argument}"
+        else:
+            joined.append(argument)
+    return joined
 
 
 def estimate(options: argparse.Namespace) -> str:
@@ -66,8 +81,8 @@ def estimate(options: argparse.Namespace) -> str:
     _check_paths(options)
     estimator = _estimator(options, options.encoder_counts)
     samples = _read(options, estimator)
-    note = samples.gap_note()
-    samples.notes += [] if note is None else [note]
+    _check_robot(options, samples)
+    samples = _checked(options, samples, estimator.robot)
     counts = None if samples.own_log or options.encoder_counts is not None else counts_per_turn(samples)
     if counts is not None and options.params is None:
         samples.notes.append(f"the wheel angles come in steps of 1/{counts:.4g} turn; --encoder-counts says otherwise")
@@ -77,9 +92,9 @@ def estimate(options: argparse.Namespace) -> str:
             f"the wheel angles come in steps of 1/{counts:.4g} turn: look at encoder_noise in --params"
         )
 
-    summary = Summary()
+    summary, trust = Summary(), Trust()
     with NewFiles() as files:
-        sinks: list[tuple[Sink, float | None]] = [(summary, None)]
+        sinks: list[tuple[Sink, float | None]] = [(summary, None), (trust, None)]
         if options.csv is not None:
             sinks.append((CsvSink(files.name(options.csv)), options.rate))
         if options.bag is not None:
@@ -100,7 +115,40 @@ def estimate(options: argparse.Namespace) -> str:
             picture.draw(files.name(options.plot), f"{options.input.name}: {summary.last['distance']:.1f} m")
         if options.calibration is not None:
             estimator.save_calibration(files.name(options.calibration))
+    samples.warnings += trust.doubts(samples)
     return summary.report(samples, estimator.robot)
+
+
+def _checked(options: argparse.Namespace, samples: Samples, robot: Robot) -> Samples:
+    """With warnings and notes, and the IMU's stamps on the wheels' clock."""
+    if options.counts_per_turn is None and options.input.suffix != ".bag" and not samples.own_log:
+        check_angles(samples)
+    findings = check(samples, robot)
+    samples.warnings += findings.warnings
+    note = samples.gap_note()
+    samples.notes += [] if note is None else [note]
+    delay = options.imu_delay
+    if delay is None and findings.offset is not None:
+        said = f"the IMU's stamps are {findings.offset:+.3f} s after the wheels', by the turning of both"
+        if samples.own_log:
+            samples.notes.append(f"{said}; left as it is: the node had the same")
+        else:
+            samples.notes.append(f"{said}: taken out; --imu-delay 0 leaves it in")
+            delay = findings.offset
+    return samples.with_imu_earlier(delay) if delay else samples
+
+
+def _check_robot(options: argparse.Namespace, samples: Samples) -> None:
+    """Its size is never silently that of the installed default robot; a log of this package names its joints."""
+    given = options.urdf is not None or options.wheel_radius is not None or samples.own_log
+    if not given and options.params is not None:
+        blocks = yaml.safe_load(options.params.read_text(encoding="utf-8")) or {}
+        given = bool({"urdf", "wheel_radius", "wheel_base", "wheel_separation"} & set(blocks.get("robot") or {}))
+    if not given:
+        raise InputError(
+            "the robot is not given, without which a turn of a wheel is no distance: say --wheel-radius and "
+            "--wheel-base, or --urdf FILE, or --params with a block robot:"
+        )
 
 
 def _estimator(options: argparse.Namespace, encoder_counts: float | None) -> Estimator:
@@ -145,11 +193,16 @@ def _thinned(time_ns: IntArray, rows: Estimate, rate: float | None, all_ns: IntA
 
 def _read(options: argparse.Namespace, estimator: Estimator) -> Samples:
     if options.input.suffix == ".bag":
-        return read_bag(
+        samples = read_bag(
             options.input,
             estimator.robot,
             BagTopics(options.wheels, options.imu, _joints(options.joints), options.odometry),
         )
+        if samples.gyro is not None:
+            samples.gyro *= GYRO_UNITS[options.gyro_unit or "rad/s"]
+        if samples.accel is not None:
+            samples.accel *= ACCEL_UNITS[options.accel_unit or "m/s2"]
+        return samples
     form = CsvForm(
         dict(options.columns or {}),
         options.counts_per_turn or 2 * math.pi,
@@ -172,7 +225,7 @@ def _outputs(options: argparse.Namespace) -> list[Path]:
     return [path for path in (options.csv, options.bag, options.plot, options.calibration) if path is not None]
 
 
-OF_CSV = ("columns", "counts_per_turn", "time_unit", "gyro_unit", "accel_unit")
+OF_CSV = ("columns", "counts_per_turn", "time_unit")
 OF_BAG = ("wheels", "imu", "joints", "odometry")
 
 
@@ -230,12 +283,20 @@ def _parser() -> argparse.ArgumentParser:
     robot.add_argument("--params", type=Path, metavar="YAML", help="parameter file; installed: robot_params.yaml")
     robot.add_argument("--wheel-radius", type=_positive, metavar="M", help="every wheel")
     robot.add_argument("--wheel-base", type=_positive, metavar="M", help="between the left and the right wheels")
-    robot.add_argument("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link; =X,… where X < 0")
+    robot.add_argument("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link")
     robot.add_argument(
         "--imu-orientation", type=_numbers, metavar="R,P,Y", help="rad, as in a URDF, or a quaternion x,y,z,w"
     )
     robot.add_argument(
         "--encoder-counts", type=_positive, metavar="N", help="a turn, gear included; else found, or 4096"
+    )
+    robot.add_argument("--gyro-unit", choices=GYRO_UNITS, help="of the recording; rad/s unless given")
+    robot.add_argument("--accel-unit", choices=ACCEL_UNITS, help="m/s2 unless given")
+    robot.add_argument(
+        "--imu-delay",
+        type=_finite,
+        metavar="S",
+        help="by which the IMU's stamps are later than the wheels'; else found by the turning of both",
     )
     robot.add_argument("--period", type=_positive, metavar="S", help="between samples; else their median")
 
@@ -248,8 +309,6 @@ def _parser() -> argparse.ArgumentParser:
         "--time-unit",
         choices=TIME_UNITS,
     )
-    table.add_argument("--gyro-unit", choices=GYRO_UNITS)
-    table.add_argument("--accel-unit", choices=ACCEL_UNITS)
 
     bag = parser.add_argument_group("a bag")
     bag.add_argument("--wheels", metavar="TOPIC", help="of sensor_msgs/JointState or nav_msgs/Odometry")
@@ -268,6 +327,16 @@ def _positive(text: str) -> float:
         value = math.nan
     if not (math.isfinite(value) and value > 0):
         raise argparse.ArgumentTypeError(f"{text} is no number above 0")
+    return value
+
+
+def _finite(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text} is no number")
     return value
 
 

@@ -1,4 +1,4 @@
-"""An estimate as one picture: the path with its uncertainty, yaw, speeds, gyro bias; where wheels slipped."""
+"""An estimate as one picture: the path with its uncertainty, yaw, speeds, gyro bias, innovations; where it slipped."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.patches import Ellipse
 
 from robot_control.common.picture_style import STYLE
-from robot_control.offline_estimator import FLAGS, Estimate
+from robot_control.offline_estimator import FLAGS, SENSORS, Estimate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,6 +30,7 @@ NINETY_FIVE = 2.4477
 DEGREES = 180 / np.pi
 SMOOTH = 0.05
 """s over which speeds are drawn as their mean: counts of an encoder in one millisecond would be all there is to see"""
+LEAST_NIS = 1e-3  # drawn; below, a sensor agrees better than it can
 UNDER = 5.0
 """points; width of a curve that the estimate may cover: it stays visible on both sides"""
 
@@ -63,7 +64,7 @@ class Picture:
         with mpl.rc_context(STYLE):
             figure = plt.figure(figsize=(16, 9), layout="constrained")
             figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
-            grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.35))
+            grid = figure.add_gridspec(4, 2, width_ratios=(1, 1.35), height_ratios=(1, 1, 1, 0.8))
             figure.suptitle(title, fontsize=15, fontweight="bold", x=0.01, ha="left")
             _draw_path(figure.add_subplot(grid[:, 0]), time, rows, spans)
             yaw = figure.add_subplot(grid[0, 1])
@@ -72,12 +73,14 @@ class Picture:
             _draw_yaw(yaw, time, rows)
             _draw_speeds(speeds, time, rows)
             _draw_bias(bias, time, rows)
-            for axes in (yaw, speeds, bias):
+            innovations = figure.add_subplot(grid[3, 1], sharex=yaw)
+            _draw_innovations(innovations, time, rows)
+            for axes in (yaw, speeds, bias, innovations):
                 for first, last in spans:
                     axes.axvspan(first, last, color=SLIP, alpha=0.15, linewidth=0)
-            for axes in (yaw, speeds):
+            for axes in (yaw, speeds, bias):
                 axes.tick_params(labelbottom=False)
-            bias.set_xlabel("time [s]")
+            innovations.set_xlabel("time [s]")
             yaw.set_xlim(0, max(float(time[-1]), 1e-3))
             figure.savefig(path)
             plt.close(figure)
@@ -187,3 +190,22 @@ def _draw_bias(axes: Axes, time: FloatArray, rows: Estimate) -> None:
             time, bias - 2 * deviation, bias + 2 * deviation, where=known, color=color, alpha=0.12, linewidth=0
         )
     _legend_above(axes)
+
+
+def _draw_innovations(axes: Axes, time: FloatArray, rows: Estimate) -> None:
+    axes.set_title("Innovations, squared over their variance: 1 is as expected")
+    shown = False
+    for i, name in enumerate(SENSORS):
+        nis = np.where(rows["nis"][:, i] > 0, np.maximum(rows["nis"][:, i], LEAST_NIS), np.nan)
+        if not np.isnan(nis).all():
+            axes.plot(time, nis, linewidth=1.2, label=name.replace("_", " "))
+            shown = True
+    if not shown:
+        axes.set(yticks=[], ylim=(0, 1))
+        axes.text(0.5, 0.5, "none", ha="center", va="center", color="#666666", transform=axes.transAxes)
+        return
+    axes.axhline(1, color="#666666", linewidth=0.8, linestyle=":")
+    axes.set_yscale("log")
+    axes.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.42), ncols=len(SENSORS), fontsize="small", columnspacing=1.2
+    )

@@ -66,6 +66,7 @@ class Summary:
         if self.seconds["invalid"] > 0:
             lines.append(("not valid", f"{self.seconds['invalid']:.1f} s"))
         lines += [("note", note) for note in samples.notes]
+        lines = [*(("warning", warning) for warning in samples.warnings), *lines]
         return "\n".join(f"{name:<16}{text}" for name, text in lines)
 
     def _slip(self) -> str:

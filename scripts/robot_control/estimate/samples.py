@@ -32,6 +32,7 @@ class Samples:
     gyro: FloatArray | None  # (N, 3), rad/s, IMU axes
     accel: FloatArray | None  # (N, 3), m/s², IMU axes
     notes: list[str] = field(default_factory=list)  # for the user's eyes
+    warnings: list[str] = field(default_factory=list)  # likewise; what makes the result doubtful
     own_log: bool = False  # of this package's node, whose parameters are those to estimate with
 
     @property
@@ -44,6 +45,22 @@ class Samples:
     def duration(self) -> float:
         """s"""
         return float(self.seconds[-1])
+
+    def with_imu_earlier(self, seconds: float) -> Samples:
+        """The same with all stamps of the IMU earlier by `seconds`; rows outside the wheels' time are left out."""
+        tables = [table.reshape(self.time_ns.size, -1) for table in (self.left, self.right)]
+        imu = [table for table in (self.gyro, self.accel) if table is not None]
+        streams = [Stream(*_of_any(self.time_ns, tables))]
+        streams += [Stream(*_of_any(self.time_ns - round(seconds * 1e9), [table])) for table in imu]
+        time_ns, values = merged(streams)
+        inside = (time_ns >= streams[0].time_ns[0]) & (time_ns <= streams[0].time_ns[-1])
+        wheels = np.split(values[0][inside], [tables[0].shape[1]], axis=1)
+        left, right = (
+            table[:, 0] if of.ndim == 1 else table for table, of in zip(wheels, (self.left, self.right), strict=True)
+        )
+        moved = iter(values[1:])
+        gyro, accel = (None if table is None else next(moved)[inside] for table in (self.gyro, self.accel))
+        return Samples(time_ns[inside], left, right, gyro, accel, self.notes, self.warnings, self.own_log)
 
     def rates(self) -> dict[str, float]:
         """Mean rate [Hz] of each sensor that there is."""
@@ -84,6 +101,13 @@ def merged(streams: Sequence[Stream]) -> tuple[IntArray, list[FloatArray]]:
         table[np.searchsorted(time_ns, stream.time_ns)] = stream.values
         tables.append(table)
     return time_ns, tables
+
+
+def _of_any(time_ns: IntArray, tables: Sequence[FloatArray]) -> tuple[IntArray, FloatArray]:
+    """Times and rows at which any of the columns has a value."""
+    table = np.column_stack(tables)
+    there = ~np.all(np.isnan(table), axis=1)
+    return time_ns[there], table[there]
 
 
 def wheel_joints(robot: Robot, side: str) -> list[str]:

@@ -10,7 +10,7 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from robot_control.closed_loop import ClosedLoop, Log
 from robot_control.common.cause_names import causes_in
 
 from lab.drives.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
+from lab.drives.sensor_errors import LEVELS, plant_parameters
 from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
 from lab.runs.runner import Processes, Runner
 
@@ -38,6 +39,7 @@ class Drive:
     rate: int  # Hz
     seconds: float
     seed: int
+    errors: str = "data_sheet"  # one of sensor_errors.LEVELS
 
 
 @dataclass(frozen=True)
@@ -52,28 +54,29 @@ class Driven:
     def __str__(self) -> str:
         drive = self.drive
         what = f"{drive.robot} in {drive.scene} at {drive.rate} Hz, seed {drive.seed}, {drive.seconds:.0f} s"
+        what += "" if drive.errors == "data_sheet" else f", errors: {drive.errors}"
         said = [f"stopped: {', '.join(self.causes)}"] if self.causes else []
         said += [f"warned: {', '.join(self.warnings)}"] if self.warnings else []
         return f"{what}: {'; '.join(said) or 'nothing amiss'}"
 
 
-def all_drives(share: float) -> list[Drive]:
-    """Two hours, where the real robots are there, times `share`."""
+def all_drives(share: float, errors: str = "data_sheet") -> list[Drive]:
+    """Two hours, where the real robots are there, times `share`, with sensors that err as `errors` says."""
     drives: list[Drive] = []
     for scene in SCENES:
         for rate, seconds in RATES.items():
             if rate < SLOW and scene == "bumps":
                 continue
-            drives += _split(DIFFBOT, scene, rate, share * seconds)
+            drives += _split(Drive(DIFFBOT, scene, rate, share * seconds, 0, errors))
     for robot in robot_names()[1:]:
         for scene in SCENES:
-            drives += _split(robot, scene, 1000, share * OTHERS_SECONDS)
+            drives += _split(Drive(robot, scene, 1000, share * OTHERS_SECONDS, 0, errors))
     return drives
 
 
-def _split(robot: str, scene: str, rate: int, seconds: float) -> list[Drive]:
-    count = max(1, round(seconds / LONGEST))
-    return [Drive(robot, scene, rate, seconds / count, seed) for seed in range(count)]
+def _split(drive: Drive) -> list[Drive]:
+    count = max(1, round(drive.seconds / LONGEST))
+    return [replace(drive, seconds=drive.seconds / count, seed=seed) for seed in range(count)]
 
 
 def stuck(log: Log, rate: int) -> bool:
@@ -92,7 +95,7 @@ def top_speed(loop: ClosedLoop, scene: str) -> float:
 def carry_out(drive: Drive) -> Driven:
     """Drives it."""
     loop = ClosedLoop(
-        params={"robot": {"rate": drive.rate}},
+        params={"robot": {"rate": drive.rate}, "mujoco_plant": plant_parameters(drive.errors)},
         seed=drive.seed,
         urdf=urdf_of(drive.robot),
         scene=scene_of(drive.scene),
@@ -105,10 +108,12 @@ def carry_out(drive: Drive) -> Driven:
     return Driven(drive, causes, sorted(warnings), float(log["distance"][0]))
 
 
-def bench(share: float, say: Callable[[str], None], runner: Runner | None = None) -> tuple[dict[str, Any], bool]:
+def bench(
+    share: float, say: Callable[[str], None], runner: Runner | None = None, errors: str = "data_sheet"
+) -> tuple[dict[str, Any], bool]:
     """The result, and whether nothing was amiss; `say` receives what was."""
     began = time.monotonic()
-    drives = all_drives(share)
+    drives = all_drives(share, errors)
     driven = []
     runner = runner or Processes()
     for outcome in runner.outcomes(carry_out, drives, say):
@@ -135,8 +140,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Exit code 0: nothing was amiss."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--share", type=float, default=1.0, help="of the two hours")
+    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")
     given = parser.parse_args(arguments)
-    result, fine = bench(given.share, print)
+    result, fine = bench(given.share, print, errors=given.errors)
     for row in result["rows"]:
         print(f"{row['name']:<24}{row['value']:12.5g} {row['unit']}")
     return 0 if fine else 1

@@ -1,0 +1,61 @@
+"""Whether an estimate can be relied on, and which sensors it did without."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from robot_control.estimate.samples import IntArray, Samples
+from robot_control.offline_estimator import FLAGS, Estimate
+
+LARGEST_YAW_DEVIATION = math.radians(10)
+MOST_SLIP = 0.2  # of the distance
+UNUSED = 0.05  # of the time
+USED_BY = {"gyro": "no_gyro", "accelerometer": "no_accelerometer"}
+"""sensor → the flag that says that it was not used"""
+
+
+class Trust:
+    """Gathers what the judgement needs, a piece at a time."""
+
+    def __init__(self) -> None:
+        self._slipped = 0.0  # m
+        self._without = dict.fromkeys(USED_BY, 0.0)  # s
+        self._before: tuple[int, float] | None = None  # ns, m
+        self._duration = 0.0  # s
+        self._distance = 0.0  # m
+        self._yaw_deviation = 0.0  # rad
+
+    def add(self, time_ns: IntArray, estimate: Estimate) -> None:
+        """A row counts for the time and the way since the one before."""
+        stamp, distance = self._before or (int(time_ns[0]), float(estimate["distance"][0]))
+        steps = np.diff(time_ns, prepend=stamp) / 1e9
+        ways = np.diff(estimate["distance"], prepend=distance)
+        flags = estimate["flags"]
+        self._slipped += float(ways[flags & FLAGS["slip"] != 0].sum())
+        for sensor, flag in USED_BY.items():
+            self._without[sensor] += float(steps[flags & FLAGS[flag] != 0].sum())
+        self._duration += float(steps.sum())
+        self._distance += float(ways.sum())
+        self._yaw_deviation = math.sqrt(max(0.0, float(estimate["pose_covariance"][-1, 5, 5])))
+        self._before = int(time_ns[-1]), float(estimate["distance"][-1])
+
+    def doubts(self, samples: Samples) -> list[str]:
+        """Sentences; none where nothing is doubtful."""
+        found = []
+        if self._yaw_deviation > LARGEST_YAW_DEVIATION:
+            found.append(f"not to be trusted: the last yaw is known to ± {math.degrees(self._yaw_deviation):.0f}°")
+        if self._distance > 0 and self._slipped > MOST_SLIP * self._distance:
+            found.append(
+                f"not to be trusted: slip on {100 * self._slipped / self._distance:.0f} % of the distance is rare; "
+                "look at clocks, units and mounting, and at what shakes the IMU"
+            )
+        rates = samples.rates()
+        for sensor, seconds in self._without.items():
+            if sensor in rates and self._duration > 0 and seconds > UNUSED * self._duration:
+                found.append(
+                    f"the {sensor} was not used during {100 * seconds / self._duration:.0f} % of the time: its samples "
+                    f"come at {rates[sensor]:.3g} Hz; too slow, missing or impossible ones are left out"
+                )
+        return found

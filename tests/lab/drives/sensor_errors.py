@@ -1,0 +1,72 @@
+"""Which errors the sensors of a drive have: those of the data sheet, of the field, or as recorded on real robots.
+
+`recorded` is the field with vibrations as strong as the strongest of the recordings (`lab.odometry.recordings`): the
+standard deviation of what varies within WINDOW seconds, of the axis that shakes most, while the robot moves. Noise of
+the density D, up to the bandwidth f of the plant's vibration (vibration.h), has D·√(π f) of it.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lab.odometry.recordings import NAMES, FloatArray, Recording, recording
+
+LEVELS = ("data_sheet", "field", "recorded")
+WINDOW = 0.2  # s
+BANDWIDTH = 50.0  # Hz, Vibration::kBandwidth
+SLOWEST = 0.5  # m/s; slower robots are not scaled up to the speeds of these drives
+FIELD = {"accelerometer_vibration": 0.12, "gyro_vibration": 7e-4}  # the plant's defaults
+
+
+def plant_parameters(level: str) -> dict[str, Any]:
+    """Of the block `mujoco_plant`.
+
+    Raises:
+        FileNotFoundError: `recorded` without recordings.
+    """
+    if level != "recorded":
+        return {"sensor_errors": level}
+    return {"sensor_errors": "field", **recorded_vibration()}
+
+
+@cache
+def recorded_vibration() -> dict[str, float]:
+    """The strongest of all recordings, and no less than the field's."""
+    strongest = dict(FIELD)
+    for name in NAMES:
+        some = recording(name)
+        speed, moving = _motion(some)
+        for key, table in (("accelerometer_vibration", some.accel), ("gyro_vibration", some.gyro)):
+            deviation = _shaking(some, table, moving)
+            density = deviation / math.sqrt(math.pi * BANDWIDTH) / max(speed, SLOWEST)
+            strongest[key] = max(strongest[key], density)
+    return strongest
+
+
+def _motion(some: Recording) -> tuple[float, NDArray[np.bool_]]:
+    """m/s while it moves, and at which samples of the IMU it does."""
+    read = ~np.isnan(some.left)
+    time = some.time[read]
+    sides = [np.abs(np.gradient(side[read], time)) for side in (some.left, some.right)]
+    speed = _smooth((sides[0] + sides[1]) * some.radius / 2, time, 2 * WINDOW)
+    at_imu = np.interp(some.time[~np.isnan(some.gyro[:, 2])], time, speed)
+    moving: NDArray[np.bool_] = at_imu > 0.3 * np.percentile(at_imu, 90)
+    return float(at_imu[moving].mean()), moving
+
+
+def _shaking(some: Recording, table: FloatArray, moving: NDArray[np.bool_]) -> float:
+    there = ~np.isnan(some.gyro[:, 2])
+    time = some.time[there]
+    fast = [column - _smooth(column, time, WINDOW) for column in table[there].T]
+    return max(float(np.std(column[moving])) for column in fast)
+
+
+def _smooth(values: FloatArray, time: FloatArray, seconds: float) -> FloatArray:
+    count = max(1, round(seconds / float(np.median(np.diff(time)))))
+    mean: FloatArray = np.convolve(values, np.ones(count) / count, "same")
+    return mean

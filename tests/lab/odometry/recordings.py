@@ -1,0 +1,212 @@
+"""Drives of real robots that were recorded, and a simple odometry of each to compare with.
+
+NumPy archives of public recordings, in the folder that ROBOT_RECORDINGS names. They are not part of the project: a test
+that needs one skips where the folder is absent.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Table = tuple[FloatArray, FloatArray, FloatArray]
+Rows = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+
+ABSENT = "no folder of recordings: set ROBOT_RECORDINGS"
+NAMES = (
+    "skid_steer_a",
+    "skid_steer_b",
+    "skid_steer_c",
+    "skid_steer_d",
+    "vacuum_a",
+    "vacuum_b",
+    "vacuum_c",
+    "outdoor_skid_steer",
+    "outdoor_skid_steer_imu_b",
+    "vehicle",
+    "vehicle_mirrored_x",
+)
+
+_SKID_COUNTS = 360  # of a wheel's turn
+_VACUUM_COUNTS = 508.8
+_VEHICLE_RADIUS, _VEHICLE_BASE = 0.3, 1.0  # m: it gives speeds and rates; any pair gives them back
+_OUTDOOR_END = 121.0  # s; then its recorder has gaps
+_TIME_STEP = 1e-6  # s between two rows at least: some stamps are equal
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One row per stamp; NaN where a sensor has no sample at it.
+
+    Attributes:
+        time: (n,) s, strictly increasing, from 0.
+        left, right: (n,) rad, mean of the side's wheels.
+        gyro, accel: (n, 3) rad/s, m/s², base axes.
+        rest: s at the beginning in which the robot stands.
+        radius, base: m; the effective wheel base where the recording's description names one.
+        counts: of a wheel's turn; None: its encoder is fine.
+        truth: (n, 3) time, x, y of another sensor; None where there is none.
+    """
+
+    name: str
+    time: FloatArray
+    left: FloatArray
+    right: FloatArray
+    gyro: FloatArray
+    accel: FloatArray
+    rest: float
+    radius: float
+    base: float
+    counts: float | None = None
+    truth: FloatArray | None = None
+
+    def geometry(self) -> dict[str, Any]:
+        """Arguments of `Estimator`."""
+        given: dict[str, Any] = {"wheel_radius": self.radius, "wheel_base": self.base}
+        if self.counts is not None:
+            given["encoder_counts"] = self.counts
+        return given
+
+    def samples(self) -> tuple[FloatArray, ...]:
+        """Arguments of `Estimator.process`."""
+        return self.time, self.left, self.right, self.gyro, self.accel
+
+
+def recordings_folder() -> Path | None:
+    """The folder of recordings; None where none is named."""
+    named = os.environ.get("ROBOT_RECORDINGS")
+    return Path(named) if named else None
+
+
+@cache
+def recording(name: str) -> Recording:
+    """One of `NAMES`.
+
+    Raises:
+        FileNotFoundError: no folder, or no such file in it.
+    """
+    folder = recordings_folder()
+    if folder is None:
+        raise FileNotFoundError(ABSENT)
+    kind = name.rstrip("abcd") if name.startswith(("skid", "vacuum")) else name.split("_", maxsplit=1)[0]
+    file = {"outdoor": "outdoor_skid_steer", "vehicle": "vehicle"}.get(kind, name)
+    with np.load(folder / f"{file}.npz") as data:
+        read = {"skid_steer_": _skid_steer, "vacuum_": _vacuum, "outdoor": _outdoor, "vehicle": _vehicle}[kind]
+        return read(name, data)
+
+
+def _strictly_increasing(time: FloatArray) -> FloatArray:
+    steps = np.maximum.accumulate(time) + _TIME_STEP * np.arange(len(time))
+    return np.asarray(steps)
+
+
+def _merged(wheels: Table, imu: Table) -> Rows:
+    """(time, left, right), (time, gyro, accel) → time, left, right, gyro, accel; one row per stamp."""
+    both = np.concatenate([wheels[0], imu[0]])
+    order = np.argsort(both, kind="stable")
+    time = _strictly_increasing(both[order] - both.min())
+    position = np.empty_like(order)
+    position[order] = np.arange(len(order))
+    n = len(wheels[0])
+    columns = [np.full(len(both), np.nan), np.full(len(both), np.nan)]
+    axes = [np.full((len(both), 3), np.nan), np.full((len(both), 3), np.nan)]
+    for column, values in zip(columns, wheels[1:], strict=True):
+        column[position[:n]] = values
+    for axis, values in zip(axes, imu[1:], strict=True):
+        axis[position[n:]] = values
+    return time, columns[0], columns[1], axes[0], axes[1]
+
+
+def _skid_steer(name: str, data: Mapping[str, FloatArray]) -> Recording:
+    turn = 2 * np.pi / _SKID_COUNTS
+    if "encoder_increments" in data:
+        counts = np.cumsum(data["encoder_increments"].astype(float), axis=1)
+        time, radius = data["encoder_time"], 0.126
+        right, left = (counts[0] + counts[2]) / 2, (counts[1] + counts[3]) / 2
+    else:
+        time, radius = data["wheel_time"], 0.127
+        left = (data["counts_front_left"] + data["counts_rear_left"]) / 2
+        right = (data["counts_front_right"] + data["counts_rear_right"]) / 2
+    rows = _merged((time, left * turn, right * turn), (data["imu_time"], data["gyro"], data["accel"]))
+    base = {"c": 0.95, "d": 0.72}.get(name[-1], 0.78)
+    return Recording(name, *rows, rest=_rest_of(rows), radius=radius, base=base, counts=_SKID_COUNTS)
+
+
+def _vacuum(name: str, data: Mapping[str, FloatArray]) -> Recording:
+    turn = 2 * np.pi / _VACUUM_COUNTS
+    rows = (
+        _strictly_increasing(data["wheel_time"] - data["wheel_time"][0]),
+        data["left_counts"] * turn,
+        data["right_counts"] * turn,
+        data["gyro"],
+        data["accel"],
+    )
+    return Recording(name, *rows, rest=_rest_of(rows), radius=0.036, base=0.235, counts=_VACUUM_COUNTS)
+
+
+def _outdoor(name: str, data: Mapping[str, FloatArray]) -> Recording:
+    b = "_b" if name.endswith("imu_b") else ""
+    since = np.diff(data["wheel_time"], prepend=data["wheel_time"][0])
+    left, right = (np.cumsum(data[f"{side}_speed"] * since) for side in ("left", "right"))
+    start = min(data["wheel_time"][0], data[f"imu{b}_time"][0])
+    wheels, imu = data["wheel_time"] < _OUTDOOR_END, data[f"imu{b}_time"] < _OUTDOOR_END
+    rows = _merged(
+        (data["wheel_time"][wheels], left[wheels], right[wheels]),
+        (data[f"imu{b}_time"][imu], data[f"gyro{b}"][imu], data[f"accel{b}"][imu]),
+    )
+    seen = data["camera_time"] < _OUTDOOR_END
+    camera = data["camera_position"][seen]
+    truth = np.column_stack([data["camera_time"][seen] - start, camera[:, 0], -camera[:, 1]])
+    return Recording(name, *rows, rest=_rest_of(rows), radius=0.1651, base=0.98, truth=truth)
+
+
+def _vehicle(name: str, data: Mapping[str, FloatArray]) -> Recording:
+    """Its IMU's frame is left-handed; which of the horizontal axes is mirrored is not known."""
+    since = np.diff(data["odom_time"], prepend=data["odom_time"][0])
+    forward = np.cumsum(data["odom_linear"] * since)
+    half_turn = np.cumsum(data["odom_angular"] * since) * _VEHICLE_BASE / 2
+    force = np.array([-1.0, 1.0, 1.0] if name.endswith("x") else [1.0, -1.0, 1.0])
+    rows = _merged(
+        (data["odom_time"], (forward - half_turn) / _VEHICLE_RADIUS, (forward + half_turn) / _VEHICLE_RADIUS),
+        (data["imu_time"], -force * data["gyro"], force * data["accel"]),
+    )
+    return Recording(name, *rows, rest=_rest_of(rows), radius=_VEHICLE_RADIUS, base=_VEHICLE_BASE)
+
+
+def _rest_of(rows: tuple[FloatArray, ...]) -> float:
+    """s until a wheel moves."""
+    time, left, right = rows[:3]
+    read = ~np.isnan(left)
+    moved = (np.abs(left[read] - left[read][0]) > 0.03) | (np.abs(right[read] - right[read][0]) > 0.03)
+    return float(time[read][np.argmax(moved)])
+
+
+def simple_path(drive: Recording) -> FloatArray:
+    """(n, 3) x, y, yaw: wheels for the distance, gyro minus its mean of the rest at the beginning for the heading."""
+    seen = ~np.isnan(drive.gyro[:, 2])
+    time, rate = drive.time[seen], drive.gyro[seen, 2]
+    # A wheel's first count may come late: the last tenths of a second before it may not be rest.
+    bias = rate[time < drive.rest - min(0.5, drive.rest / 4)].mean()
+    turned = np.concatenate([[0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
+    yaw = np.interp(drive.time, time, turned - bias * (time - time[0]))
+    read = ~np.isnan(drive.left)
+    way = np.interp(drive.time, drive.time[read], drive.radius * (drive.left + drive.right)[read] / 2)
+    middle = yaw - np.diff(yaw, prepend=yaw[0]) / 2
+    steps = np.diff(way, prepend=way[0])
+    return np.column_stack([np.cumsum(steps * np.cos(middle)), np.cumsum(steps * np.sin(middle)), yaw])
+
+
+def aligned_rms(path: FloatArray, reference: FloatArray) -> float:
+    """m: (n, 2) against (n, 2) after the rigid motion of the plane that fits best."""
+    a, b = path - path.mean(axis=0), reference - reference.mean(axis=0)
+    angle = np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return float(np.sqrt(np.mean(np.sum((a @ turn.T - b) ** 2, axis=1))))
