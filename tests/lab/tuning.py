@@ -144,7 +144,8 @@ class _Motion:
     """A robot that stands or drives, drives on, and stops; which of it `random` decides."""
 
     def __init__(self, robot: str, seed: int, random: np.random.Generator) -> None:
-        self.loop = ClosedLoop(seed=seed, urdf=urdf_of(robot))
+        errors = {"sensor_errors": "data_sheet"}  # gains and limits are judged, not what shakes the IMU
+        self.loop = ClosedLoop({"mujoco_plant": errors}, seed=seed, urdf=urdf_of(robot))
         self.wheels = [wheel["joint"] for wheel in self.loop.robot["wheels"]]
         self.rim = self.loop.robot["effective_wheel_base"] / 2  # m
         on_the_way = bool(random.random() < 0.5)

@@ -2,9 +2,10 @@
 
 import pytest
 from lab.drives.normal_driving import Drive, all_drives, bench, carry_out
+from lab.odometry.recordings import ABSENT, recordings_folder
 from lab.robot_corpus import DIFFBOT, SCENES
 
-TWO_MINUTES, TEN_MINUTES = 1 / 60, 1 / 12  # of the two hours
+ONE_MINUTE, TWO_MINUTES, TEN_MINUTES = 1 / 120, 1 / 60, 1 / 12  # of the two hours
 
 
 @pytest.mark.parametrize("share", [TWO_MINUTES, pytest.param(TEN_MINUTES, marks=pytest.mark.nightly)])
@@ -14,6 +15,19 @@ def test_a_share_of_all_scenes_robots_and_rates_without_a_false_stop(share):
     assert fine, "\n".join(lines)
     figures = {row["name"]: row["value"] for row in result["rows"]}
     assert figures["distance"] / figures["simulated"] > 0.5, "km/h: it hardly moved"
+
+
+@pytest.mark.parametrize("share", [ONE_MINUTE, pytest.param(TEN_MINUTES, marks=pytest.mark.nightly)])
+def test_nor_with_sensors_that_err_as_in_the_field(share):
+    lines = []
+    assert bench(share, lines.append, errors="field")[1], "\n".join(lines)
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)
+def test_nor_with_vibrations_as_they_were_recorded():
+    lines = []
+    assert bench(TEN_MINUTES, lines.append, errors="recorded")[1], "\n".join(lines)
 
 
 def test_all_of_it_takes_an_hour_and_a_half_of_the_own_robot():

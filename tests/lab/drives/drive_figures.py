@@ -42,8 +42,11 @@ class Figure:
 
 
 def make(robot: str, params: Mapping[str, Any] | None = None) -> ClosedLoop:
-    """At rest for `REST` seconds, `params` laid over the defaults."""
-    loop = ClosedLoop(params or {}, urdf=urdf_of(robot))
+    """At rest for `REST` seconds, `params` laid over the defaults; sensors err as their data sheets say: these are
+    figures of the control law.
+    """
+    plant = {"sensor_errors": "data_sheet", **(params or {}).get("mujoco_plant", {})}
+    loop = ClosedLoop({**(params or {}), "mujoco_plant": plant}, urdf=urdf_of(robot))
     loop.run(REST, (0.0, 0.0))
     return loop
 

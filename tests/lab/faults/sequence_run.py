@@ -34,7 +34,7 @@ def make_loop(sequence: FaultSequence) -> ClosedLoop:
     """The robot of this sequence in its scene, its sensors err as the seed says."""
     return ClosedLoop(
         params={
-            "mujoco_plant": {"battery_voltage": BATTERY_VOLTAGE},
+            "mujoco_plant": {"sensor_errors": "data_sheet", "battery_voltage": BATTERY_VOLTAGE},
             "safety_monitor": {"stop_deceleration": stop_deceleration_of(sequence.robot)},
         },
         seed=sequence.seed,
