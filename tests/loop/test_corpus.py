@@ -25,7 +25,8 @@ def skid_steer(request) -> CorpusRobot:
 
 
 def make(robot: CorpusRobot, **params) -> ClosedLoop:
-    return ClosedLoop(urdf=robot.urdf, params=params or None)
+    """The robot as it is described: its centre of gravity is where it says, its wheels do not slip at random."""
+    return ClosedLoop(urdf=robot.urdf, params={"mujoco_plant": {"sensor_errors": "data_sheet"}, **params})
 
 
 def processor_time() -> float:

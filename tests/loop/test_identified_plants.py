@@ -14,6 +14,7 @@ from robot_control.identify.tuning_proposal import base_of
 from robot_control.installed_files import share_file
 
 PARAMS = share_file("config/robot_params.yaml")
+ERRORS = {"sensor_errors": "data_sheet"}  # identification is a law: its promises are for sensors that are on time
 TOLERANCE = 0.05  # what identification promises
 DELAYED = {"pid_kp": 1.0, "pid_ki": 5.0}  # bear 10 cycles on the ground (wheel_loop_gains.h)
 FRICTION_SHARE = 0.02  # of the effort limit, dry, and as much viscous at 0.5 m/s: a good gear motor's
@@ -46,7 +47,9 @@ def excited(robot, hidden, controller=None, seed=1):
     controller = controller or {}
     settings = settings_of(robot, controller)
     excitation = plan(settings, OPTIONS)
-    loop = ClosedLoop({"mujoco_plant": hidden, "diff_drive_controller": controller}, seed=seed, urdf=urdf_of(robot))
+    loop = ClosedLoop(
+        {"mujoco_plant": {**ERRORS, **hidden}, "diff_drive_controller": controller}, seed=seed, urdf=urdf_of(robot)
+    )
     loop.run(1.0, (0.0, 0.0))
     begin = loop.time
     return loop.run(excitation.seconds + 0.5, lambda time: excitation.command(time - begin)), settings, excitation
@@ -111,7 +114,9 @@ def test_finds_a_hidden_delay_to_the_cycle(where, cycles):
 
 def tracking_rms(robot, hidden, controller, excitation):
     """m/s and rad/s, true against the plan of two cycles before, over a ramp there and back and a turn."""
-    loop = ClosedLoop({"mujoco_plant": hidden, "diff_drive_controller": controller}, seed=5, urdf=urdf_of(robot))
+    loop = ClosedLoop(
+        {"mujoco_plant": {**ERRORS, **hidden}, "diff_drive_controller": controller}, seed=5, urdf=urdf_of(robot)
+    )
     loop.run(1.0, (0.0, 0.0))
     v, w = excitation.linear, excitation.angular
     log = {}
@@ -144,7 +149,7 @@ def test_gains_for_a_delay_that_the_derived_ones_do_not_bear_are_proposed_with_a
     assert any("bear" in sentence and "6 were measured" in sentence for sentence in outcome.warnings)
     proposed = yaml.safe_load(outcome.yaml)["diff_drive_controller"]
     assert proposed["pid_kp"] < DELAYED["pid_kp"]
-    loop = ClosedLoop({"mujoco_plant": hidden, "diff_drive_controller": proposed})
+    loop = ClosedLoop({"mujoco_plant": {**ERRORS, **hidden}, "diff_drive_controller": proposed})
     driven = loop.run(4.0, (0.5, 0.0))
     steady = driven["truth_linear"][driven["time"] > 2.0]
     assert np.abs(steady - 0.5).max() < 0.01, "no limit cycle"

@@ -13,10 +13,12 @@ SETS = (
     {"max_linear_speed": 0.4, "max_linear_jerk": 0, "keep_curvature": False},
 )
 
+DATA_SHEET = {"mujoco_plant": {"sensor_errors": "data_sheet"}}  # torques are compared to a thousandth
+
 
 @pytest.fixture
 def loop():
-    return ClosedLoop()
+    return ClosedLoop(DATA_SHEET)
 
 
 def same_bits(one, two):
@@ -26,7 +28,7 @@ def same_bits(one, two):
 def test_the_same_sets_in_the_same_cycles_give_the_same_bits():
     logs = []
     for _ in range(2):
-        loop = ClosedLoop()
+        loop = ClosedLoop(DATA_SHEET)
         log = [loop.run(0.7, COMMAND)]
         for values in SETS:
             loop.set_parameters(values)
@@ -64,7 +66,7 @@ def test_the_log_tells_from_which_cycle_on_which_values_held(loop):
     ids=["gains", "feed_forward", "bandwidth"],
 )
 def test_the_torque_of_the_next_cycle_does_not_jump(values, jump):
-    tuned, left = ClosedLoop(), ClosedLoop()
+    tuned, left = ClosedLoop(DATA_SHEET), ClosedLoop(DATA_SHEET)
     for loop in (tuned, left):
         loop.run(0.4, (1.0, 0.5))  # amid the ramp: error and integral are not zero
     tuned.set_parameters(values)
@@ -88,7 +90,7 @@ def test_a_lowered_speed_is_returned_to_within_deceleration_and_jerk(loop):
 
 
 def test_a_refused_set_changes_no_bit_and_names_every_reason():
-    tuned, left = ClosedLoop(), ClosedLoop()
+    tuned, left = ClosedLoop(DATA_SHEET), ClosedLoop(DATA_SHEET)
     for loop in (tuned, left):
         loop.run(0.5, COMMAND)
     bad = {"max_linear_speed": 0.2, "pid_kp": 200, "pid_kd": float("nan"), "typo": 1, "command_rate": 5}

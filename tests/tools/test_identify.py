@@ -31,7 +31,7 @@ def run_csv(tmp_path_factory):
     """A log of the excitation as telemetry writes it."""
     options = parse_options(["--repeats=1"])
     excitation = plan(Settings(PARAMS, ()), options)
-    loop = ClosedLoop({"mujoco_plant": {"motor_friction": FRICTION}})
+    loop = ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet", "motor_friction": FRICTION}})
     log = loop.run(excitation.seconds + 0.5, excitation.command)
     return written(log, tmp_path_factory.mktemp("log"))
 
@@ -84,7 +84,7 @@ def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
 )
 @pytest.mark.filterwarnings("error")
 def test_a_log_without_turns_or_ramps_is_refused_in_words_without_nan(command, missing, tmp_path, monkeypatch):
-    log = ClosedLoop().run(6.0, command)
+    log = ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet"}}).run(6.0, command)
     message = refusal(monkeypatch, f"--log={written(log, tmp_path)}", f"--output={tmp_path}/x.yaml")
     assert missing in message
     assert "nan" not in message
@@ -92,7 +92,9 @@ def test_a_log_without_turns_or_ramps_is_refused_in_words_without_nan(command, m
 
 @pytest.mark.filterwarnings("error")
 def test_the_log_of_a_demo_is_refused_without_nan_or_a_warning(tmp_path, monkeypatch):
-    log = ClosedLoop().run(10.0, lambda t: (0.5, 0.2) if 1 < t < 9 else (0.0, 0.0))
+    log = ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet"}}).run(
+        10.0, lambda t: (0.5, 0.2) if 1 < t < 9 else (0.0, 0.0)
+    )
     message = refusal(monkeypatch, f"--log={written(log, tmp_path)}", f"--output={tmp_path}/x.yaml")
     assert "the log holds too little of it; drive more" in message or "cannot be determined" in message
     assert "nan" not in message
