@@ -40,8 +40,12 @@ class PseudoTerminal:
         self._written = b""
         self._closed = threading.Event()
         if reading:
-            self._reader = threading.Thread(target=self._read, daemon=True)
-            self._reader.start()
+            self.read_on()
+
+    def read_on(self) -> None:
+        """Takes what the program writes."""
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
 
     @property
     def written(self) -> bytes:

@@ -12,6 +12,7 @@ import roslib.packages
 import rospy
 import rostest
 from pseudo_terminal import PseudoTerminal
+from robot_control.teleop.operator import RESET_PAUSE
 from std_msgs.msg import Empty
 from system_support import MONITOR, Program, RobotTestCase, nightly, wait_for
 
@@ -79,6 +80,7 @@ class TeleopTest(RobotTestCase):
         """Refused until the robot stands."""
         self.terminal.type("r")
         wait_for("the question or its answer", lambda: "reset?" in self.terminal.screen)
+        time.sleep(RESET_PAUSE)
         self.terminal.type("y")
         wait_for("the answer", lambda: "reset?" not in self.terminal.screen)
         time.sleep(0.3)

@@ -60,6 +60,8 @@ def test_the_answer_of_a_terminal_that_can_report_releases():
         b"\x1b[119;5u",
         b"\x1b[119;1:9u",
         b"\x1b[99999999999u",
+        b"\x1b[\xb2u",  # a digit that is no decimal one
+        b"\x1b[[C",  # F3 of the Linux console
     ],
 )
 def test_what_is_no_key_of_ours_is_none(data):
@@ -86,6 +88,12 @@ def test_a_sequence_may_come_in_pieces_and_is_dropped_if_its_end_never_comes():
     decoder.feed(b"\x1b[1;", 1.0)
     assert decoder.look(1.0 + SEQUENCE_WAIT) == []
     assert decoder.feed(b"w", 3.0) == [Key("w")]
+
+
+@pytest.mark.parametrize("begun", [b"\x1b[", b"\x1bO", b"\x1b[1;2"])  # Alt-[ alone is such a beginning
+@pytest.mark.parametrize(("stop", "name"), [(b" ", "space"), (b"!", "!")])
+def test_a_sequence_that_was_begun_swallows_no_stop(begun, stop, name):
+    assert keys(begun + stop + b"w") == [Key(name), Key("w")]
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -3,7 +3,7 @@
 import pytest
 from robot_control.teleop.key_map import ARROWS, CLASSIC, KEY_MAPS
 from robot_control.teleop.keyboard import Event, Key
-from robot_control.teleop.operator import RESET_WINDOW, ZEROS, Command, Operator, Request
+from robot_control.teleop.operator import RESET_PAUSE, RESET_WINDOW, ZEROS, Command, Operator, Request
 
 LINEAR, ANGULAR = 0.4, 0.8
 
@@ -86,6 +86,13 @@ def test_a_reset_takes_two_steps_within_its_window(operator):
     operator.key(Key("r"), 10.0)
     assert operator.key(Key("y"), 10.0 + RESET_WINDOW - 0.01) is Request.RESET
     assert operator.key(Key("y"), 10.0 + RESET_WINDOW - 0.01) is None
+
+
+def test_both_keys_of_a_reset_at_once_are_none_and_leave_the_question(operator):
+    operator.key(Key("r"), 1.0)
+    assert operator.key(Key("y"), 1.0) is None
+    assert operator.key(Key("y"), 1.0 + RESET_PAUSE - 0.01) is None
+    assert operator.key(Key("y"), 1.0 + RESET_PAUSE + 0.01) is Request.RESET
 
 
 def test_a_motion_key_cancels_a_reset(operator):

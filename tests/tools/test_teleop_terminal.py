@@ -9,8 +9,10 @@ import pytest
 from robot_control.teleop.terminal import END, NoTerminalError, Terminal
 from system.pseudo_terminal import PseudoTerminal
 
-BEGIN = """
+IMPORTS = """
 import os, signal, sys, time
+"""
+BEGIN = """
 from robot_control.teleop.terminal import NoTerminalError, Terminal
 with Terminal() as terminal:
     print("printed meanwhile")
@@ -31,9 +33,9 @@ LOOP = """
 def started():
     programs = []
 
-    def start(code, **given):
-        path = os.pathsep.join(sys.path)
-        programs.append(PseudoTerminal([sys.executable, "-c", BEGIN + code], {"PYTHONPATH": path}, **given))
+    def start(code, before="", **given):
+        path, code = os.pathsep.join(sys.path), IMPORTS + before + BEGIN + code
+        programs.append(PseudoTerminal([sys.executable, "-c", code], {"PYTHONPATH": path}, **given))
         return programs[-1]
 
     yield start
@@ -77,6 +79,31 @@ def test_it_is_as_before_after_every_end(started, end, code):
     program = started(f"    {end}\n")
     assert program.wait() == code
     assert_restored(program)
+
+
+def test_it_is_as_before_after_its_process_group_was_killed(started):
+    own_group = "signal.signal(signal.SIGTTOU, signal.SIG_IGN); os.setpgid(0, 0); os.tcsetpgrp(0, os.getpid())"
+    program = started("    os.killpg(0, signal.SIGKILL)\n", own_group)
+    assert program.wait() == 128 + signal.SIGKILL
+    assert_restored(program)
+
+
+@pytest.mark.parametrize("end", ["pass", "os.kill(os.getpid(), signal.SIGKILL)"])
+def test_a_terminal_that_takes_nothing_has_its_settings_at_the_end_and_its_screen_when_it_takes_bytes(
+    started, tmp_path, end
+):
+    full = tmp_path / "full"
+    code = f"""
+    for number in range(200):
+        terminal.draw(["x" * 79] * 24)
+    open({str(full)!r}, "w").write("done")
+    {end}
+"""
+    program = started(code, reading=False)
+    wait_for(full.exists)
+    wait_for(lambda: program.settings() == program.before)
+    program.read_on()
+    wait_for(lambda: END in program.written)
 
 
 def test_what_was_printed_meanwhile_comes_afterwards(started):

@@ -3,6 +3,7 @@
 A key is named by its lower-case character, or `up`, `down`, `left`, `right`, `escape`, `enter`, `space`, `interrupt`.
 Read are plain bytes, the arrows of ECMA-48 terminals (ESC [ A, ESC O A), and kitty's keyboard protocol
 (https://sw.kovidgoyal.net/kitty/keyboard-protocol): CSI code:shifted;modifiers:event u, which also reports releases.
+The Linux console's function keys (ESC [ [ A) are read and mean nothing.
 
 An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence.
 """
@@ -25,6 +26,8 @@ REPORT_RELEASES = b"\x1b[>15u"
 END_RELEASES = b"\x1b[<u"
 
 ESC = 0x1B
+STOPS = b" !"
+"""in no key's sequence: there they end it and count, so that none swallows a stop"""
 ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
 NAMES = {3: "interrupt", 4: "interrupt", 10: "enter", 13: "enter", 27: "escape", 32: "space"}
 SHIFT, CONTROL = 1, 4
@@ -84,8 +87,12 @@ class Decoder:
             yield Key("escape")
             yield from self._byte(byte, now)
             return
+        if byte in STOPS:
+            self._pending = b""
+            yield from plain(byte)
+            return
         self._pending += bytes([byte])
-        if 0x40 <= byte <= 0x7E:
+        if 0x40 <= byte <= 0x7E and self._pending != b"\x1b[[":
             sequence, self._pending = self._pending, b""
             yield from sequence_key(sequence)
         elif byte == ESC:
@@ -106,6 +113,8 @@ def sequence_key(sequence: bytes) -> Iterator[Key]:
     """ESC [ … or ESC O …, complete."""
     text = sequence.decode("latin-1")
     body, final = text[2:-1], text[-1]
+    if body == "[":
+        return
     if final == "u" and body.startswith("?"):
         yield Key("", Event.SPEAKS_KITTY)
         return
@@ -131,4 +140,4 @@ def _name(code: int, modifiers: int) -> str:
 
 
 def _number(text: str, default: int) -> int:
-    return int(text) if text.isdigit() and len(text) < 8 else default
+    return int(text) if text.isdecimal() and len(text) < 8 else default

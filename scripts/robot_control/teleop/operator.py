@@ -2,7 +2,7 @@
 
 Motion is asked for only while a key is held and the robot may drive. A robot that stopped, for whatever reason, does
 not move again under a key that was held all the time: keys count after they have paused. The first key of a reset arms
-it for RESET_WINDOW, the second one asks for it.
+it for RESET_WINDOW, the second one, RESET_PAUSE later or more, asks for it.
 """
 
 from dataclasses import dataclass
@@ -14,6 +14,8 @@ from robot_control.teleop.keyboard import Event, Key
 
 RESET_WINDOW = 5.0
 """s"""
+RESET_PAUSE = 0.2
+"""s; two keys within it are one act: a paste, a macro of the keyboard, the burst of a link that had stalled"""
 ZEROS = 1.0
 """s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
 FASTEST = 100.0
@@ -46,7 +48,7 @@ class Operator:
         self._dead_man = DeadMan(hold)
         self._drivable: bool | None = None
         self._e_stopped = False
-        self._reset_until = float("-inf")
+        self._reset_at = float("-inf")
         self._zeros_until = float("-inf")
 
     def start(self, now: float) -> None:
@@ -69,19 +71,19 @@ class Operator:
             self._stop(now)
         elif late:
             return None
-        elif name == "y" and now < self._reset_until:
-            self._reset_until = float("-inf")
+        elif name == "y" and RESET_PAUSE <= now - self._reset_at < RESET_WINDOW:
+            self._reset_at = float("-inf")
             self._stop(now)
             return Request.RESET
         elif name in self._keys.motions:
-            self._reset_until = float("-inf")
+            self._reset_at = float("-inf")
             if self._drivable is False or self._e_stopped:
                 self._dead_man.block(name, now)
             else:
                 self._dead_man.press(name, now, repeat=key.event is Event.REPEAT)
         elif name == "r" and key.event is Event.PRESS:
             self._stop(now)
-            self._reset_until = now + RESET_WINDOW
+            self._reset_at = now
         elif name in self._keys.speeds:
             factor = self._keys.speeds[name]
             self.linear = min(FASTEST, self.linear * factor.linear)
@@ -128,11 +130,11 @@ class Operator:
             text = "a key was held while the robot could not drive: release it, then press again"
         else:
             text = ""
-        if now < self._reset_until:
-            text = f"reset? y within {self._reset_until - now:.0f} s; any motion key cancels"
+        if now - self._reset_at < RESET_WINDOW:
+            text = f"reset? y within {self._reset_at + RESET_WINDOW - now:.0f} s; any motion key cancels"
         return text
 
     def _stop(self, now: float) -> None:
         self._dead_man.stop(now)
-        self._reset_until = float("-inf")
+        self._reset_at = float("-inf")
         self._zeros_until = now + ZEROS

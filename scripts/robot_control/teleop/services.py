@@ -52,6 +52,7 @@ class Services:
         if self._topic_said_true:
             self._topic.publish(Bool(data=False))
             self._topic_said_true = False
+        self._last_e_stop = float("-inf")  # the next one is another request
         self._wanted.put("e_stop_reset")
 
     def look(self) -> list[Answer]:

@@ -3,8 +3,8 @@
 The terminal is opened a second time, non-blocking: a stalled link then delays no loop, and the shell's own descriptors
 stay as they are. What the program prints meanwhile goes to a file, and to the terminal at the end.
 
-An ordinary end restores the terminal here. A process of its own (`_guard`) waits for the end of the program and
-restores the terminal where the program could not: after SIGKILL or a crash.
+An ordinary end restores the terminal here. A process in a group of its own (`_guard`) waits for the end of the program
+and restores what the program could not: after SIGKILL or a crash all, and the screen of a terminal that stalls.
 """
 
 from __future__ import annotations
@@ -28,6 +28,8 @@ BEGIN = b"\x1b[?1049h\x1b[?25l\x1b[2J" + ASK_RELEASES
 END = END_RELEASES + b"\x1b[?25h\x1b[?1049l"
 LONGEST_READ = 4096
 """bytes"""
+SETTINGS, ALL = b"settings", b"all"
+"""what the program has restored, as its guard reads it"""
 
 
 class NoTerminalError(RuntimeError):
@@ -77,10 +79,13 @@ class Terminal:
         sys.stdout.flush()
         sys.stderr.flush()
         self._unwritten = b""
-        _restore(self._descriptor, self._settings)
-        os.write(self._guard_pipe, b"restored")
+        _restore_settings(self._descriptor, self._settings)
+        if _restore_screen(self._descriptor):
+            os.write(self._guard_pipe, ALL)
+            os.waitpid(self._guard_process, 0)
+        else:
+            os.write(self._guard_pipe, SETTINGS)
         os.close(self._guard_pipe)
-        os.waitpid(self._guard_process, 0)
         for number, original in zip((1, 2), self._outputs, strict=True):
             os.dup2(original, number)
             os.close(original)
@@ -145,21 +150,34 @@ class Terminal:
         if self._guard_process == 0:
             os.close(self._guard_pipe)
             _guard(reading, self._descriptor, self._settings)
+        os.setpgid(self._guard_process, 0)  # a signal to the program's process group does not end it
         os.close(reading)
 
 
-def _restore(descriptor: int, settings: list[Any]) -> None:
-    with suppress(OSError, termios.error):  # it may be gone
-        os.write(descriptor, END)
+def _restore_settings(descriptor: int, settings: list[Any]) -> None:
+    with suppress(termios.error):  # it may be gone
         termios.tcsetattr(descriptor, termios.TCSANOW, settings)
 
 
+def _restore_screen(descriptor: int) -> bool:
+    """False: the terminal takes no bytes now."""
+    try:
+        return os.write(descriptor, END) == len(END)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True  # it is gone
+
+
 def _guard(pipe: int, descriptor: int, settings: list[Any]) -> None:
-    """Another process: restores the terminal at the end of the program, unless that has."""
+    """Another process: restores at the end of the program what that has not."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGTTOU, signal.SIGTSTP):
         signal.signal(number, signal.SIG_IGN)
     try:
-        if not os.read(pipe, 16):
-            _restore(descriptor, settings)
+        done = os.read(pipe, 16)
+        if not done:
+            _restore_settings(descriptor, settings)
+        while done != ALL and not _restore_screen(descriptor):
+            select.select([], [descriptor], [])
     finally:
         os._exit(0)

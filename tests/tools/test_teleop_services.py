@@ -1,0 +1,61 @@
+"""The e-stop and the reset of teleop.py, with services of this file."""
+
+import time
+
+import pytest
+import rospy
+from robot_control.teleop.services import Services
+from std_srvs.srv import TriggerResponse
+
+
+class Robot:
+    """Its services, and what the topic e_stop carried."""
+
+    def __init__(self):
+        self.calls, self.levels = [], []
+        self.answers = True
+
+    def publish(self, message):
+        self.levels.append(message.data)
+
+    def call(self, name):
+        self.calls.append(name)
+        while not self.answers:
+            time.sleep(0.01)
+        return TriggerResponse(success=True)
+
+
+@pytest.fixture
+def robot(monkeypatch):
+    robot = Robot()
+    monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: robot)
+    monkeypatch.setattr(rospy, "ServiceProxy", lambda name, _: lambda: robot.call(name))
+    yield robot
+    robot.answers = True
+
+
+def wait_for(condition):
+    end = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_a_repeated_e_stop_is_one_request_and_one_after_a_reset_is_another(robot):
+    services = Services()
+    services.e_stop()
+    services.e_stop()
+    services.reset()
+    services.e_stop()
+    wait_for(lambda: len(robot.calls) == 3)
+    assert robot.calls == ["e_stop_trigger", "e_stop_reset", "e_stop_trigger"]
+
+
+def test_where_the_service_does_not_answer_the_topic_says_true_until_the_reset(robot):
+    robot.answers = False
+    services = Services()
+    services.e_stop()
+    wait_for(lambda: services.look() or robot.levels)
+    assert robot.levels == [True]
+    services.reset()
+    assert robot.levels == [True, False]
