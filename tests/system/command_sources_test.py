@@ -10,6 +10,7 @@ import rostest
 from geometry_msgs.msg import TwistStamped
 from pseudo_terminal import PseudoTerminal
 from robot_control.msg import DriveState
+from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 from system_support import Program, RobotTestCase, repository, wait_for
@@ -91,6 +92,18 @@ class CommandSourcesTest(RobotTestCase):
         wait_for(
             "its topic on the screen", lambda: "sent on /key_vel" in terminal.screen, every=lambda: terminal.type("w")
         )
+
+    def test_a_pad_on_joy_commands_while_it_is_held_and_its_silence_stops(self) -> None:
+        pad = Program("pad.py", "--joy", "_scale_linear:=0.3")
+        self.addCleanup(pad.end)
+        joy = rospy.Publisher("joy", Joy, queue_size=1)
+        wait_for("pad.py", lambda: joy.get_num_connections() > 0)
+        released, held = Joy(axes=[0, 1], buttons=[0] * 6), Joy(axes=[0, 1], buttons=[0, 0, 0, 0, 1, 0])
+        wait_for("its words", lambda: "hold button 4" in pad.output, every=lambda: joy.publish(released))
+        wait_for("0.3 m/s", lambda: self.robot.speed > 0.25, every=lambda: joy.publish(held))
+        self.assertTrue(self.commander("joy_vel"))
+        wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
+        wait_for("its words", lambda: "no pad answers" in pad.output)
 
     def test_a_path_that_is_masked_pauses_until_resume_and_reaches_its_end(self) -> None:
         path = Program("drive_path.py", "circle", "--size", "1")
