@@ -31,4 +31,4 @@ function(robot_control_node name)
 endfunction()
 
 install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-catkin_install_python(PROGRAMS scripts/calibrate.py scripts/estimate.py scripts/identify.py scripts/inspect_robot.py scripts/record.py scripts/send_cmd.py scripts/teleop.py scripts/why.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_install_python(PROGRAMS scripts/calibrate.py scripts/drive_path.py scripts/estimate.py scripts/identify.py scripts/inspect_robot.py scripts/pad.py scripts/record.py scripts/send_cmd.py scripts/teleop.py scripts/view_markers.py scripts/why.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

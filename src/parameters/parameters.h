@@ -70,6 +70,7 @@ struct Parameters {
   EstimatorParameters estimator;
   std::string calibration_file;  ///< path, see calibration_file.h; empty: none
   DriveControllerParameters controller;
+  std::string command_sources;  ///< path, see command_sources.h; empty: none, cmd_vel and cmd_vel_stamped command
   SafetyParameters safety;
   std::string latch_file;  ///< path, see runtime/latch_file.h; empty: none
   ReportParameters report;

@@ -213,6 +213,7 @@ constexpr auto kDiffDriveController = std::to_array<Key>({
     {"keep_curvature", in<&P::controller, &Drive::keep_curvature>, {}, 0, 0, kLive},
     {"cmd_vel_timeout", in<&P::controller, &Drive::cmd_vel_timeout>, "s", 0, 60, kTimeout | kZeroIsOff | kLive},
     {"one_sender", in<&P::controller, &Drive::one_sender>},
+    {"command_sources", in<&P::command_sources>, {}, 0, 0, kPath | kMayBeEmpty | kOptional},
     {"pid_kp", in<&P::controller, &Drive::pid_kp>, "N·m·s/rad", 0, 10000, kDerived},
     {"pid_ki", in<&P::controller, &Drive::pid_ki>, "N·m/rad", 0, 1.0e6, kDerived},
     {"pid_kd", in<&P::controller, &Drive::pid_kd>, "N·m·s²/rad", 0, 1000, kLive},

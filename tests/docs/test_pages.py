@@ -5,7 +5,7 @@ import subprocess
 
 import parameters_page
 import pytest
-from pages import PAGES, README, ROOT, anchors, inline_code, links, prose
+from pages import PAGES, README, ROOT, anchors, blocks, inline_code, links, prose
 
 by_name = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 
@@ -127,3 +127,25 @@ def test_every_name_in_the_glossary_is_one_of_the_program(words):
 def test_parameter_file_and_page_are_those_of_the_tables():
     written = parameters_page.YAML.read_text(), parameters_page.PAGE.read_text()
     assert written == parameters_page.written(), "run tests/docs/parameters_page.py"
+
+
+def test_the_chinese_readme_has_the_same_code_blocks_and_its_links_lead_somewhere():
+    chinese = ROOT / "README.zh.md"
+    assert [block.text for block in blocks(chinese)] == [block.text for block in blocks(README)]
+    assert [target for target in links(chinese) if not (ROOT / target).exists()] == []
+
+
+def test_the_chinese_readme_names_every_command_of_the_other():
+    def commands(page):
+        return {code for code in inline_code(page) if re.match(r"(rosrun|roslaunch|source|scripts/)", code)}
+
+    assert commands(README) - commands(ROOT / "README.zh.md") - {"scripts/bench", "scripts"} == OTHERS_OF_README
+
+
+OTHERS_OF_README = {
+    "scripts/bench odometry",
+    "scripts/bench step",
+    "scripts/bench stops",
+    "scripts/test lockstep",
+}
+"""Commands of the table of measured promises, which the Chinese README leaves to the other."""

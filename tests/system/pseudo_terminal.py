@@ -16,8 +16,15 @@ from pathlib import Path
 
 LIMIT = 30.0
 """s"""
-SHELL = 'trap : INT HUP; "$@"; exit $?'
-"""the session's leader, whose death would hang up the terminal; a signal's exit code is 128 + its number"""
+SHELL = """
+trap : INT HUP
+before=$(stty -g); "$@"; code=$?
+looks=0
+while now=$(stty -g) && [ "$now" != "$before" ] && [ $looks -lt 100 ]; do sleep 0.1; looks=$((looks + 1)); done
+exit $code
+"""
+"""The session's leader. Its death hangs up the terminal, so it waits for one that is being restored, as a user's shell
+stays; a signal's exit code is 128 + its number."""
 
 
 class PseudoTerminal:

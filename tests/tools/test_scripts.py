@@ -162,6 +162,8 @@ def test_packages_of_a_section_are_installed_only_where_they_are_asked_for():
     plain = listed_packages("")
     assert {"cmake", "python3-pytest"} <= plain
     assert listed_packages(" [linters]") - plain == {"clang-format", "clang-tidy"}
+    assert "rviz" in listed_packages(" [view]") - plain
+    assert listed_packages(" [operator]") - plain == {"python3-evdev"}
     assert listed_packages(" [cluster]") - plain == {"python3-distributed"}
     assert listed_packages(" [linters] [cluster]") - plain == {"clang-format", "clang-tidy", "python3-distributed"}
 

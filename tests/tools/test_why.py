@@ -395,3 +395,25 @@ def test_without_times_the_same_answer_looks_the_same(driving):
     )
     assert text(driving, times=False) == text(later, times=False)
     assert text(driving) != text(later)
+
+
+def with_sources(facts, text, **values):
+    controller = Report("running", {**facts.reports[CONTROLLER].values, "sources": text, **values})
+    return replace(facts, reports={**facts.reports, CONTROLLER: controller})
+
+
+def test_the_command_sources_and_who_commands_are_shown(driving):
+    facts = with_sources(driving, "joy_vel: silent, key_vel: commands, path_vel: masked by key_vel", senders="/a, /b")
+    lines = "\n".join(render(facts))
+    assert "sources    joy_vel: silent, key_vel: commands, path_vel: masked by key_vel" in lines
+    assert "published by /a, /b\n" in lines
+
+
+def test_a_lock_is_what_stands_against_motion(driving):
+    answer = judge(with_sources(driving, "key_vel: locked by pause, cmd_vel: silent"))
+    assert answer.verdict is Verdict.STOPPED
+    assert answer.headline == "The commands are locked by pause: the result is zero."
+
+
+def test_a_lock_that_lets_the_commander_pass_stands_against_nothing(driving):
+    assert judge(with_sources(driving, "key_vel: commands, cmd_vel: locked by no_programs")).verdict is Verdict.MOVING

@@ -9,10 +9,10 @@ import time
 
 import rosgraph
 import rospy
-from geometry_msgs.msg import TwistStamped
 from std_msgs.msg import Empty
 
-from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
+from robot_control.common.command_topic import CommandTopic
+from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.drive.send_plan import positive
 from robot_control.teleop.dead_man import HoldParameters
 from robot_control.teleop.key_map import KEY_MAPS
@@ -24,7 +24,7 @@ from robot_control.teleop.terminal import NoTerminalError, Terminal
 from robot_control.why.diagnosis import SILENCE
 from robot_control.why.listener import MASTER_PERIOD, Listener
 
-TOPIC = "cmd_vel_stamped"
+SOURCE = "key_vel"
 LOOK = 0.02
 """s between two looks at keys and holds; a key is read at once"""
 SEND_PERIOD = 0.05
@@ -49,8 +49,7 @@ class Teleop:
         self._decoder = Decoder()
         self._listener = Listener()
         self._services = Services()
-        self._publisher = rospy.Publisher(TOPIC, TwistStamped, queue_size=1, tcp_nodelay=True)
-        self._sender = Sender(self._publisher, TwistStamped())
+        self._topic = CommandTopic(SOURCE)
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
         self._sent: Command | None = None
         self._sent_at: float | None = None
@@ -102,10 +101,7 @@ class Teleop:
         command = self._operator.command(now)
         due = self._sent_at is None or now - self._sent_at >= SEND_PERIOD
         if command is not None and (due or command != self._sent):
-            message = TwistStamped()
-            message.header.stamp = rospy.Time.now()
-            message.twist.linear.x, message.twist.angular.z = command.linear, command.angular
-            self._sender.send(message)
+            self._topic.send(command.linear, command.angular)
             self._sent_at = now
         self._sent = command
 
@@ -120,7 +116,7 @@ class Teleop:
         held = self._operator.held(now)
         view = View(
             keys=self._keys,
-            topic=self._publisher.resolved_name,
+            topic=self._topic.name,
             own_name=rospy.get_name(),
             chosen=Command(self._operator.linear, self._operator.angular),
             asked=self._sent,
@@ -143,7 +139,8 @@ def arguments(given: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="teleop.py",
         description="Drives the robot with the keyboard of this terminal. A key counts while it repeats: release it, "
-        f"and the robot stops. Commands go to {TOPIC}, a heartbeat to heartbeat.",
+        f"and the robot stops. Commands go to {SOURCE} where the robot has a list of command sources, else to "
+        "cmd_vel_stamped; a heartbeat goes to heartbeat.",
         epilog="Another robot's: __ns:=robot2. Needs the wall clock: in lockstep every command times out.",
     )
     parser.add_argument(

@@ -100,6 +100,11 @@ class Facts:
         reported = self.value(CONTROLLER, "senders")
         return tuple(reported.split(", ")) if reported else self.senders
 
+    def sources(self) -> dict[str, str]:
+        """Where the robot has a list of command sources: what each does, by priority; else empty."""
+        text = self.value(CONTROLLER, "sources")
+        return dict(part.split(": ", 1) for part in text.split(", ")) if text else {}
+
     def path(self, name: str) -> str:
         """The absolute name of a topic or service."""
         return f"{self.namespace.rstrip('/')}/{name}"
@@ -125,7 +130,7 @@ class Answer:
 
 def judge(facts: Facts) -> Answer:
     """The answer: of all that stands against motion, what has to be repaired first."""
-    for look in (_no_nodes, _paused, _stopped, _gate, _no_path, _controller):
+    for look in (_no_nodes, _paused, _stopped, _gate, _no_path, _locked, _controller):
         answer = look(facts)
         if answer is not None:
             return answer
@@ -145,8 +150,8 @@ def senders_in_words(facts: Facts) -> str:
     senders = facts.commanders()
     if not senders:
         return "no node"
-    if len(senders) == 1:
-        return senders[0]
+    if len(senders) == 1 or facts.sources():
+        return ", ".join(senders)
     refused = "many_senders" in facts.reasons(CONTROLLER, "command")
     consequence = "all are refused" if refused else "each message overrides the one before"
     return f"{', '.join(senders)} ({len(senders)} senders: {consequence})"
@@ -281,6 +286,17 @@ def _no_path(facts: Facts) -> Answer | None:
     )
 
 
+def _locked(facts: Facts) -> Answer | None:
+    locked = [state for state in facts.sources().values() if state.startswith("locked by ")]
+    if not locked or "commands" in facts.sources().values():
+        return None
+    return Answer(
+        Verdict.STOPPED,
+        f"The commands are {locked[0]}: the result is zero.",
+        (("operator", "publish false on the topic of this lock, and go on publishing it where it has a timeout"),),
+    )
+
+
 def _controller(facts: Facts) -> Answer | None:
     absent = [node for node in (ESTIMATOR, CONTROLLER) if node in missing_nodes(facts)]
     if absent:
@@ -319,7 +335,9 @@ def _controller(facts: Facts) -> Answer | None:
     if "holding" in reasons and not _motion_commanded(facts):
         return Answer(
             Verdict.IDLE,
-            "It may move, but the command is to stand: cmd_vel is zero.",
+            "It may move, but no command source sends."
+            if facts.sources() and "commands" not in facts.sources().values()
+            else "It may move, but the command is to stand: cmd_vel is zero.",
             (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),),
         )
     return None

@@ -123,6 +123,9 @@ def _nodes(facts: Facts) -> Rows:
 
 def _command(facts: Facts, look: Look) -> Rows:
     yield "cmd_vel", f"published by {senders_in_words(facts)}", ""
+    sources = facts.sources()
+    if sources:
+        yield "sources", ", ".join(f"{name}: {state}" for name, state in sources.items()), ""
     asked = [facts.value(CONTROLLER, key) for key in ("requested_m_s", "requested_rad_s")]
     parts = []
     if look.times and all(asked):

@@ -3,10 +3,13 @@
 #include <ros/ros.h>
 
 #include <atomic>
+#include <deque>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "bridge/inputs/command_input.h"
+#include "bridge/inputs/command_mux.h"
 #include "bridge/inputs/input_topic.h"
 #include "bridge/inputs/live_overrides.h"
 #include "bridge/inputs/reconfigure.h"
@@ -30,7 +33,11 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
       : ProcessNode(setup, std::move(decorator)),
         input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
         pace_(report().command_rate),
-        command_report_(robot(), parameters().controller) {}
+        command_report_(robot(), parameters().controller) {
+    if (parameters().command_sources.empty()) return;
+    list_ = read_command_sources(parameters().command_sources);
+    mux_.emplace(list_, parameters().controller.one_sender);
+  }
 
   void connect(ros::NodeHandle& handle) override {
     expect_monitor();
@@ -45,6 +52,10 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
     drive_state_ = handle.advertise<msg::DriveState>("drive_state", 10);
+    if (mux_) {
+      connect_sources(handle);
+      return;
+    }
     cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const std::string& sender) {
       receive({.sender = sender, .twist = twist_of(message)});
     });
@@ -71,26 +82,79 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     joint_commands_.publish(joint_commands(command_, robot()));
     joint_targets_.publish(joint_targets(command_, robot(), stamp));
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
-    drive_state_.publish(drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp));
+    msg::DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp);
+    add_sources(state);
+    drive_state_.publish(state);
     if (report_outdated_.exchange(false)) command_report_.limit(process().retuning().in_force());
     write_log(command_report_.look(command_));
   }
 
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
-    report_command(report, command_, std::exchange(since_report_, 0), input_.senders(loop_ns()));
+    const std::uint64_t lately = std::exchange(since_report_, 0);
+    if (mux_) {
+      report_command(report, command_, lately, mux_->senders(loop_ns()), mux_->states());
+    } else {
+      report_command(report, command_, lately, input_.senders(loop_ns()));
+    }
   }
 
  private:
   /// Two topics, two threads, one inbox.
   void receive(const ArrivedCommand& arrived) {
-    const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
     const std::lock_guard lock(input_mutex_);
     tell_dropped(arrived.sender);
+    input_.receive(arrived, arrival_time());
+    process().cycle().inbox().store(input_.value());
+  }
+
+  /// Likewise, of the source with this index.
+  void receive_from(std::size_t source, const ArrivedCommand& arrived) {
+    const std::lock_guard lock(input_mutex_);
+    tell_dropped(arrived.sender);
+    mux_->receive(source, arrived, arrival_time());
+    process().cycle().inbox().store(mux_->value());
+  }
+
+  /// Now. Any thread that holds the lock.
+  ArrivalTime arrival_time() {
+    const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
     ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
     time.ros_ns = lockstep ? time.loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-    input_.receive(arrived, time);
-    process().cycle().inbox().store(input_.value());
+    return time;
+  }
+
+  void connect_sources(ros::NodeHandle& handle) {
+    for (std::size_t i = 0; i < list_.sources.size(); ++i) {
+      const std::string& topic = list_.sources[i].topic;
+      if (list_.sources[i].stamped) {
+        stamped_sources_.emplace_back(topic, 1).connect_with_sender(
+            handle, [this, i](const msg::TwistStamped& message, const std::string& sender) {
+              const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
+              receive_from(i, {.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
+            });
+      } else {
+        sources_.emplace_back(topic, 1).connect_with_sender(
+            handle, [this, i](const msg::Twist& message, const std::string& sender) {
+              receive_from(i, {.sender = sender, .twist = twist_of(message)});
+            });
+      }
+    }
+    for (std::size_t i = 0; i < list_.locks.size(); ++i) {
+      locks_.emplace_back(list_.locks[i].topic, 10).connect(handle, [this, i](const msg::Bool& message) {
+        const std::lock_guard lock(input_mutex_);
+        mux_->receive_lock(i, message.data != 0, loop_ns());
+        process().cycle().inbox().store(mux_->value());
+      });
+    }
+  }
+
+  void add_sources(msg::DriveState& message) {
+    const std::lock_guard lock(input_mutex_);
+    if (!mux_) return;
+    message.commander = mux_->winner();
+    const std::vector<std::string> states = mux_->states();
+    message.sources.assign(states.begin(), states.end());
   }
 
   /// A command that arrives before the loop runs moves nothing later: said once, until the loop has run.
@@ -182,8 +246,13 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     std::vector<ReportLine> lines;
     {
       const std::lock_guard lock(input_mutex_);
-      if (input_.look(loop_ns())) process().cycle().inbox().store(input_.value());
-      lines = input_.lines();
+      if (mux_) {
+        if (mux_->look(loop_ns())) process().cycle().inbox().store(mux_->value());
+        lines = mux_->lines();
+      } else {
+        if (input_.look(loop_ns())) process().cycle().inbox().store(input_.value());
+        lines = input_.lines();
+      }
     }
     write_log(lines);
   }
@@ -201,6 +270,10 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   ros::Publisher velocity_out_;
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
+  CommandSourceList list_;
+  std::deque<InputTopic<BoundedTwist>> sources_;
+  std::deque<InputTopic<BoundedTwistStamped>> stamped_sources_;
+  std::deque<InputTopic<BoundedBool>> locks_;
   ros::Publisher drive_state_;
   ros::ServiceServer set_parameters_;
   ros::ServiceServer set_parameter_map_;
@@ -210,6 +283,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   std::atomic<bool> report_outdated_{false};  ///< other limits hold than `command_report_` knows
   std::mutex input_mutex_;
   CommandInput input_;
+  std::optional<CommandMux> mux_;  ///< where there is a list of sources; then `input_` receives nothing
   std::int64_t loop_ns_ = 0;
   bool dropped_told_ = false;
   Pacer pace_;

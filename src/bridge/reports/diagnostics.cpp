@@ -112,14 +112,15 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
 }
 
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
-                    const std::vector<std::string>& senders) {
+                    const std::vector<std::string>& senders, const std::vector<std::string>& sources) {
   constexpr std::uint64_t kRefusals = kReasonRefused | kReasonStale | kReasonManySenders;
   if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals));
-  if (senders.size() > 1) report.warn("commands come from more than one node: " + joined(senders));
+  if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
   report.value("reasons", names_of(kCommandReasonNames, command.reasons));
   report.value("reasons_lately", names_of(kCommandReasonNames, lately));
   report.value("senders", joined(senders));
+  if (!sources.empty()) report.value("sources", joined(sources));
   report.value("commands_received", command.requests_received);
   report.value("commands_refused", command.requests_refused);
   report.value("commands_stale", command.requests_stale);

@@ -1,0 +1,50 @@
+"""Where a program's commands go: to its source's topic where the robot has a list of command sources, else to
+cmd_vel_stamped.
+
+Both topics are advertised; the controller subscribes to its sources alone, and that decides. Nothing is sent on the
+other one.
+"""
+
+import rospy
+from geometry_msgs.msg import TwistStamped
+
+from robot_control.common.topic_sender import Sender
+
+PLAIN = "cmd_vel_stamped"
+CONTROLLER = "diff_drive_controller"
+
+
+class CommandTopic:
+    """`source`: the topic of the program's source, for instance key_vel."""
+
+    def __init__(self, source: str) -> None:
+        self._publishers = [
+            rospy.Publisher(name, TwistStamped, queue_size=1, tcp_nodelay=True) for name in (source, PLAIN)
+        ]
+        self._senders = [Sender(publisher, TwistStamped()) for publisher in self._publishers]
+        self._controller = rospy.resolve_name(CONTROLLER)
+
+    @property
+    def name(self) -> str:
+        """Absolute, of the topic that is used now."""
+        name: str = self._publishers[self._chosen()].resolved_name
+        return name
+
+    def send(self, linear: float, angular: float) -> None:
+        """m/s, rad/s; stamped now."""
+        message = TwistStamped()
+        message.header.stamp = rospy.Time.now()
+        message.twist.linear.x, message.twist.angular.z = linear, angular
+        self._senders[self._chosen()].send(message)
+
+    @property
+    def connected(self) -> bool:
+        """The controller takes what is sent."""
+        return self._reaches(0) or self._reaches(1)
+
+    def _chosen(self) -> int:
+        return 0 if self._reaches(0) else 1
+
+    def _reaches(self, number: int) -> bool:
+        connections = list(self._publishers[number].impl.connections)
+        return any(connection.endpoint_id == self._controller for connection in connections)

@@ -1,0 +1,1 @@
+"""pad.py: drives the robot with a game pad."""

@@ -1,0 +1,122 @@
+"""From a pad's axes and buttons to a velocity. Pure: time is an argument, s of any one clock.
+
+    v = scale_linear · axes[axis_linear]      while enable_button is held, else 0
+    ω = scale_angular · axes[axis_angular]
+
+With enable_turbo_button held, the turbo scales hold instead. The names are those of teleop_twist_joy.
+
+The enable button counts only after it was seen released, so that a pad that is plugged in, or comes back, with the
+button held moves nothing. A hold during which neither axis nor button changes for max_hold ends in zero: a wireless
+receiver that has lost its pad goes on reporting what it saw last.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+ZEROS = 1.0
+"""s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
+LONGEST = 256
+"""axes or buttons of a message"""
+
+
+@dataclass(frozen=True)
+class PadParameters:
+    """As in teleop_twist_joy; indices count from 0, a button of −1 is none."""
+
+    axis_linear: int = 1  # left stick, forward
+    axis_angular: int = 0  # left stick, to the left
+    scale_linear: float = 0.5  # m/s
+    scale_angular: float = 1.0  # rad/s
+    scale_linear_turbo: float = 1.0  # m/s
+    scale_angular_turbo: float = 1.5  # rad/s
+    enable_button: int = 4  # left shoulder
+    enable_turbo_button: int = 5  # right shoulder
+    deadzone: float = 0.1  # share of an axis around its middle that counts as the middle
+    max_hold: float = 30.0  # s
+    joy_timeout: float = 0.5  # s without an answer of the device, or a message on joy
+
+    @classmethod
+    def names(cls) -> tuple[str, ...]:
+        """Of the private ROS parameters."""
+        return tuple(field.name for field in fields(cls))
+
+
+@dataclass(frozen=True)
+class Command:
+    """A velocity to send."""
+
+    linear: float = 0.0  # m/s
+    angular: float = 0.0  # rad/s
+
+
+class Pad:
+    """What the person with the pad asks for."""
+
+    def __init__(self, parameters: PadParameters | None = None) -> None:
+        self._given = parameters or PadParameters()
+        self._axes: tuple[float, ...] = ()
+        self._buttons: tuple[int, ...] = ()
+        self._answered_at = float("-inf")
+        self._changed_at = float("-inf")
+        self._armed = False  # the enable buttons were seen released
+        self._zeros_until = float("-inf")
+
+    def start(self, now: float) -> None:
+        """Zeros, so that the robot may be released."""
+        self._zeros_until = now + ZEROS
+
+    def receive(self, axes: Sequence[float], buttons: Sequence[int], now: float) -> None:
+        """The device answered, or a message came: its axes, −1 … 1, and buttons, 0 or 1."""
+        if len(axes) > LONGEST or len(buttons) > LONGEST:
+            return
+        came_back = now - self._answered_at > self._given.joy_timeout
+        seen = tuple(axes), tuple(buttons)
+        if seen != (self._axes, self._buttons):
+            self._changed_at = now
+        self._axes, self._buttons = seen
+        self._answered_at = now
+        if came_back:
+            self._armed = False
+        if not self._held():
+            self._armed = True
+
+    def lose(self) -> None:
+        """The device is gone."""
+        self._answered_at = float("-inf")
+
+    def command(self, now: float) -> Command | None:
+        """What to send now; None: nothing."""
+        if self.answers(now) and self._held() and now - self._changed_at >= self._given.max_hold:
+            self._armed = False
+        if not (self.answers(now) and self._armed and self._held()):
+            return Command() if now < self._zeros_until else None
+        self._zeros_until = now + ZEROS
+        turbo = self._pressed(self._given.enable_turbo_button)
+        linear = self._given.scale_linear_turbo if turbo else self._given.scale_linear
+        angular = self._given.scale_angular_turbo if turbo else self._given.scale_angular
+        return Command(linear * self._axis(self._given.axis_linear), angular * self._axis(self._given.axis_angular))
+
+    def answers(self, now: float) -> bool:
+        """The device answers, or messages come."""
+        return now - self._answered_at <= self._given.joy_timeout
+
+    def state(self, now: float) -> str:
+        """In words."""
+        if not self.answers(now):
+            return "no pad answers"
+        if self._held() and not self._armed:
+            return "release the enable button once"
+        return "drives" if self._held() else f"hold button {self._given.enable_button} to drive"
+
+    def _held(self) -> bool:
+        return self._pressed(self._given.enable_button) or self._pressed(self._given.enable_turbo_button)
+
+    def _pressed(self, number: int) -> bool:
+        return 0 <= number < len(self._buttons) and self._buttons[number] == 1
+
+    def _axis(self, number: int) -> float:
+        value = self._axes[number] if 0 <= number < len(self._axes) else 0.0
+        if not abs(value) <= 1.0:  # NaN too
+            return 0.0
+        zone = self._given.deadzone
+        return 0.0 if abs(value) <= zone else (abs(value) - zone) / (1 - zone) * (1 if value > 0 else -1)

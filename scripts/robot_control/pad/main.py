@@ -1,0 +1,145 @@
+"""pad.py's ROS side: a device or the topic joy in, commands out."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import time
+from typing import Any
+
+import rosgraph
+import rospy
+from sensor_msgs.msg import Joy
+
+from robot_control.common.command_topic import CommandTopic
+from robot_control.common.topic_sender import Signals, ended_by_signals
+from robot_control.pad.device import PACKAGE, Device, open_device
+from robot_control.pad.law import Pad, PadParameters
+
+SOURCE = "joy_vel"
+PERIOD = 0.02
+"""s between two looks at the device"""
+SEND_PERIOD = 0.05
+"""s between two commands, and two messages on joy"""
+SEARCH_PERIOD = 1.0
+"""s between two looks for a device"""
+
+
+class ParameterError(ValueError):
+    """A parameter that cannot be used."""
+
+
+def parameters() -> PadParameters:
+    """The private ROS parameters of this node over the defaults. Raises ParameterError with all problems."""
+    given = rospy.get_param("~", {}) or {}
+    problems = [f"~{name}: unknown" for name in sorted(set(given) - set(PadParameters.names()))]
+    values: dict[str, Any] = {}
+    for name in PadParameters.names():
+        if name not in given:
+            continue
+        value, default = given[name], getattr(PadParameters, name)
+        kinds = (int,) if isinstance(default, int) else (int, float)
+        if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value):
+            problems.append(f"~{name} = {value!r}: must be a {'whole ' if kinds == (int,) else ''}number")
+        else:
+            values[name] = value
+    if not 0 <= values.get("deadzone", 0.0) < 1:
+        problems.append("~deadzone: must be a number of 0 to below 1")
+    problems += [f"~{name}: must be above zero" for name in ("max_hold", "joy_timeout") if values.get(name, 1) <= 0]
+    if problems:
+        raise ParameterError("; ".join(problems))
+    return PadParameters(**values)
+
+
+class Source:
+    """Where axes and buttons come from."""
+
+    def __init__(self, pad: Pad, path: str | None, *, topic: bool) -> None:
+        self._pad, self._path = pad, path
+        self._device: Device | None = None
+        self._searched_at = self._published_at = -math.inf
+        self._publisher = None if topic else rospy.Publisher("joy", Joy, queue_size=1)
+        self._newest: Joy | None = None
+        if topic:
+            rospy.Subscriber("joy", Joy, self._receive, queue_size=1, tcp_nodelay=True)
+
+    def look(self, now: float) -> None:
+        """Hands what there is to the pad."""
+        if self._publisher is None:
+            message, self._newest = self._newest, None
+            if message is not None:
+                self._pad.receive(message.axes, message.buttons, now)
+            return
+        if self._device is None and now - self._searched_at >= SEARCH_PERIOD:
+            self._searched_at = now
+            self._device = open_device(self._path)
+            if self._device is not None:
+                rospy.loginfo(f"pad: {self._device.name}")
+        if self._device is None:
+            return
+        try:
+            axes, buttons = self._device.read()
+        except OSError:
+            rospy.logwarn(f"{self._device.name} is gone: zero")
+            self._device = None
+            self._pad.lose()
+            return
+        self._pad.receive(axes, buttons, now)
+        if now - self._published_at >= SEND_PERIOD:
+            self._published_at = now
+            message = Joy(axes=list(axes), buttons=list(buttons))
+            message.header.stamp = rospy.Time.now()
+            self._publisher.publish(message)
+
+    def _receive(self, message: Joy) -> None:
+        self._newest = message
+
+
+def drive(given: argparse.Namespace, signals: Signals) -> None:
+    """Until a signal."""
+    pad, topic = Pad(parameters()), CommandTopic(SOURCE)
+    source = Source(pad, given.device, topic=given.joy)
+    pad.start(time.monotonic())
+    sent, sent_at, said = None, -math.inf, ""
+    while signals.going_on():
+        now = time.monotonic()
+        source.look(now)
+        command = pad.command(now)
+        if command is not None and (command != sent or now - sent_at >= SEND_PERIOD):
+            topic.send(command.linear, command.angular)
+            sent_at = now
+        sent = command
+        if pad.state(now) != said:
+            said = pad.state(now)
+            rospy.loginfo(said)
+        time.sleep(PERIOD)
+
+
+def arguments(given: list[str]) -> argparse.Namespace:
+    """The command line, without the program's name; ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(
+        prog="pad.py",
+        description="Drives the robot with a game pad while its enable button is held. Commands go to joy_vel where "
+        "the robot has a list of command sources, else to cmd_vel_stamped; axes and buttons go to joy.",
+        epilog="Parameters as in teleop_twist_joy: _axis_linear:=1 _scale_linear:=0.5 _enable_button:=4 …",
+    )
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--device", help="for instance /dev/input/event5; left out: the first pad there is")
+    where.add_argument("--joy", action="store_true", help="take the messages on joy of a pad on another machine")
+    return parser.parse_args(given)
+
+
+def main() -> None:
+    """Entry point of scripts/pad.py."""
+    given = arguments(rospy.myargv(sys.argv)[1:])
+    if not rosgraph.is_master_online():
+        sys.exit(f"no ROS master at {rosgraph.get_master_uri()}: start the robot first")
+    rospy.init_node("pad")
+    try:
+        with ended_by_signals() as signals:
+            drive(given, signals)
+    except ModuleNotFoundError:
+        sys.exit(f"pad.py: needs the package {PACKAGE} (apt install {PACKAGE}); or --joy and a pad on another machine")
+    except ParameterError as error:
+        sys.exit(f"pad.py: {error}")

@@ -1,0 +1,1 @@
+"""drive_path.py: drives the robot along a path."""

@@ -1,0 +1,210 @@
+"""The law that drives a robot along a path. Pure: no clock, no ROS.
+
+Regulated pure pursuit: S. Macenski, S. Singh, F. Martín, J. Ginés, Regulated pure pursuit for robot path tracking,
+Autonomous Robots 47 (2023), doi:10.1007/s10514-023-10097-6. With the lookahead point at the distance L along the path,
+at (x_L, y_L) in the robot's axes (turned by π where it drives backwards), and d what remains of the piece:
+
+    κ = 2·y_L/(x_L² + y_L²)                      curvature of the arc to it
+    v = min(speed, √(a_lateral/|κ|), ω_max/|κ|, √(2·a·d), limit)
+    ω = v·κ
+
+A path is driven in pieces (pieces.py). Between two of them, and at the end, the robot stands and turns on the spot:
+ω = ±min(ω_max, √(2·α·|error|)).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from robot_control.path.pieces import Foot, Route, turned
+
+
+@dataclass(frozen=True)
+class FollowParameters:
+    """Of the law; SI units."""
+
+    speed: float = 0.5  # m/s, where the path says none
+    max_angular_speed: float = 1.0  # rad/s
+    lateral_acceleration: float = 0.3  # m/s²
+    deceleration: float = 0.3  # m/s², towards the end of a piece; below the robot's own, which the wheels follow late
+    angular_deceleration: float = 1.0  # rad/s², likewise
+    lookahead_time: float = 0.5  # s of driving
+    shortest_lookahead: float = 0.15  # m
+    slowest: float = 0.02  # m/s, rad/s; what is left of a piece or a turn is crept
+    reaction: float = 0.08  # s from a pose to the wheels' answer
+    at_end: float = 0.003  # m
+    heading_tolerance: float = 0.008  # rad, after a turn
+    start_turn: float = 0.25  # rad; a smaller error of the first heading is driven out
+    standing: float = 0.01  # m/s and rad/s
+    off_path: float = 0.3  # m; farther aside it ends
+    start_distance: float = 0.5  # m; farther from its first point a path is not begun
+
+
+class State(Enum):
+    """What the follower does."""
+
+    TURNING = auto()
+    DRIVING = auto()
+    PAUSED = auto()
+    DONE = auto()
+    FAILED = auto()
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Of the robot, in the path's frame."""
+
+    x: float  # m
+    y: float  # m
+    yaw: float  # rad
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A measured twist, or a commanded one."""
+
+    linear: float = 0.0  # m/s
+    angular: float = 0.0  # rad/s
+
+
+STAND = Motion()
+
+
+class Follower:
+    """Follows one path; `step` once per odometry message."""
+
+    def __init__(self, route: Route, parameters: FollowParameters | None = None) -> None:
+        self._route = route
+        self._parameters = parameters or FollowParameters()
+        self._number = 0  # of the piece; that of the last + 1: the turn to the end heading
+        self._state = State.TURNING
+        self._settling = True  # a turn first waits until the robot stands
+        self._before_pause = State.TURNING
+        self._begun = False
+        self._driven = 0.0  # m, of pieces that are done
+        self._along = 0.0  # m, of the present piece
+        self.reason = ""
+        self.cross_track_error = 0.0  # m, to the left
+        self.heading_error = 0.0  # rad, the robot's heading minus the path's
+        self.worst_cross_track_error = 0.0  # m
+
+    @property
+    def state(self) -> State:
+        """What it does."""
+        return self._state
+
+    @property
+    def over(self) -> bool:
+        """Nothing follows."""
+        return self._state in {State.DONE, State.FAILED}
+
+    @property
+    def remaining(self) -> float:
+        """m"""
+        return max(0.0, self._route.length - self._driven - self._along)
+
+    @property
+    def progress(self) -> float:
+        """0 … 1"""
+        return 1.0 if self._state is State.DONE else 1.0 - self.remaining / self._route.length
+
+    def pause(self) -> None:
+        """Stands until `resume`."""
+        if not self.over and self._state is not State.PAUSED:
+            self._before_pause, self._state = self._state, State.PAUSED
+
+    def resume(self) -> None:
+        """Goes on from where the robot is."""
+        if self._state is State.PAUSED:
+            self._state = self._before_pause
+
+    def fail(self, reason: str) -> None:
+        """Ends, with zero."""
+        if not self.over:
+            self._state, self.reason = State.FAILED, reason
+
+    def step(self, pose: Pose, measured: Motion, limit: float = math.inf) -> Motion:
+        """What to command now.
+
+        Args:
+            pose: of the robot, by odometry.
+            measured: its twist.
+            limit: m/s that nothing may exceed (SafetyStatus.speed_limit).
+        """
+        if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw, measured.linear, measured.angular))):
+            self.fail("the odometry holds a number that is not finite")
+        if not self._begun and not self.over:
+            self._begin(pose)
+        if self.over or self._state is State.PAUSED:
+            return STAND
+        if self._state is State.TURNING:
+            return self._turn(pose, measured)
+        return self._drive(pose, measured, limit)
+
+    def _begin(self, pose: Pose) -> None:
+        self._begun = True
+        first = self._route.pieces[0]
+        distance = math.dist(first.points[0], (pose.x, pose.y))
+        if distance > self._parameters.start_distance:
+            self.fail(
+                f"the path begins {distance:.2f} m from the robot, more than {self._parameters.start_distance:g} m"
+            )
+        elif abs(turned(first.first_heading - pose.yaw)) < self._parameters.start_turn:
+            self._state = State.DRIVING
+
+    def _turn(self, pose: Pose, measured: Motion) -> Motion:
+        given = self._parameters
+        at_end = self._number == len(self._route.pieces)
+        wanted = self._route.end_heading if at_end else self._route.pieces[self._number].first_heading
+        error = turned(wanted - pose.yaw)
+        self.heading_error = -error
+        stands = abs(measured.linear) < given.standing
+        if self._settling and not stands:
+            return STAND
+        self._settling = False
+        if abs(error) < given.heading_tolerance:
+            if abs(measured.angular) < given.standing:
+                self._state = State.DONE if at_end else State.DRIVING
+            return STAND
+        left = abs(error) - abs(measured.angular) * given.reaction
+        speed = min(given.max_angular_speed, math.sqrt(2 * given.angular_deceleration * max(left, 0.0)))
+        return Motion(0.0, math.copysign(max(speed, given.slowest), error))
+
+    def _drive(self, pose: Pose, measured: Motion, limit: float) -> Motion:
+        given = self._parameters
+        piece = self._route.pieces[self._number]
+        lookahead = max(given.shortest_lookahead, given.lookahead_time * abs(measured.linear))
+        foot = piece.foot(pose.x, pose.y, reach=2 * lookahead + given.off_path)
+        self._along = foot.along
+        self._note_errors(foot, pose, piece.heading(foot.tangent))
+        if abs(foot.aside) > given.off_path:
+            self.fail(f"{abs(foot.aside):.2f} m off the path, more than {given.off_path:g} m")
+            return STAND
+        left = piece.length - foot.along - abs(measured.linear) * given.reaction
+        if piece.length - foot.along <= given.at_end:
+            self._driven += piece.length
+            self._along = 0.0
+            self._number += 1
+            self._state, self._settling = State.TURNING, True
+            return STAND
+        ahead = piece.at(foot.along + lookahead)
+        axes = pose.yaw if piece.sign > 0 else pose.yaw + math.pi
+        dx, dy = ahead[0] - pose.x, ahead[1] - pose.y
+        aside = dy * math.cos(axes) - dx * math.sin(axes)
+        curvature = 2 * aside / (dx * dx + dy * dy)
+        asked = piece.speed_at(foot.along)
+        speed = min(
+            given.speed if asked is None else asked,
+            math.sqrt(given.lateral_acceleration / max(abs(curvature), 1e-9)),
+            given.max_angular_speed / max(abs(curvature), 1e-9),
+            math.sqrt(2 * given.deceleration * max(left, 0.0)),
+        )
+        speed = min(max(speed, given.slowest), limit)
+        return Motion(piece.sign * speed, speed * curvature)
+
+    def _note_errors(self, foot: Foot, pose: Pose, heading: float) -> None:
+        self.cross_track_error = foot.aside
+        self.heading_error = turned(pose.yaw - heading)
+        self.worst_cross_track_error = max(self.worst_cross_track_error, abs(foot.aside))

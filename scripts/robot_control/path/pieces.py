@@ -1,0 +1,142 @@
+"""A path as pieces that are driven without a stop: cut at corners and where the direction of driving changes. Pure."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+
+from robot_control.path.waypoints import Waypoint, checked
+
+CORNER = math.radians(35.0)
+"""rad; a sharper change of direction is turned on the spot"""
+
+Point = tuple[float, float]
+
+
+def turned(angle: float) -> float:
+    """The same angle in (−π, π]."""
+    rest = math.remainder(angle, math.tau)
+    return math.pi if rest <= -math.pi else rest
+
+
+@dataclass(frozen=True)
+class Foot:
+    """The nearest point of a piece."""
+
+    along: float  # m from the begin of the piece; beyond its ends on their tangents
+    aside: float  # m that the robot is to the left of the piece
+    tangent: float  # rad, direction of the piece there
+
+
+class Piece:
+    """A polyline; lengths in m."""
+
+    def __init__(self, points: Sequence[Point], sign: int, speeds: Sequence[float | None]) -> None:
+        """`sign` −1: driven backwards; `speeds` of each segment, None: as asked for."""
+        self.points, self.sign, self.speeds = list(points), sign, list(speeds)
+        lengths = (math.dist(a, b) for a, b in pairwise(self.points))
+        self.starts = list(accumulate(lengths, initial=0.0))
+        self._segment = 0
+
+    @property
+    def length(self) -> float:
+        """m"""
+        return self.starts[-1]
+
+    @property
+    def first_heading(self) -> float:
+        """rad, of a robot that drives it from its begin."""
+        return self.heading(self._tangent(0))
+
+    @property
+    def last_heading(self) -> float:
+        """rad, likewise, at its end."""
+        return self.heading(self._tangent(len(self.points) - 2))
+
+    def heading(self, tangent: float) -> float:
+        """Of a robot that drives along this direction."""
+        return turned(tangent if self.sign > 0 else tangent + math.pi)
+
+    def foot(self, x: float, y: float, reach: float) -> Foot:
+        """Nearest to this point, searched from the last answer on, no more than `reach` ahead, never behind."""
+        best, best_distance = self._segment, math.inf
+        limit = self.starts[self._segment] + reach
+        for number in range(self._segment, len(self.points) - 1):
+            if self.starts[number] > limit:
+                break
+            distance = self._distance(number, x, y)
+            if distance < best_distance - 1e-12:
+                best, best_distance = number, distance
+        self._segment = best
+        tangent = self._tangent(best)
+        dx, dy = x - self.points[best][0], y - self.points[best][1]
+        along = dx * math.cos(tangent) + dy * math.sin(tangent)
+        aside = dy * math.cos(tangent) - dx * math.sin(tangent)
+        size = self.starts[best + 1] - self.starts[best]
+        low = -math.inf if best == 0 else 0.0
+        high = math.inf if best == len(self.points) - 2 else size
+        return Foot(self.starts[best] + min(max(along, low), high), aside, tangent)
+
+    def at(self, along: float) -> Point:
+        """The point so far from its begin; beyond the ends on their tangents."""
+        number = min(max(bisect_right(self.starts, along) - 1, 0), len(self.points) - 2)
+        tangent, rest = self._tangent(number), along - self.starts[number]
+        return self.points[number][0] + rest * math.cos(tangent), self.points[number][1] + rest * math.sin(tangent)
+
+    def speed_at(self, along: float) -> float | None:
+        """m/s, where the path says one."""
+        return self.speeds[min(max(bisect_right(self.starts, along) - 1, 0), len(self.speeds) - 1)]
+
+    def _tangent(self, number: int) -> float:
+        (ax, ay), (bx, by) = self.points[number], self.points[number + 1]
+        return math.atan2(by - ay, bx - ax)
+
+    def _distance(self, number: int, x: float, y: float) -> float:
+        (ax, ay), (bx, by) = self.points[number], self.points[number + 1]
+        dx, dy = bx - ax, by - ay
+        share = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)))
+        return math.hypot(x - ax - share * dx, y - ay - share * dy)
+
+
+@dataclass(frozen=True)
+class Route:
+    """What is driven, piece after piece."""
+
+    pieces: tuple[Piece, ...]
+    end_heading: float  # rad
+
+    @property
+    def length(self) -> float:
+        """m"""
+        return sum(piece.length for piece in self.pieces)
+
+
+def route(waypoints: Sequence[Waypoint]) -> Route:
+    """Cuts a path. Raises PathError."""
+    points = checked(waypoints)
+    segments = list(pairwise(points))
+    tangents = [math.atan2(b.y - a.y, b.x - a.x) for a, b in segments]
+    signs = [_sign(a, b, tangent) for (a, b), tangent in zip(segments, tangents, strict=True)]
+    speeds: list[float | None] = []
+    for point in points[:-1]:
+        speeds.append(point.speed if point.speed is not None else (speeds[-1] if speeds else None))
+    pieces, begin = [], 0
+    for number in range(1, len(points)):
+        last = number == len(points) - 1
+        if last or signs[number] != signs[number - 1] or abs(turned(tangents[number] - tangents[number - 1])) > CORNER:
+            part = [(point.x, point.y) for point in points[begin : number + 1]]
+            pieces.append(Piece(part, signs[begin], speeds[begin:number]))
+            begin = number
+    end = points[-1].yaw
+    return Route(tuple(pieces), pieces[-1].last_heading if end is None else turned(end))
+
+
+def _sign(begin: Waypoint, end: Waypoint, tangent: float) -> int:
+    """−1 where the robot's headings at both ends point against the segment, by their mean."""
+    headings = [point.yaw for point in (begin, end) if point.yaw is not None]
+    if len(headings) < 2:
+        return 1
+    return 1 if sum(math.cos(heading - tangent) for heading in headings) >= -1e-9 else -1

@@ -1,0 +1,105 @@
+"""Points of a path: their checks, and CSV files of them. Pure but for reading the file."""
+
+import csv
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+COLUMNS = ("x", "y", "yaw", "speed")
+MOST = 100_000
+"""points"""
+JUMP, JUMP_RATIO, ENOUGH = 1.0, 20.0, 10
+"""m, times the median distance, points: what exceeds both in a path of so many is no part of it"""
+
+
+class PathError(ValueError):
+    """No path can be driven; the message says why."""
+
+
+@dataclass(frozen=True)
+class Waypoint:
+    """A point of a path in the frame odom."""
+
+    x: float  # m
+    y: float  # m
+    yaw: float | None = None  # rad, of the robot; None: along the path
+    speed: float | None = None  # m/s, from here on; None: as before, at first as asked for
+
+
+def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
+    """Without repeated points; the last one's yaw stays.
+
+    Raises:
+        PathError: fewer than two points, a number that is not finite, a speed that is not above zero, a jump.
+    """
+    if len(points) > MOST:
+        raise PathError(f"the path has {len(points)} points, more than {MOST}")
+    for number, point in enumerate(points):
+        numbers = (point.x, point.y, point.yaw or 0.0, point.speed or 0.0)
+        if not all(map(math.isfinite, numbers)):
+            raise PathError(f"point {number} of the path holds a number that is not finite")
+        if point.speed is not None and point.speed <= 0:
+            raise PathError(f"point {number} of the path has a speed of {point.speed:g} m/s: it must be above zero")
+    kept: list[Waypoint] = []
+    for point in points:
+        if kept and math.hypot(point.x - kept[-1].x, point.y - kept[-1].y) < 1e-4:
+            kept[-1] = replace(kept[-1], yaw=point.yaw if point.yaw is not None else kept[-1].yaw)
+        else:
+            kept.append(point)
+    if len(kept) < 2:
+        raise PathError(f"the path has {len(kept)} different points: it needs two at least")
+    _refuse_jumps(kept)
+    return kept
+
+
+def _refuse_jumps(points: list[Waypoint]) -> None:
+    lengths = [math.hypot(b.x - a.x, b.y - a.y) for a, b in itertools.pairwise(points)]
+    median = sorted(lengths)[len(lengths) // 2]
+    for number, length in enumerate(lengths):
+        if len(points) >= ENOUGH and length > max(JUMP, JUMP_RATIO * median):
+            raise PathError(
+                f"the path jumps by {length:.2f} m after point {number}, where its points are {median:.3g} m apart"
+            )
+
+
+def placed(points: Sequence[Waypoint], x: float, y: float, yaw: float) -> list[Waypoint]:
+    """The same path, its origin at this pose."""
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    return [
+        replace(
+            point,
+            x=x + cosine * point.x - sine * point.y,
+            y=y + sine * point.x + cosine * point.y,
+            yaw=None if point.yaw is None else point.yaw + yaw,
+        )
+        for point in points
+    ]
+
+
+def read_csv(path: Path) -> list[Waypoint]:
+    """A header of x, y and maybe yaw, speed, then one point a line; an empty yaw or speed is none.
+
+    Raises:
+        PathError: naming file and line.
+        OSError: the file cannot be read.
+    """
+    with path.open(newline="") as file:
+        rows = csv.DictReader(file)
+        names = [name.strip() for name in rows.fieldnames or []]
+        if not {"x", "y"} <= set(names) <= set(COLUMNS) or len(set(names)) < len(names):
+            raise PathError(
+                f"{path}: the first line must be x,y or x,y,yaw or x,y,yaw,speed; it is {','.join(names)!r}"
+            )
+        rows.fieldnames = names
+        points = []
+        for row in rows:
+            try:
+                if None in row:
+                    raise ValueError  # more values than names
+                values = {name: float(row[name]) for name in names if (row[name] or "").strip()}
+                points.append(Waypoint(**values))
+            except (TypeError, ValueError):
+                raise PathError(f"{path}:{rows.line_num}: not a point of {','.join(names)}") from None
+    return points

@@ -1,0 +1,1 @@
+"""view_markers.py: what RViz shows beside model and odometry."""

@@ -1,0 +1,117 @@
+"""view_markers.py's ROS side."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import rosgraph
+import rospy
+from geometry_msgs.msg import Point, PoseStamped
+from nav_msgs.msg import Odometry, Path
+from visualization_msgs.msg import Marker, MarkerArray
+
+from robot_control.common.topic_sender import ended_by_signals
+from robot_control.msg import DriveState, SafetyStatus
+from robot_control.view.scene import Trail, force_arrows, limits_of, status_text, wheels_of
+
+PERIOD = 0.1
+"""s between two sets of markers"""
+ABOVE = 0.5
+"""m, of the text above the robot's origin"""
+
+
+class View:
+    """The last of each message, drawn."""
+
+    def __init__(self) -> None:
+        self._safety = SafetyStatus(speed_limit=float("inf"))
+        self._drive = DriveState()
+        self._odometry: Odometry | None = None
+        self._trail = Trail()
+        self._wheels = wheels_of(rospy.get_param("robot_description", ""))
+        self._markers = rospy.Publisher("view/markers", MarkerArray, queue_size=1)
+        self._path = rospy.Publisher("view/path_driven", Path, queue_size=1, latch=True)
+        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety)
+        rospy.Subscriber("drive_state", DriveState, self._receive_drive, queue_size=1)
+        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
+
+    def draw(self) -> None:
+        """Nothing before the first odometry: its frames are those of the markers."""
+        odometry = self._odometry
+        if odometry is None:
+            return
+        if not self._wheels:
+            self._wheels = wheels_of(rospy.get_param("robot_description", ""))
+        position = odometry.pose.pose.position
+        if self._trail.add(position.x, position.y):
+            self._path.publish(self._path_message(odometry.header.frame_id))
+        frame = odometry.child_frame_id
+        markers = [self._text(frame)]
+        arrows = force_arrows(self._wheels, self._drive.name, self._drive.effort)
+        for number, (begin, end) in enumerate(arrows):
+            arrow = _marker(frame, number + 1, Marker.ARROW, (0.2, 0.6, 1.0))
+            arrow.points = [Point(*begin), Point(*end)]
+            arrow.scale.x, arrow.scale.y, arrow.scale.z = 0.02, 0.05, 0.05
+            markers.append(arrow)
+        self._markers.publish(MarkerArray(markers=markers))
+
+    def _text(self, frame: str) -> Marker:
+        said = status_text(
+            self._safety.state_name,
+            self._safety.sentences,
+            self._safety.warning_sentences,
+            limits_of(self._drive.reasons, self._drive.sentences),
+            self._safety.speed_limit,
+        )
+        text = _marker(frame, 0, Marker.TEXT_VIEW_FACING, said.colour)
+        text.text = said.text
+        text.pose.position.z = ABOVE
+        text.scale.z = 0.09
+        return text
+
+    def _path_message(self, frame: str) -> Path:
+        path = Path()
+        path.header.frame_id = frame
+        for x, y, z in self._trail.points:
+            pose = PoseStamped(header=path.header)
+            pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = x, y, z
+            pose.pose.orientation.w = 1.0
+            path.poses.append(pose)
+        return path
+
+    def _receive_safety(self, message: SafetyStatus) -> None:
+        self._safety = message
+
+    def _receive_drive(self, message: DriveState) -> None:
+        self._drive = message
+
+    def _receive_odometry(self, message: Odometry) -> None:
+        self._odometry = message
+
+
+def _marker(frame: str, number: int, kind: int, colour: tuple[float, float, float]) -> Marker:
+    """In the robot's axes; a stamp of zero: where the robot is now."""
+    marker = Marker(id=number, type=kind, action=Marker.ADD)
+    marker.header.frame_id, marker.ns = frame, "robot_control"
+    marker.pose.orientation.w = 1.0
+    marker.color.r, marker.color.g, marker.color.b, marker.color.a = *colour, 1.0
+    marker.lifetime = rospy.Duration(1.0)
+    return marker
+
+
+def main() -> None:
+    """Entry point of scripts/view_markers.py."""
+    argparse.ArgumentParser(
+        prog="view_markers.py",
+        description="Publishes for RViz, as view.launch starts it: wheel forces, safety state and reasons as markers "
+        "on view/markers, the path driven on view/path_driven.",
+    ).parse_args(rospy.myargv(sys.argv)[1:])
+    if not rosgraph.is_master_online():
+        sys.exit(f"no ROS master at {rosgraph.get_master_uri()}")
+    rospy.init_node("view_markers")
+    with ended_by_signals() as signals:
+        view = View()
+        while signals.going_on():
+            view.draw()
+            rospy.rostime.wallsleep(PERIOD)

@@ -1,0 +1,120 @@
+"""What is shown: texts, wheel forces, the path driven. Pure."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+WIDTH = 60
+"""columns of the text above the robot"""
+MOST_LINES = 6
+STEP = 0.05
+"""m between two points of the path driven"""
+MOST_POINTS = 5000
+"""then every other one is dropped"""
+METRES_PER_NEWTON = 0.02
+"""length of an arrow"""
+
+Point = tuple[float, float, float]
+IDLE = {"holding", "timed_out", "no_command"}
+"""reasons of a robot that stands because no motion is asked for (kCommandReasonNames)"""
+GREEN, AMBER, RED = (0.3, 0.9, 0.4), (1.0, 0.75, 0.2), (1.0, 0.3, 0.25)
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """Where a wheel is, in base axes."""
+
+    position: Point  # m, its centre
+    radius: float  # m
+
+
+def wheels_of(urdf: str) -> dict[str, Wheel]:
+    """By joint: those that hang directly on the root link and end in a link with a cylinder or a sphere."""
+    try:
+        robot = ET.fromstring(urdf)
+    except ET.ParseError:
+        return {}
+    children = {child.get("link") for child in robot.findall("joint/child")}
+    roots = {link.get("name") for link in robot.findall("link")} - children
+    radii = {}
+    for link in robot.findall("link"):
+        shapes = [shape for kind in ("cylinder", "sphere") for shape in link.findall(f"collision/geometry/{kind}")]
+        if shapes:
+            radii[link.get("name")] = float(shapes[0].get("radius", "0"))
+    wheels = {}
+    for joint in robot.findall("joint"):
+        parent, child, origin = joint.find("parent"), joint.find("child"), joint.find("origin")
+        name = joint.get("name")
+        if name is None or parent is None or child is None or joint.get("type") != "continuous":
+            continue
+        if parent.get("link") in roots and child.get("link") in radii:
+            numbers = (origin.get("xyz", "0 0 0") if origin is not None else "0 0 0").split()
+            x, y, z = (float(number) for number in numbers)
+            wheels[name] = Wheel((x, y, z), radii[child.get("link")])
+    return wheels
+
+
+def force_arrows(wheels: dict[str, Wheel], names: Sequence[str], efforts: Sequence[float]) -> list[tuple[Point, Point]]:
+    """Begin and end, in base axes, of the force that each wheel's torque is at the ground."""
+    arrows = []
+    for name, effort in zip(names, efforts, strict=False):
+        wheel = wheels.get(name)
+        if wheel is None or wheel.radius <= 0 or not math.isfinite(effort):
+            continue
+        x, y, z = wheel.position
+        begin = (x, y + math.copysign(0.05, y), z - wheel.radius + 0.02)
+        arrows.append((begin, (begin[0] + METRES_PER_NEWTON * effort / wheel.radius, begin[1], begin[2])))
+    return arrows
+
+
+def limits_of(reasons: Sequence[str], sentences: Sequence[str]) -> list[str]:
+    """The sentences about what limits a motion; a robot of which none is asked for is not limited."""
+    return [text for name, text in zip(reasons, sentences, strict=False) if name not in IDLE]
+
+
+@dataclass(frozen=True)
+class Text:
+    """Above the robot."""
+
+    text: str
+    colour: tuple[float, float, float]
+
+
+def status_text(
+    state: str, sentences: Sequence[str], warnings: Sequence[str], reasons: Sequence[str], speed_limit: float
+) -> Text:
+    """Safety state with its causes, else with warnings and the reasons that limit the motion."""
+    lines = [state or "no safety_status"]
+    lines += [f"cause: {sentence}" for sentence in sentences] or [f"warning: {sentence}" for sentence in warnings]
+    if math.isfinite(speed_limit):
+        lines.append(f"limit: {speed_limit:.2f} m/s")
+    if not sentences:
+        lines += [f"limited: {reason}" for reason in reasons]
+    wrapped = [part for line in lines for part in textwrap.wrap(line, WIDTH)]
+    colour = RED if state not in {"READY", "DRIVE"} else AMBER if len(lines) > 1 else GREEN
+    return Text("\n".join(wrapped[:MOST_LINES]), colour)
+
+
+@dataclass
+class Trail:
+    """The path driven, bounded."""
+
+    points: list[Point] = field(default_factory=list)
+    _step: float = STEP
+
+    def add(self, x: float, y: float) -> bool:
+        """True if it grew. A jump of more than a metre (the odometry was reset) begins another one."""
+        if self.points:
+            distance = math.dist(self.points[-1][:2], (x, y))
+            if distance < self._step:
+                return False
+            if distance > 1.0:
+                self.points, self._step = [], STEP
+        self.points.append((x, y, 0.0))
+        if len(self.points) > MOST_POINTS:
+            self.points, self._step = self.points[::2], 2 * self._step
+        return True

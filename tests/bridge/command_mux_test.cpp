@@ -1,0 +1,196 @@
+#include "bridge/inputs/command_mux.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "bridge/nanoseconds.h"
+#include "control/command_watch.h"
+
+namespace robot_control {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+enum Source : std::size_t { kJoy, kKey, kCmd, kPath };
+enum LockIndex : std::size_t { kPause, kWatchdog };
+
+/// The shipped list and a lock that silence sets.
+CommandSourceList shipped() {
+  return {.sources = {{"joy_vel", "joy_vel", 0.5, 40, true},
+                      {"key_vel", "key_vel", 0.5, 30, true},
+                      {"cmd_vel", "cmd_vel", 1.25, 20, false},
+                      {"path_vel", "path_vel", 0.5, 10, true}},
+          .locks = {{"pause", "pause", 0, 255}}};
+}
+
+class CommandMuxTest : public testing::Test {
+ protected:
+  void receive(Source source, double linear) {
+    ArrivedCommand arrived{.sender = "/node" + std::to_string(source), .twist = {}, .stamp_ns = 0};
+    arrived.twist.linear[0] = linear;
+    mux_.receive(source, arrived, now_);
+  }
+
+  void pass(std::int64_t time_ns) {
+    now_.ros_ns += time_ns;
+    now_.loop_ns += time_ns;
+    mux_.look(now_.loop_ns);
+  }
+
+  double result() const { return mux_.value().twist.linear[0]; }
+
+  ArrivalTime now_{.ros_ns = 1'700'000'000 * kSecond, .loop_ns = 5000 * kSecond};
+  CommandMux mux_{shipped(), false};
+};
+
+TEST_F(CommandMuxTest, TheLiveSourceOfTheHighestPriorityCommands) {
+  receive(kPath, 0.1);
+  EXPECT_EQ(result(), 0.1);
+  receive(kKey, 0.3);
+  EXPECT_EQ(result(), 0.3);
+  receive(kCmd, 0.2);
+  EXPECT_EQ(result(), 0.3);
+  receive(kJoy, 0.4);
+  EXPECT_EQ(result(), 0.4);
+  EXPECT_EQ(mux_.winner(), "joy_vel");
+  EXPECT_THAT(mux_.states(), ElementsAre("joy_vel: commands", "key_vel: masked by joy_vel",
+                                         "cmd_vel: masked by joy_vel", "path_vel: masked by joy_vel"));
+}
+
+TEST_F(CommandMuxTest, WhenASourceTimesOutTheNextLiveOneTakesOver) {
+  receive(kKey, 0.3);
+  receive(kCmd, 0.2);
+  pass(kSecond / 2);
+  EXPECT_EQ(result(), 0.3);
+  pass(1);
+  EXPECT_EQ(result(), 0.2);
+  EXPECT_EQ(mux_.value().age_ns, kSecond / 2 + 1) << "it is as old as when it came";
+  EXPECT_THAT(mux_.states(),
+              ElementsAre("joy_vel: silent", "key_vel: silent", "cmd_vel: commands", "path_vel: silent"));
+}
+
+TEST_F(CommandMuxTest, WhereNoneIsLiveTheResultIsZeroAndNeverSilence) {
+  receive(kKey, 0.3);
+  pass(kSecond);
+  EXPECT_EQ(result(), 0);
+  EXPECT_EQ(mux_.winner(), "");
+  EXPECT_EQ(mux_.value().contested, 0u);
+  CommandWatch watch(1.25, 0.001);
+  watch.reset();
+  for (std::uint64_t cycle = 0; cycle < 5000; ++cycle) {
+    if (cycle % 20 == 0) pass(kSecond / 50);
+    watch.step(mux_.value(), cycle);
+    if (cycle > 20) {
+      ASSERT_EQ(watch.reasons(), 0u);
+    }
+  }
+  EXPECT_TRUE(watch.zero_requested());
+  EXPECT_EQ(watch.timeouts(), 0u);
+}
+
+TEST_F(CommandMuxTest, ALockMakesItZeroForSourcesOfALowerPriority) {
+  receive(kCmd, 0.2);
+  mux_.receive_lock(kPause, true, now_.loop_ns);
+  EXPECT_EQ(result(), 0);
+  EXPECT_EQ(mux_.states()[kCmd], "cmd_vel: locked by pause");
+  EXPECT_EQ(mux_.value().contested, 1u) << "the robot would move when the lock is taken away";
+  receive(kCmd, 0.2);
+  EXPECT_EQ(result(), 0);
+  mux_.receive_lock(kPause, false, now_.loop_ns);
+  EXPECT_EQ(result(), 0.2);
+}
+
+TEST_F(CommandMuxTest, ALockLetsAHigherOrEqualPriorityPass) {
+  CommandSourceList list = shipped();
+  list.locks = {{"no_programs", "no_programs", 0, 30}};
+  mux_ = CommandMux(list, false);
+  mux_.receive_lock(0, true, now_.loop_ns);
+  receive(kCmd, 0.2);
+  EXPECT_EQ(result(), 0);
+  receive(kKey, 0.3);
+  EXPECT_EQ(result(), 0.3);
+}
+
+TEST_F(CommandMuxTest, ALockWithATimeoutLocksWhileItIsSilent) {
+  CommandSourceList list = shipped();
+  list.locks = {{"watchdog", "watchdog", 1.0, 255}};
+  mux_ = CommandMux(list, false);
+  receive(kKey, 0.3);
+  EXPECT_EQ(result(), 0) << "it has never said anything";
+  mux_.receive_lock(0, false, now_.loop_ns);
+  EXPECT_EQ(result(), 0.3);
+  for (int i = 0; i < 6; ++i) {
+    pass(kSecond / 5);
+    receive(kKey, 0.3);
+  }
+  EXPECT_EQ(result(), 0);
+}
+
+TEST_F(CommandMuxTest, AZeroOfTheWinnerIsNotContestedByWhatItMasks) {
+  receive(kPath, 0.4);
+  receive(kKey, 0);
+  EXPECT_EQ(result(), 0);
+  EXPECT_EQ(mux_.value().contested, 0u);
+}
+
+TEST_F(CommandMuxTest, TwoNodesOnOneSourceContestAsWithoutAList) {
+  receive(kCmd, 0.2);
+  mux_.receive(kCmd, {.sender = "/other", .twist = {}, .stamp_ns = 0}, now_);
+  EXPECT_EQ(mux_.value().contested, 1u);
+}
+
+TEST_F(CommandMuxTest, ASourceAt5KilohertzMovesNothingThatItMayNot) {
+  receive(kKey, 0.3);
+  for (int i = 0; i < 2000; ++i) {  // 0.4 s
+    pass(kSecond / 5000);
+    receive(kCmd, 0.2);
+    ASSERT_EQ(result(), 0.3);
+  }
+}
+
+TEST_F(CommandMuxTest, NaNOfTheWinnerReachesTheControllerWhichRefusesIt) {
+  receive(kCmd, 0.2);
+  receive(kKey, std::numeric_limits<double>::quiet_NaN());
+  CommandWatch watch(1.25, 0.001);
+  watch.reset();
+  EXPECT_EQ(watch.step(mux_.value(), 0).linear[0], 0);
+  EXPECT_EQ(watch.refused(), 1u);
+}
+
+TEST_F(CommandMuxTest, NaNOfAMaskedSourceHasNoEffect) {
+  receive(kKey, 0.3);
+  receive(kCmd, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(result(), 0.3);
+}
+
+TEST_F(CommandMuxTest, AStampTooOldMakesNoSourceLive) {
+  mux_.receive(kKey, {.sender = "/late", .twist = {}, .stamp_ns = now_.ros_ns - kSecond}, now_);
+  EXPECT_EQ(mux_.winner(), "");
+  EXPECT_EQ(mux_.value().stale, 1u);
+  std::string said;
+  for (const ReportLine& line : mux_.lines()) said += line.text;
+  EXPECT_THAT(said, HasSubstr("key_vel: "));
+}
+
+TEST_F(CommandMuxTest, TimeThatTurnsBackLeavesNothingLive) {
+  receive(kKey, 0.3);
+  now_.loop_ns = kSecond;
+  mux_.look(now_.loop_ns);
+  EXPECT_EQ(result(), 0);
+}
+
+TEST_F(CommandMuxTest, EveryChangeOfTheCommanderIsOneLine) {
+  mux_.look(now_.loop_ns);
+  EXPECT_TRUE(mux_.lines().empty());
+  receive(kCmd, 0.2);
+  receive(kCmd, 0.2);
+  const auto lines = mux_.lines();
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].text, "commands come from cmd_vel");
+}
+
+}  // namespace
+}  // namespace robot_control

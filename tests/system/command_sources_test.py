@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+"""A list of command sources, on a running robot: priority, timeout, lock; teleop.py and drive_path.py find theirs."""
+
+import signal
+import time
+
+import roslib.packages
+import rospy
+import rostest
+from geometry_msgs.msg import TwistStamped
+from pseudo_terminal import PseudoTerminal
+from robot_control.msg import DriveState
+from sensor_msgs.msg import Joy
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+from system_support import Program, RobotTestCase, repository, wait_for
+
+
+class CommandSourcesTest(RobotTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        rospy.set_param("/diff_drive_controller/command_sources", str(repository() / "config" / "command_sources.yaml"))
+        cls.state = DriveState()
+        super().setUpClass()
+        cls.subscriber = rospy.Subscriber("drive_state", DriveState, cls.receive)
+        cls.key = rospy.Publisher("key_vel", TwistStamped, queue_size=1, tcp_nodelay=True)
+        cls.pause = rospy.Publisher("pause", Bool, queue_size=1, tcp_nodelay=True)
+
+    @classmethod
+    def receive(cls, message: DriveState) -> None:
+        cls.state = message
+
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.await_rest()
+        self.sent = 0.0
+
+    def send_key(self, linear: float) -> None:
+        if time.monotonic() - self.sent < 0.1:
+            return
+        self.sent = time.monotonic()
+        message = TwistStamped()
+        message.twist.linear.x = linear
+        self.key.publish(message)
+
+    def send_both(self) -> None:
+        self.robot.send(0.5, 0.0)
+        self.send_key(-0.3)
+
+    def commander(self, name: str) -> bool:
+        return bool(self.state.commander == name)
+
+    def await_motion(self, path: Program) -> None:
+        end = time.monotonic() + 30.0
+        while self.robot.speed < 0.2:
+            self.assertLess(time.monotonic(), end, f"{path.output}\n{self.state}")
+            time.sleep(0.02)
+
+    def test_a_higher_source_takes_over_and_gives_back_when_it_is_silent(self) -> None:
+        self.robot.drive_until("0.5 m/s by cmd_vel", self.robot.driving, angular=0.0)
+        self.assertEqual(self.state.commander, "cmd_vel")
+        wait_for("reverse by key_vel", lambda: self.robot.speed < -0.2, every=self.send_both)
+        self.assertIn("cmd_vel: masked by key_vel", self.state.sources)
+        wait_for("cmd_vel again", self.robot.driving, every=lambda: self.robot.send(0.5, 0.0))
+
+    def test_where_none_is_live_the_robot_stands_by_command(self) -> None:
+        self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)
+        wait_for("no commander", lambda: self.commander(""))
+        wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
+        self.assertNotIn("timed_out", self.state.reasons)
+
+    def test_a_lock_stops_it_and_its_end_lets_it_go_on(self) -> None:
+        self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)
+        self.pause.publish(Bool(True))
+        try:
+            wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=lambda: self.robot.send(0.5, 0.0))
+            self.assertIn("cmd_vel: locked by pause", self.state.sources)
+        finally:
+            self.pause.publish(Bool(False))
+        wait_for("0.5 m/s again", self.robot.driving, every=lambda: self.robot.send(0.5, 0.0))
+
+    def test_cmd_vel_stamped_is_no_source_of_this_list(self) -> None:
+        publisher = rospy.Publisher("cmd_vel_stamped", TwistStamped, queue_size=1)
+        time.sleep(1.0)
+        self.assertEqual(publisher.get_num_connections(), 0)
+
+    def test_teleop_commands_as_key_vel(self) -> None:
+        terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0]])
+        self.addCleanup(terminal.end)
+        wait_for("its screen", lambda: "It may move" in terminal.screen)
+        wait_for("key_vel", lambda: self.commander("key_vel"), every=lambda: terminal.type("w"))
+        wait_for(
+            "its topic on the screen", lambda: "sent on /key_vel" in terminal.screen, every=lambda: terminal.type("w")
+        )
+
+    def test_a_pad_on_joy_commands_while_it_is_held_and_its_silence_stops(self) -> None:
+        pad = Program("pad.py", "--joy", "_scale_linear:=0.3")
+        self.addCleanup(pad.end)
+        joy = rospy.Publisher("joy", Joy, queue_size=1)
+        wait_for("pad.py", lambda: joy.get_num_connections() > 0)
+        released, held = Joy(axes=[0, 1], buttons=[0] * 6), Joy(axes=[0, 1], buttons=[0, 0, 0, 0, 1, 0])
+        wait_for("its words", lambda: "hold button 4" in pad.output, every=lambda: joy.publish(released))
+        wait_for("0.3 m/s", lambda: self.robot.speed > 0.25, every=lambda: joy.publish(held))
+        self.assertTrue(self.commander("joy_vel"))
+        wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
+        wait_for("its words", lambda: "no pad answers" in pad.output)
+
+    def test_a_path_that_is_masked_pauses_until_resume_and_reaches_its_end(self) -> None:
+        path = Program("drive_path.py", "circle", "--size", "1")
+        self.addCleanup(path.end)
+        wait_for("path_vel", lambda: self.commander("path_vel"))
+        self.await_motion(path)
+        words = "paused: path_vel is masked by key_vel"
+        wait_for(words, lambda: words in path.output, every=lambda: self.send_key(0.0))
+        wait_for("silence of key_vel", lambda: self.commander("path_vel"))
+        wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
+        self.assertTrue(path.running)
+        self.assertTrue(rospy.ServiceProxy("/drive_path/resume", Trigger)().success)
+        self.assertEqual(path.wait(), 0, path.output)
+        self.assertIn("done; at most", path.output)
+
+    def test_a_stop_ends_a_path_with_its_reason(self) -> None:
+        path = Program("drive_path.py", "square")
+        self.addCleanup(path.end)
+        self.await_motion(path)
+        self.robot.call("e_stop_trigger")
+        self.assertEqual(path.wait(), 1)
+        self.assertIn("e_stop_trigger was called", path.output)
+        self.robot.release()
+
+    def test_ctrl_c_ends_a_path_with_zero(self) -> None:
+        path = Program("drive_path.py", "square")
+        self.addCleanup(path.end)
+        self.await_motion(path)
+        last: list[float] = []
+        subscriber = rospy.Subscriber("path_vel", TwistStamped, lambda message: last.append(message.twist.linear.x))
+        self.addCleanup(subscriber.unregister)
+        wait_for("its commands", lambda: len(last) > 3)
+        path.send_signal(signal.SIGINT)
+        self.assertEqual(path.wait(), 1)
+        self.assertEqual(last[-1], 0.0)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "command_sources", CommandSourcesTest)

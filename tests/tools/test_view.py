@@ -1,0 +1,90 @@
+"""What RViz shows, without RViz."""
+
+import math
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+import yaml
+from robot_control.view.scene import (
+    AMBER,
+    GREEN,
+    MOST_LINES,
+    MOST_POINTS,
+    RED,
+    WIDTH,
+    Trail,
+    force_arrows,
+    limits_of,
+    status_text,
+    wheels_of,
+)
+
+ROOT = Path(__file__).parents[2]
+URDF = (ROOT / "urdf/diffbot.urdf").read_text()
+
+
+def test_the_wheels_of_our_robot_are_found_where_they_are():
+    wheels = wheels_of(URDF)
+    assert set(wheels) == {"left_wheel_joint", "right_wheel_joint"}
+    assert wheels["left_wheel_joint"].position == (0.0, 0.25, 0.0)
+    assert wheels["left_wheel_joint"].radius == 0.1
+
+
+@pytest.mark.parametrize("text", ["", "<robot", "<robot/>", "<robot><joint name='a' type='continuous'/></robot>"])
+def test_a_description_without_wheels_shows_none(text):
+    assert wheels_of(text) == {}
+
+
+def test_an_arrow_is_as_long_as_its_force_and_points_where_it_pushes():
+    wheels = wheels_of(URDF)
+    arrows = force_arrows(wheels, ["left_wheel_joint", "right_wheel_joint", "other"], [1.0, -2.0, 3.0])
+    lengths = [end[0] - begin[0] for begin, end in arrows]
+    assert lengths == pytest.approx([0.2, -0.4])
+    assert force_arrows(wheels, ["left_wheel_joint"], [math.nan]) == []
+
+
+def test_a_healthy_robot_is_green_a_limited_one_amber_a_stopped_one_red():
+    assert status_text("DRIVE", [], [], [], math.inf).colour == GREEN
+    limited = status_text("DRIVE", [], [], ["a wheel is at its torque limit"], 0.3)
+    assert limited.colour == AMBER
+    assert limited.text == "DRIVE\nlimit: 0.30 m/s\nlimited: a wheel is at its torque limit"
+    stopped = status_text("STOPPED", ["the robot hit something"], ["hot"], ["the permit brakes"], math.inf)
+    assert stopped.colour == RED
+    assert stopped.text == "STOPPED\ncause: the robot hit something"
+    assert status_text("", [], [], [], math.inf).text == "no safety_status"
+
+
+def test_a_robot_of_which_nothing_is_asked_is_not_limited():
+    assert limits_of(["holding", "saturated", "timed_out"], ["it stands", "at its limit", "silent"]) == ["at its limit"]
+
+
+def test_a_text_stays_small():
+    text = status_text("STOPPED", ["words " * 50] * 9, [], [], math.inf).text
+    assert len(text.splitlines()) == MOST_LINES
+    assert max(map(len, text.splitlines())) <= WIDTH
+
+
+def test_the_path_driven_is_bounded_and_begins_again_after_a_jump():
+    trail = Trail()
+    assert trail.add(0.0, 0.0)
+    assert not trail.add(0.01, 0.0)
+    for number in range(3 * MOST_POINTS):
+        trail.add(0.06 * number, 0.0)
+    assert MOST_POINTS / 4 < len(trail.points) <= MOST_POINTS
+    trail.add(-500.0, 0.0)
+    assert trail.points == [(-500.0, 0.0, 0.0)]
+
+
+def test_every_part_of_our_robot_that_is_seen_has_a_material():
+    visuals = ET.fromstring(URDF).findall("link/visual")
+    assert visuals
+    assert all(visual.find("material") is not None for visual in visuals)
+
+
+def test_rviz_shows_topics_that_are_published():
+    displays = yaml.safe_load((ROOT / "config/view.rviz").read_text())["Visualization Manager"]["Displays"]
+    topics = {display.get("Topic") or display.get("Marker Topic") for display in displays} - {None}
+    sources = "\n".join(path.read_text() for path in [*ROOT.glob("scripts/**/*.py"), *ROOT.glob("src/bridge/**/*.cpp")])
+    assert topics == {"odom", "ground_truth/odom", "path_wanted", "view/path_driven", "view/markers"}
+    assert all(f'"{topic}"' in sources for topic in topics)
