@@ -118,6 +118,24 @@ TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
   }
 }
 
+// A large error, of a load that nothing plans, under small gains: its torque passes from them to the hand-over.
+TEST_F(Tune, OfGainsUnderALargeErrorLetsTrackingGoOn) {
+  given.pid_kp = 0.7;
+  given.pid_ki = 0.3;
+  ControlBench bench(make_test_robot(), given);
+  bench.plant.viscous_friction = 0.5;
+  bench.send(1.0, 0);
+  bench.run(0.6);
+  given.pid_kp = 3;
+  tune(bench, given);
+  double worst = 0;
+  for (int k = 0; k < 100; ++k) {
+    bench.step();
+    worst = std::max(worst, std::abs(bench.command.velocity_measured[0] - bench.plant.speed.left));
+  }
+  EXPECT_LT(worst, 0.3) << "rad/s of 5; taken for a planned torque, the hand-over makes 1.5 of them";
+}
+
 TEST_F(Tune, OfGainsInAStallLeavesTheIntegratorAlone) {
   constexpr double kLimit = 5, kError = 8;
   const WheelLoopGains before{.kp = 2, .ki = 0}, after{.kp = 1, .ki = 0};

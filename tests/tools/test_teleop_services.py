@@ -4,6 +4,7 @@ import time
 
 import pytest
 import rospy
+from robot_control.teleop import services as module
 from robot_control.teleop.services import Services
 from std_srvs.srv import TriggerResponse
 
@@ -59,3 +60,19 @@ def test_where_the_service_does_not_answer_the_topic_says_true_until_the_reset(r
     assert robot.levels == [True]
     services.reset()
     assert robot.levels == [True, False]
+    robot.answers = True
+    wait_for(lambda: len(robot.calls) == 2)  # the thread has ended its work before the next case
+
+
+def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, monkeypatch):
+    monkeypatch.setattr(module, "LATEST", 0.05)
+    robot.answers = False
+    services = Services()
+    services.e_stop()
+    services.reset()
+    time.sleep(0.1)
+    robot.answers = True
+    answers = []
+    wait_for(lambda: answers.extend(services.look()) or len(answers) == 2)
+    assert robot.calls == ["e_stop_trigger"]
+    assert not answers[1].accepted

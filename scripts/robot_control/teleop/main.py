@@ -14,6 +14,7 @@ from std_msgs.msg import Empty
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.drive.send_plan import positive
+from robot_control.teleop.backlog import Backlog
 from robot_control.teleop.dead_man import HoldParameters
 from robot_control.teleop.key_map import KEY_MAPS
 from robot_control.teleop.keyboard import Decoder, Event
@@ -33,8 +34,6 @@ HEARTBEAT_PERIOD = 0.1
 """s"""
 FRAME = 0.1
 """s between two screens"""
-LATE = 0.3
-"""s that this program did not run, after which what is read then may be old"""
 DRIVABLE = {"READY", "DRIVE"}
 
 
@@ -60,14 +59,14 @@ class Teleop:
 
     def run(self, signals: Signals) -> None:
         """Until Ctrl-C, a signal, or the end of the terminal (NoTerminalError)."""
-        last = time.monotonic()
-        self._operator.start(last)
+        begin = time.monotonic()
+        self._operator.start(begin)
+        backlog = Backlog(begin)
         while signals.going_on():
             data = self._terminal.read(LOOK)
             now = time.monotonic()
-            if self._take(data, now, late=now - last > LATE):
+            if self._take(data, now, late=backlog.late(data, now)):
                 return
-            last = now
             safety = self._listener.safety(now)
             fresh = safety is not None and safety.age < SILENCE
             self._operator.permit(safety.state in DRIVABLE if safety is not None and fresh else None, now)

@@ -13,6 +13,8 @@ from std_srvs.srv import Trigger
 
 PATIENCE = 0.3
 """s for the answer of e_stop_trigger; then `true` goes out on the topic e_stop as well"""
+LATEST = 5.0
+"""s after which a reset that could not be called yet, behind a service that does not answer, is dropped"""
 AGAIN = 0.5
 """s in which a repeated key is one request"""
 
@@ -32,7 +34,7 @@ class Services:
     def __init__(self) -> None:
         self._topic = rospy.Publisher("e_stop", Bool, queue_size=1, tcp_nodelay=True)
         self._topic_said_true = False
-        self._wanted: queue.Queue[str] = queue.Queue()
+        self._wanted: queue.Queue[tuple[str, float]] = queue.Queue()  # service, when it was asked for
         self._answers: queue.Queue[Answer] = queue.Queue()
         self._e_stop_at: float | None = None  # when it was asked for, until it is answered
         self._last_e_stop = float("-inf")
@@ -45,7 +47,7 @@ class Services:
             return
         self._last_e_stop = now
         self._e_stop_at = now
-        self._wanted.put("e_stop_trigger")
+        self._wanted.put(("e_stop_trigger", now))
 
     def reset(self) -> None:
         """Takes back the topic's level, if it was raised here."""
@@ -53,7 +55,7 @@ class Services:
             self._topic.publish(Bool(data=False))
             self._topic_said_true = False
         self._last_e_stop = float("-inf")  # the next one is another request
-        self._wanted.put("e_stop_reset")
+        self._wanted.put(("e_stop_reset", time.monotonic()))
 
     def look(self) -> list[Answer]:
         """The answers that have come."""
@@ -76,7 +78,10 @@ class Services:
 
     def _work(self) -> None:
         while True:
-            name = self._wanted.get()
+            name, asked = self._wanted.get()
+            if name == "e_stop_reset" and time.monotonic() - asked > LATEST:
+                self._answers.put(Answer(name, accepted=False, text="it could not be called in time; ask again"))
+                continue
             try:
                 response = rospy.ServiceProxy(name, Trigger)()
                 self._answers.put(Answer(name, accepted=bool(response.success), text=response.message))

@@ -16,7 +16,7 @@ WheelLoop::WheelLoop(const WheelLoopGains& gains, double bandwidth, double effor
 void WheelLoop::reset() noexcept {
   tracked_ = false;
   integral_ = 0;
-  hand_over_ = 0;
+  planned_hand_over_ = gain_hand_over_ = 0;
   load_ = 0;
   effort_residual_ = 0;
   last_gains_.reset();
@@ -28,7 +28,7 @@ void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, const FeedFo
   if (!last_gains_ && (gains.kp != gains_.kp || gains.kd != gains_.kd)) last_gains_ = gains_;
   gains_ = gains;
   integral_ = std::clamp(integral_ + decrease.steady, -effort_limit_, effort_limit_);
-  hand_over_ += decrease.inertial;
+  planned_hand_over_ += decrease.inertial;
   // The torques under way were planned with the old feed-forward: without this the tracking loop would see a residual.
   load_ += decrease.steady;
   for (WheelPlan& plan : plans_) plan.feed_forward -= decrease.steady;
@@ -51,7 +51,7 @@ void WheelLoop::measure(const JointSample& sample, double periods, bool driven) 
 
 void WheelLoop::reset_to_measured() noexcept {
   plans_.fill({.velocity = velocity()});
-  hand_over_ = 0;
+  planned_hand_over_ = gain_hand_over_ = 0;
   load_ = integral_;
   last_gains_.reset();
   saturated_ = false;
@@ -65,13 +65,15 @@ void WheelLoop::preload_integrator(double effort) noexcept {
 double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noexcept {
   const double error = plans_[1].velocity - velocity();
   const double kept = 1 - std::min(1.0, periods * period_ / kDecayTime);
-  hand_over_ *= kept;
+  planned_hand_over_ *= kept;
+  gain_hand_over_ *= kept;
+  const double planned = plan.feed_forward + planned_hand_over_;
   const auto direct_with = [&](const WheelLoopGains& gains) {
-    return plan.feed_forward + hand_over_ + gains.kp * error - gains.kd * tracking_.acceleration();
+    return planned + gain_hand_over_ + gains.kp * error - gains.kd * tracking_.acceleration();
   };
   if (last_gains_) {
     const double effort = std::clamp(direct_with(*last_gains_) + integral_, -effort_limit_, effort_limit_);
-    hand_over_ += effort - integral_ - direct_with(gains_);
+    gain_hand_over_ += effort - integral_ - direct_with(gains_);
     last_gains_.reset();
   }
   const double direct = direct_with(gains_);
@@ -86,7 +88,7 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
   saturated_ = effort != unclamped_effort_;
   plans_[1] = plans_[0];
   plans_[0] = plan;
-  plans_[0].feed_forward += hand_over_;
+  plans_[0].feed_forward = planned;
   return effort;
 }
 

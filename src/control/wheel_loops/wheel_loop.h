@@ -25,8 +25,9 @@
 /// jump, and nothing remains of it when the present ramp has ended. A difference of feed-forward at constant speed is a
 /// load that stays: the integrator takes it over. A difference of the part for the acceleration, and of the
 /// proportional and derivative parts between old and new gains, is `hand_over`, a torque that decays with 0.1 s: an
-/// integrator would keep it after the ramp, for 1/pace of the new gains. The residual of the tracking loop takes over
-/// the change of the known acceleration.
+/// integrator would keep it after the ramp, for 1/pace of the new gains. The first of them belongs to feed_forward(k)
+/// in the known acceleration, the second does not: no planned acceleration follows from it. The residual of the
+/// tracking loop takes over the change of the known acceleration.
 ///
 /// Gains for 12 kg, 1 kHz, 20 Hz, as wheel_loop_gains.h derives them for that robot (wheel inertia J: lifted 0.005,
 /// turning 0.045, straight 0.065 kg·m²; derivation and margins: docs/derivations.md):
@@ -112,7 +113,8 @@ class WheelLoop {
   TrackingLoop tracking_;
   std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
   double integral_ = 0;
-  double hand_over_ = 0;                      ///< N·m, header
+  double planned_hand_over_ = 0;              ///< N·m, of the feed-forward's part for the acceleration
+  double gain_hand_over_ = 0;                 ///< N·m, of the proportional and derivative parts
   double unclamped_effort_ = 0;               ///< N·m, the last effort before the clamp
   double load_ = 0;                           ///< N·m, integral at the last hand-over
   double effort_residual_ = 0;                ///< N·m, the last measured torque less the planned one
