@@ -54,6 +54,20 @@ TEST_F(MotionMessagesTest, JointStatesCarryTheWheelsTrackedVelocities) {
   EXPECT_THAT(joint_states(sensors_, &state_, robot_, stamp_).velocity, ElementsAre(4.5, 5.5, 4.60));
 }
 
+TEST_F(MotionMessagesTest, ABatteryThatGivesCurrentDischargesAndWhatIsNotMeasuredIsUnknown) {
+  sensors_.battery_voltage = 23.5;
+  sensors_.battery_current = 2;
+  const msg::BatteryState message = battery_state(sensors_, stamp_);
+  EXPECT_EQ(message.header.stamp, stamp_);
+  EXPECT_EQ(message.voltage, 23.5F);
+  EXPECT_EQ(message.current, -2.0F);
+  EXPECT_EQ(message.power_supply_status, msg::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING);
+  EXPECT_EQ(message.present, 1);
+  for (const float value : {message.temperature, message.charge, message.capacity, message.percentage}) {
+    EXPECT_TRUE(std::isnan(value));
+  }
+}
+
 TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {
   state_.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
   state_.twist_base = {.linear = {4, 5, 6}, .angular = {7, 8, 9}};

@@ -9,7 +9,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from robot_control.srv import InjectFault, SetOdometry, SetOdometryResponse
-from sensor_msgs.msg import Imu
+from sensor_msgs.msg import BatteryState, Imu
 from system_support import ESTIMATOR, LIMIT, PLANT, RobotTestCase, wait_for
 
 
@@ -32,6 +32,7 @@ def yaw_of(q) -> float:
 class OdometryTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
+        rospy.set_param(f"/{PLANT}/battery_voltage", 24.0)
         super().setUpClass()
         cls.wheels: Odometry | None = None
         cls.imu: Imu | None = None
@@ -77,6 +78,11 @@ class OdometryTest(RobotTestCase):
         pose = self.robot.odom.pose.pose
         near = math.hypot(pose.position.x - x, pose.position.y - y) < 0.001
         return near and abs(math.remainder(yaw_of(pose.orientation) - yaw, 2 * math.pi)) < 0.001
+
+    def test_the_battery_is_published_as_measured(self) -> None:
+        message = rospy.wait_for_message("battery_state", BatteryState, LIMIT)
+        self.assertAlmostEqual(message.voltage, 24.0, delta=2.0)
+        self.assertTrue(math.isnan(message.percentage))
 
     def test_the_pose_is_what_it_is_told_to_be(self) -> None:
         answer = self.set_odometry(1.5, -2.5, 0.5 + 4 * math.pi)

@@ -5,8 +5,8 @@
 /// MessageAllocator has it; names, checksums and bytes on the wire are templates over the allocator and stay.
 ///
 /// It also bounds what a received message allocates: roscpp resizes an array to the length that the sender wrote, up to
-/// 2³² elements, before it looks whether the message is as long. Beyond kLargestArray bytes it throws std::length_error,
-/// which roscpp catches: the message or request is rejected.
+/// 2³² elements, before it looks whether the message is as long. Beyond kLargestArray bytes it throws
+/// std::length_error, which roscpp catches: the message or request is rejected.
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/TransformStamped.h>
@@ -16,6 +16,7 @@
 #include <robot_control/SafetyStatus.h>
 #include <ros/service_traits.h>
 #include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/BatteryState.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/Bool.h>
@@ -57,6 +58,7 @@ struct MessageAllocator<void>::rebind<char> {
 namespace msg {
 
 using Allocator = MessageAllocator<void>;
+using BatteryState = sensor_msgs::BatteryState_<Allocator>;
 using Bool = std_msgs::Bool_<Allocator>;
 using Clock = rosgraph_msgs::Clock_<Allocator>;
 using DiagnosticArray = diagnostic_msgs::DiagnosticArray_<Allocator>;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "signals/names.h"
 
@@ -176,6 +177,19 @@ msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& pla
     message.error.push_back(wanted - actual);
     message.effort.push_back(command.joints[wheel.joint].effort);
   }
+  return message;
+}
+
+msg::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp) {
+  constexpr float kUnmeasured = std::numeric_limits<float>::quiet_NaN();
+  msg::BatteryState message;
+  message.header.stamp = stamp;
+  message.voltage = static_cast<float>(sensors.battery_voltage);
+  message.current = static_cast<float>(-sensors.battery_current);
+  message.temperature = message.charge = message.capacity = message.design_capacity = message.percentage = kUnmeasured;
+  message.power_supply_status = sensors.battery_current > 0 ? msg::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING
+                                                            : msg::BatteryState::POWER_SUPPLY_STATUS_UNKNOWN;
+  message.present = 1;
   return message;
 }
 

@@ -54,6 +54,9 @@ msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const Rob
 /// state is valid.
 bool has_imu_data(const SensorFrame& sensors, const StateFrame& state);
 
+/// Voltage and current as measured, the current negative when discharging; what no driver reports is NaN or unknown.
+msg::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp);
+
 /// Velocity targets of the wheels [rad/s] in the order of RobotModel::wheels; dim[0].label is "wheel".
 msg::Float64MultiArray joint_commands(const CommandFrame& command, const RobotModel& robot);
 

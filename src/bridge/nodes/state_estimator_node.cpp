@@ -38,6 +38,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     odom_ = handle.advertise<msg::Odometry>("odom", 10);
     wheel_odom_ = handle.advertise<msg::Odometry>("wheel_odom", 10);
     imu_ = handle.advertise<msg::Imu>("imu/data", 10);
+    battery_ = handle.advertise<msg::BatteryState>("battery_state", 1);
     // Relative, so that the frames of a second robot in a namespace do not mix with the first one's.
     if (report().publish_tf) tf_ = handle.advertise<msg::TFMessage>("tf", 100);
     reset_ = handle.advertiseService("reset_odometry", &StateEstimatorNode::reset_odometry, this);
@@ -55,6 +56,10 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     if (joint_pace_.due(sensors_.head.run, sensors_.head.stamp_ns)) {
       const StateFrame* const state = estimated ? &state_ : nullptr;
       joint_states_.publish(joint_states(sensors_, state, robot(), time().at(sensors_.head.stamp_ns)));
+    }
+    const bool battery_due = battery_pace_.due(sensors_.head.run, sensors_.head.stamp_ns);
+    if (battery_due && (sensors_.valid & kValidBattery) != 0) {
+      battery_.publish(battery_state(sensors_, time().at(sensors_.head.stamp_ns)));
     }
     if (!estimated) return;
     slip_lately_ |= state_.slip;
@@ -125,12 +130,14 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
   ros::Publisher odom_;
   ros::Publisher wheel_odom_;
   ros::Publisher imu_;
+  ros::Publisher battery_;
   ros::Publisher tf_;
   ros::ServiceServer reset_;
   ros::ServiceServer set_;
   Pacer joint_pace_;
   Pacer odom_pace_;
   Pacer imu_pace_;
+  Pacer battery_pace_{1};  ///< Hz
   SensorFrame sensors_;
   StateFrame state_;
   std::uint64_t slip_lately_ = 0;
