@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """A list of command sources, on a running robot: priority, timeout, lock; teleop.py and drive_path.py find theirs."""
 
+import math
 import signal
 import time
 
 import roslib.packages
 import rospy
 import rostest
-from geometry_msgs.msg import TwistStamped
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from nav_msgs.msg import Path as PathMessage
 from pseudo_terminal import PseudoTerminal
 from robot_control.msg import DriveState
 from sensor_msgs.msg import Joy
@@ -118,6 +120,26 @@ class CommandSourcesTest(RobotTestCase):
         self.assertTrue(rospy.ServiceProxy("/drive_path/resume", Trigger)().success)
         self.assertEqual(path.wait(), 0, path.output)
         self.assertIn("done; at most", path.output)
+
+    def test_a_path_message_is_driven_and_one_of_another_frame_is_refused(self) -> None:
+        plan = rospy.Publisher("plan", PathMessage, queue_size=1, latch=True)
+        for frame, code in (("map", 1), ("odom", 0)):
+            message = PathMessage()
+            message.header.frame_id = frame
+            x, y, yaw = self.pose()
+            for ahead in (0.0, 0.2, 0.4):
+                pose = PoseStamped()
+                pose.pose.position.x, pose.pose.position.y = x + ahead * math.cos(yaw), y + ahead * math.sin(yaw)
+                message.poses.append(pose)
+            plan.publish(message)
+            path = Program("drive_path.py", "--topic", "plan")
+            self.addCleanup(path.end)
+            self.assertEqual(path.wait(), code, path.output)
+            self.assertIn("done; at most" if code == 0 else "only 'odom' is known", path.output)
+
+    def pose(self) -> tuple[float, float, float]:
+        pose = self.robot.odom.pose.pose
+        return pose.position.x, pose.position.y, 2 * math.atan2(pose.orientation.z, pose.orientation.w)
 
     def test_a_stop_ends_a_path_with_its_reason(self) -> None:
         path = Program("drive_path.py", "square")

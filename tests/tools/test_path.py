@@ -6,7 +6,7 @@ import pytest
 from robot_control.path.follower import Follower, FollowParameters, Motion, Pose, State
 from robot_control.path.pieces import route, turned
 from robot_control.path.shapes import SHAPES
-from robot_control.path.waypoints import PathError, Waypoint, checked, placed, read_csv
+from robot_control.path.waypoints import PathError, Waypoint, checked, from_poses, placed, read_csv
 
 STRAIGHT = [Waypoint(0.0, 0.0), Waypoint(4.0, 0.0)]
 PERIOD = 0.02  # s
@@ -96,6 +96,27 @@ def test_a_csv_file_that_is_none_is_refused_with_its_line(tmp_path, text, words)
     with pytest.raises(PathError) as error:
         list(map(vars, read_csv(path)))
     assert words in str(error.value)
+
+
+NO_ORIENTATION, LEFT = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, math.sin(math.pi / 4), math.cos(math.pi / 4))
+
+
+def test_a_path_message_without_orientations_is_driven_along_itself():
+    points = from_poses("odom", "odom", [(0.0, 0.0, NO_ORIENTATION), (1.0, 0.0, LEFT)])
+    assert points == [Waypoint(0.0, 0.0), Waypoint(1.0, 0.0, yaw=pytest.approx(math.pi / 2))]
+    thrice = from_poses("/odom", "odom", [(0.0, 0.0, tuple(3 * part for part in LEFT))])
+    assert thrice[0].yaw == pytest.approx(math.pi / 2)
+
+
+def test_a_path_in_an_unknown_frame_is_refused():
+    with pytest.raises(PathError) as error:
+        from_poses("map", "odom", [])
+    assert str(error.value) == "the path lies in the frame 'map'; only 'odom' is known: publish it in that frame"
+
+
+def test_an_orientation_that_is_not_finite_is_refused():
+    points = from_poses("odom", "odom", [(0.0, 0.0, (math.nan,) * 4), (1.0, 0.0, NO_ORIENTATION)])
+    assert "not finite" in refusal(points)
 
 
 @pytest.mark.parametrize("name", SHAPES)

@@ -22,7 +22,7 @@ from robot_control.msg import DriveState, SafetyStatus
 from robot_control.path.follower import Follower, FollowParameters, Motion, Pose, State
 from robot_control.path.pieces import route
 from robot_control.path.shapes import SHAPES
-from robot_control.path.waypoints import PathError, Waypoint, placed, read_csv
+from robot_control.path.waypoints import PathError, Waypoint, from_poses, placed, read_csv
 
 SOURCE = "path_vel"
 SILENCE = 0.5
@@ -170,17 +170,39 @@ def await_robot(robot: Robot, topic: CommandTopic, signals: Signals) -> str:
     return f"{SOURCE} is {robot.masked_by}" if robot.masked_by else "diff_drive_controller does not take commands"
 
 
-def drive(points: list[Waypoint], given: argparse.Namespace, signals: Signals) -> str:
-    """The reason why the path was not driven to its end; empty: it was."""
+def received(name: str, frame: str) -> list[Waypoint]:
+    """The next message on that topic, or its last one if it is latched. Raises PathError."""
+    try:
+        message = rospy.wait_for_message(name, Path, PATIENCE)
+    except rospy.ROSException:
+        raise PathError(f"nothing came on {rospy.resolve_name(name)} within {PATIENCE:g} s") from None
+    poses = [
+        (pose.position.x, pose.position.y, (q.x, q.y, q.z, q.w))
+        for pose in (stamped.pose for stamped in message.poses)
+        for q in [pose.orientation]
+    ]
+    return from_poses(message.header.frame_id, frame, poses)
+
+
+def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Signals) -> str:
+    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's.
+
+    Raises:
+        PathError: the topic brings none.
+    """
     robot, topic = Robot(), CommandTopic(SOURCE)
     wrong = await_robot(robot, topic, signals)
     if wrong or robot.odometry is None:
         return wrong or "interrupted"
     start = pose_of(robot.odometry)
-    here = points if given.in_odom else placed(points, start.x, start.y, start.yaw)
+    if points is None:
+        here = received(given.topic, robot.odometry.header.frame_id)
+    else:
+        here = points if given.in_odom else placed(points, start.x, start.y, start.yaw)
+    planned = route(here)
     wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
     wanted.publish(message_of(here, robot.odometry.header.frame_id))
-    follower = Follower(route(here), FollowParameters(speed=given.speed))
+    follower = Follower(planned, FollowParameters(speed=given.speed))
     run = Drive(robot, topic, follower)
     run.run(signals)
     rospy.loginfo(run.describe())
@@ -198,8 +220,10 @@ def arguments(given: list[str]) -> argparse.Namespace:
         "has a list of command sources, else to cmd_vel_stamped. Services: drive_path/pause, drive_path/resume.",
         epilog="Exit code 0: the end of the path was reached; else 1, with the reason.",
     )
-    parser.add_argument(
-        "path", help=f"{', '.join(SHAPES)}, or a CSV file with the header x,y[,yaw[,speed]] (m, rad, m/s)"
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--topic", help="a topic with a nav_msgs/Path in the frame odom, for instance a planner's")
+    which.add_argument(
+        "path", nargs="?", help=f"{', '.join(SHAPES)}, or a CSV file with the header x,y[,yaw[,speed]] (m, rad, m/s)"
     )
     parser.add_argument("--size", type=positive, default=2.0, help="m, side or width of a shape (default %(default)s)")
     parser.add_argument("--speed", type=positive, default=FollowParameters.speed, help="m/s (default %(default)s)")
@@ -209,12 +233,18 @@ def arguments(given: list[str]) -> argparse.Namespace:
     return parser.parse_args(given)
 
 
+def points_of(path: str, size: float) -> list[Waypoint]:
+    """Of a shape, or of a file. Raises PathError, OSError."""
+    points = SHAPES[path](size) if path in SHAPES else read_csv(FilePath(path))
+    route(points)
+    return points
+
+
 def main() -> None:
     """Entry point of scripts/drive_path.py."""
     given = arguments(rospy.myargv(sys.argv)[1:])
     try:
-        points = SHAPES[given.path](given.size) if given.path in SHAPES else read_csv(FilePath(given.path))
-        route(points)
+        points = None if given.path is None else points_of(given.path, given.size)
     except (PathError, OSError) as error:
         sys.exit(f"drive_path.py: {error}")
     if not rosgraph.is_master_online():
@@ -223,7 +253,10 @@ def main() -> None:
             "roslaunch robot_control sim.launch"
         )
     rospy.init_node("drive_path")
-    with ended_by_signals() as signals:
-        reason = drive(points, given, signals)
+    try:
+        with ended_by_signals() as signals:
+            reason = drive(points, given, signals)
+    except PathError as error:
+        sys.exit(f"drive_path.py: {error}")
     if reason:
         sys.exit(f"drive_path.py: {reason}")

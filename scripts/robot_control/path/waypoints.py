@@ -64,6 +64,29 @@ def _refuse_jumps(points: list[Waypoint]) -> None:
             )
 
 
+Quaternion = tuple[float, float, float, float]
+
+
+def from_poses(frame: str, known: str, poses: Sequence[tuple[float, float, Quaternion]]) -> list[Waypoint]:
+    """The points of a nav_msgs/Path: x, y [m] and the orientation x, y, z, w of each, in `frame`.
+
+    An orientation of four zeros is none: along the path.
+
+    Raises:
+        PathError: the path lies in another frame than the `known` one.
+    """
+    if frame.lstrip("/") != known:
+        raise PathError(f"the path lies in the frame {frame!r}; only {known!r} is known: publish it in that frame")
+    return [Waypoint(x, y, _yaw(orientation)) for x, y, orientation in poses]
+
+
+def _yaw(orientation: Quaternion) -> float | None:
+    x, y, z, w = orientation
+    if not any(orientation):
+        return None
+    return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
 def placed(points: Sequence[Waypoint], x: float, y: float, yaw: float) -> list[Waypoint]:
     """The same path, its origin at this pose."""
     cosine, sine = math.cos(yaw), math.sin(yaw)
