@@ -5,7 +5,7 @@ import time
 import pytest
 import rospy
 from robot_control.teleop import services as module
-from robot_control.teleop.services import Services
+from robot_control.teleop.services import Answer, Services
 from std_srvs.srv import TriggerResponse
 
 
@@ -14,7 +14,7 @@ class Robot:
 
     def __init__(self):
         self.calls, self.levels = [], []
-        self.answers = True
+        self.answers, self.refuses = True, False
 
     def publish(self, message):
         self.levels.append(message.data)
@@ -23,6 +23,8 @@ class Robot:
         self.calls.append(name)
         while not self.answers:
             time.sleep(0.01)
+        if self.refuses:
+            raise rospy.ServiceException("no master")
         return TriggerResponse(success=True)
 
 
@@ -56,12 +58,24 @@ def test_where_the_service_does_not_answer_the_topic_says_true_until_the_reset(r
     robot.answers = False
     services = Services()
     services.e_stop()
-    wait_for(lambda: services.look() or robot.levels)
+    answers = []
+    wait_for(lambda: answers.extend(services.look()) or answers)
+    assert answers == [Answer("e_stop_trigger", None, "e_stop_trigger does not answer")]
     assert robot.levels == [True]
     services.reset()
     assert robot.levels == [True, False]
     robot.answers = True
     wait_for(lambda: len(robot.calls) == 2)  # the thread has ended its work before the next case
+
+
+def test_an_e_stop_that_the_service_could_not_take_is_sent_on_the_topic_and_not_called_refused(robot):
+    robot.refuses = True
+    services = Services()
+    services.e_stop()
+    answers = []
+    wait_for(lambda: answers.extend(services.look()) or answers)
+    assert answers == [Answer("e_stop_trigger", None, "no master")]
+    assert robot.levels == [True]
 
 
 def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, monkeypatch):

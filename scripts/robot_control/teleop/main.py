@@ -35,6 +35,7 @@ HEARTBEAT_PERIOD = 0.1
 FRAME = 0.1
 """s between two screens"""
 DRIVABLE = {"READY", "DRIVE"}
+VERDICTS = {True: "accepted", False: "REFUSED", None: "sent on the topic e_stop"}
 
 
 class Teleop:
@@ -107,7 +108,7 @@ class Teleop:
     def _take_answers(self) -> None:
         for answer in self._services.look():
             what = "reset" if answer.service == "e_stop_reset" else "emergency stop"
-            self._answer = f"{what} {'accepted' if answer.accepted else 'REFUSED'}: {answer.text}"
+            self._answer = f"{what} {VERDICTS[answer.accepted]}: {answer.text}"
             if what == "reset" and answer.accepted:
                 self._operator.reset_accepted()
 

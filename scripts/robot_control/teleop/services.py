@@ -24,12 +24,12 @@ class Answer:
     """Of a service."""
 
     service: str
-    accepted: bool
+    accepted: bool | None  # None: there was none in time, or no service; the e-stop went out on the topic instead
     text: str
 
 
 class Services:
-    """Main thread alone, but for the worker inside."""
+    """Used by one thread; a second one, inside, makes the calls."""
 
     def __init__(self) -> None:
         self._topic = rospy.Publisher("e_stop", Bool, queue_size=1, tcp_nodelay=True)
@@ -41,7 +41,7 @@ class Services:
         threading.Thread(target=self._work, daemon=True).start()
 
     def e_stop(self) -> None:
-        """By the service, which leaves no level behind that a reset would have to take back."""
+        """Calls the service: unlike the topic it leaves no level that a reset has to take back."""
         now = time.monotonic()
         if now - self._last_e_stop < AGAIN:
             return
@@ -62,19 +62,19 @@ class Services:
         answers = []
         while not self._answers.empty():
             answer = self._answers.get()
-            answers.append(answer)
-            if answer.service == "e_stop_trigger" and answer.accepted:
+            if answer.service == "e_stop_trigger":
                 self._e_stop_at = None
-            elif answer.service == "e_stop_trigger":
-                self._say_on_topic()
+                answer = answer if answer.accepted else self._e_stop_on_topic(answer.text)
+            answers.append(answer)
         if self._e_stop_at is not None and time.monotonic() - self._e_stop_at > PATIENCE:
-            self._say_on_topic()
+            answers.append(self._e_stop_on_topic("e_stop_trigger does not answer"))
         return answers
 
-    def _say_on_topic(self) -> None:
+    def _e_stop_on_topic(self, reason: str) -> Answer:
         self._e_stop_at = None
         self._topic_said_true = True
         self._topic.publish(Bool(data=True))
+        return Answer("e_stop_trigger", accepted=None, text=reason)
 
     def _work(self) -> None:
         while True:
