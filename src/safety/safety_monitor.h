@@ -15,7 +15,7 @@
 ///
 /// States: INIT until sensors, state and command of this run were each received once and motion is released
 /// (motion_release.h). READY and DRIVE permit motion until a node is restarted or a cause latches a stop
-/// (stop_category.h, SafetyParameters). The permit of cycle k expires after cycle k + kPermitLife, so a monitor that
+/// (fixed_reactions.h, SafetyParameters). The permit of cycle k expires after cycle k + kPermitLife, so a monitor that
 /// makes no progress permits no motion.
 ///
 /// Driver lost: latched when no current sensor frame arrives (wall clock), and when a frame carries another

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
@@ -211,7 +211,7 @@ TEST(CauseNames, RemediesDoNotSpeakOfTheReset) {
 // The rows are all that can be set: whatever is not fixed is in the table.
 TEST(ConditionTable, HasEveryCauseThatIsNotFixed) {
   std::uint64_t all = kAllCauses;
-  for (const StopRule& rule : kStopRules) all &= ~std::uint64_t{rule.cause};
+  for (const FixedCause& rule : kFixedCauses) all &= ~std::uint64_t{rule.cause};
   for (const Row& row : rows()) all &= ~std::uint64_t{row.cause};
   EXPECT_EQ(all, 0u) << names_of(kStopCauseNames, all);
 }

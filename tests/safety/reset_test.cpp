@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
@@ -199,7 +199,7 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
       }
       ASSERT_EQ(permit_.active & ~permit_.causes, 0u) << "seed " << seed << " step " << i;
       if (permit_.action == PermitAction::kRamp) {
-        ASSERT_EQ(permit_.causes & ~causes_of(StopCategory::kRamp), 0u) << "seed " << seed << " step " << i;
+        ASSERT_EQ(permit_.causes & ~causes_of(FixedReaction::kRamp), 0u) << "seed " << seed << " step " << i;
         ASSERT_LT(cycle(), permit_.ramp_until) << "seed " << seed << " step " << i;
       }
       ASSERT_EQ(permit_.expiry, cycle() + kPermitLife);
