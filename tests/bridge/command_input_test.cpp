@@ -66,7 +66,7 @@ TEST_F(CommandInputTest, AStampTooOldOrOfTheFutureIsRefusedAndTheCommandBeforeSt
   EXPECT_EQ(value().twist.linear[0], 0.5);
 }
 
-TEST_F(CommandInputTest, AClockThatIsAnHourOffIsToldOnce) {
+TEST_F(CommandInputTest, AClockThatIsAnHourOffIsReportedOnce) {
   for (int i = 0; i < 36'000; ++i) {
     receive_stamped("/teleop", 0.5, kHour);
     pass(kSecond / 10);
@@ -83,7 +83,7 @@ TEST_F(CommandInputTest, AClockThatIsAnHourOffIsToldOnce) {
   EXPECT_THAT(told(), HasSubstr("/ahead is stamped 3600 s in the future, more than clocks may differ (0.1 s)"));
 }
 
-TEST_F(CommandInputTest, AClockThatFlickersIsToldEveryTenSecondsAtMost) {
+TEST_F(CommandInputTest, AClockThatFlickersIsReportedEveryTenSecondsAtMost) {
   std::size_t lines = 0;
   for (int i = 0; i < 300; ++i) {  // 60 s
     receive_stamped("/teleop", 0.5, i % 2 == 0 ? kHour : 0);
@@ -187,7 +187,7 @@ TEST_F(CommandInputTest, TakingTurnsSlowerThanTheTimeoutIsNoCrowd) {
   EXPECT_EQ(told(), "");
 }
 
-TEST_F(CommandInputTest, WhoseStampsAreRefusedIsNoSender) {
+TEST_F(CommandInputTest, ANodeWhoseStampsAreRefusedIsNoSender) {
   input_ = CommandInput(1.25, true);
   receive("/teleop", 0.5);
   receive_stamped("/late", 0.5, kHour);
@@ -229,7 +229,7 @@ TEST_F(CommandInputTest, ANewcomerToACrowdIsNamed) {
   EXPECT_EQ(told(), "");
 }
 
-TEST_F(CommandInputTest, AFlickeringCrowdIsToldEveryTenSecondsAtMost) {
+TEST_F(CommandInputTest, FlickeringSendersAreReportedEveryTenSecondsAtMost) {
   std::size_t warnings = 0;
   for (int i = 0; i < 30; ++i) {  // 60 s: /b sends every 2 s, and is a sender for 1.25 of them
     receive("/b", 0.5);

@@ -48,7 +48,7 @@ TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {
   EXPECT_EQ(look(), kReasonRefused);
 }
 
-TEST_F(ReasonHistoryTest, BeginsAnewWithARun) {
+TEST_F(ReasonHistoryTest, RestartsWithARun) {
   publish(0);
   look();
   publish(kReasonRefused);

@@ -78,7 +78,7 @@ def test_follows_its_profile_with_a_coarse_encoder_and_a_slower_tracking_loop(co
     assert figures.overshoot < 0.04
 
 
-def test_bears_motors_with_friction_and_gears_that_nobody_told_it():
+def test_bears_motors_with_friction_and_gears_that_are_not_described():
     motor = {"motor_friction": 0.005, "motor_damping": 5e-5, "gear_ratio": 20, "rotor_inertia": 2e-5}
     figures = expect_straight({"mujoco_plant": motor})
     assert figures.overshoot < 0.01

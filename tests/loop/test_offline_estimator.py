@@ -313,7 +313,7 @@ def test_wheels_alone_make_a_path(log, samples):
 
 
 @pytest.mark.parametrize("accelerometer", [True, False])
-def test_without_a_gyro_nobody_can_know_the_wheels_and_the_yaw_says_so(log, samples, accelerometer):
+def test_without_a_gyro_the_wheels_are_not_calibrated_and_the_yaw_is_less_certain(log, samples, accelerometer):
     time, left, right, _, accel = samples
     out = Estimator().process(time, left, right * 1.01, accel=accel if accelerometer else None)
     assert out["radius_ratio"][-1] == pytest.approx(1, abs=1e-3)

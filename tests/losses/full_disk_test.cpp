@@ -47,7 +47,7 @@ class AFullDisk : public Losses {
   std::filesystem::path folder_;
 };
 
-TEST_F(AFullDisk, HarmsNothingAndItsLossesAreToldAndCounted) {
+TEST_F(AFullDisk, HarmsNothingAndItsLossesAreReportedAndCounted) {
   if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
     GTEST_SKIP() << "mounting is not granted";
   }

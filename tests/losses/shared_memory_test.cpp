@@ -120,7 +120,7 @@ TEST_P(AWoundedChannel, CutOffEndsThoseAloneWhoMapItAndTheRobotBrakes) {
   expect_undisturbed();
 }
 
-TEST_P(AWoundedChannel, OverwrittenIsNotBelieved) {
+TEST_P(AWoundedChannel, OverwrittenIsNotTrusted) {
   const std::uint64_t before = robot_.cycle();
   log().forget();
   robot_.keep_mappings();

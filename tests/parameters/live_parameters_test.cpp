@@ -145,7 +145,7 @@ TEST_F(LiveParameters, QuotesWhatWasSentUpToAWholeCharacter) {
   EXPECT_THAT(problem(start + "éx"), HasSubstr("request = " + start + "…: "));
 }
 
-TEST_F(LiveParameters, TellsEveryReasonAtOnce) {
+TEST_F(LiveParameters, ReportsEveryReasonAtOnce) {
   const LiveChange change =
       read("{max_linear_speed: 0, pid_kp: .nan, command_rate: 1, cmd_vel_timeout: 0.001, typo: 1}");
   EXPECT_EQ(change.problems.size(), 5u) << ::testing::PrintToString(change.problems);

@@ -495,7 +495,7 @@ TEST_F(ReadParameters, TakesEverySpellingOfANumber) {
   }
 }
 
-TEST_F(ReadParameters, EscapesWhatATerminalWouldObey) {
+TEST_F(ReadParameters, EscapesWhatATerminalWouldInterpret) {
   file.set("rate", "  rate: \"\\e[31m\"");
   EXPECT_THAT(file.refusal(), HasSubstr("\\x1b[31m"));
   EXPECT_THAT(file.refusal(), Not(HasSubstr("\x1b")));

@@ -94,7 +94,7 @@ TEST(UrdfTraps, AWheelThatTurnsOnlySoFarIsNone) {
               HasSubstr("left: it turns only from -1 to 1 rad"));
 }
 
-TEST(UrdfTraps, AMimicOfNobodyIsIgnored) {
+TEST(UrdfTraps, AMimicOfNoJointIsIgnored) {
   const std::string follower =
       link("f", inertial("1")) +
       joint({.name = "follower", .child = "f", .axis = "<axis xyz=\"0 0 1\"/>", .rest = "<mimic joint=\"nobody\"/>"});

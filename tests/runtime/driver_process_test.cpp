@@ -59,7 +59,7 @@ class DriverProcessTest : public testing::Test {
   std::unique_ptr<DriverProcess> process_;
 };
 
-TEST_F(DriverProcessTest, ItsServicesNameWhomTheLoopWaitsFor) {
+TEST_F(DriverProcessTest, ItsServicesNameTheNodesThatTheLoopWaitsFor) {
   parameters_.loop.wait_for_nodes = true;
   DriverProcess& process = opened();
   EXPECT_EQ(process.services()->set_pause(false).message, "running") << "nobody has looked yet";

@@ -52,7 +52,7 @@ TEST(LoopHold, AnswersWithTheAskingUnderWhichItStands) {
   EXPECT_FALSE(hold.stands(hold.ask({.paused = 1, .step_until = 5})));
 }
 
-TEST(LoopHold, AwaitsNobodyWhereNoLoopRuns) {
+TEST(LoopHold, AwaitsNothingWhereNoLoopRuns) {
   LoopHold hold;
   EXPECT_FALSE(hold.await_stand(hold.ask({.paused = 1}), kPatience));
 }
@@ -67,7 +67,7 @@ TEST(LoopHold, HandsTheFaultsOver) {
 }
 
 /// The parked loop's thread leaves `guarded` alone, although its wait is over again and again.
-TEST(LoopHold, WhoeverParksTheLoopHasTheMachineForItself) {
+TEST(LoopHold, AParkedLoopLeavesTheMachineToItsHolder) {
   LoopHold hold;
   std::atomic<bool> stopping{false};
   std::uint64_t guarded = 0;  // not atomic: a race is the thread sanitizer's to find

@@ -58,7 +58,7 @@ TEST_F(PausedLoop, ShowsNothingBeforeTheFirstCycle) {
   EXPECT_EQ(loop.sensors.reader.sequence(), before);
 }
 
-TEST_F(PausedLoop, IsIgnoredByEverybody) {
+TEST_F(PausedLoop, IsIgnoredByEveryNode) {
   const StateFrame state = loop.newest_state();
   const CommandFrame command = loop.newest_command();
   const Permit permit = loop.newest_permit();

@@ -88,7 +88,7 @@ TEST_F(CausesTest, ControllerIsLostInTheTwentiethCycleWithoutACommand) {
   expect_stop(SupervisorState::kStopped, kCauseControllerLost);
 }
 
-TEST_F(CausesTest, ACommandInTimeBeginsTheCountAnew) {
+TEST_F(CausesTest, ACommandInTimeRestartsTheCount) {
   for (int i = 0; i < 5; ++i) {
     ++input_.operator_input.heartbeats;
     input_.command = nullptr;
@@ -251,7 +251,7 @@ TEST_F(HeartbeatTest, ASevererCauseEndsTheRampAtOnce) {
   EXPECT_EQ(permit_.causes, kCauseHeartbeatLost | kCauseEmergencyStopService);
 }
 
-TEST_F(HeartbeatTest, AFaultEndsTheRampForRepair) {
+TEST_F(HeartbeatTest, AFaultEndsTheRampInFault) {
   steps(kHeartbeat + 1);
   sensors_.faults = kFaultLink;
   step();

@@ -145,7 +145,7 @@ class Conditions : public MonitorTest, public testing::WithParamInterface<std::t
   std::uint64_t persistence_;
 };
 
-TEST_P(Conditions, ReactAsTheyAreToldInTheirCycle) {
+TEST_P(Conditions, ReactAsConfiguredInTheirCycle) {
   ASSERT_EQ(permit_.action, PermitAction::kDrive);
   ASSERT_EQ(permit_.causes | permit_.warnings, 0u);
   const std::uint64_t patience = latest() + 200;

@@ -46,7 +46,7 @@ TEST_F(MachineConditionsTest, OverrunsOfBeforeTheFirstLookDoNotCount) {
   EXPECT_TRUE(overruns(1051, 200));
 }
 
-TEST_F(MachineConditionsTest, ANewRunCountsAnew) {
+TEST_F(MachineConditionsTest, ANewRunRestartsTheCount) {
   overruns(1000, 2000);
   facts_.enter_run();
   EXPECT_FALSE(overruns(0, 100));

@@ -52,7 +52,7 @@ TEST_F(ResetTest, IsRefusedWhileAWheelTurns) {
   EXPECT_EQ(reset(), std::uint64_t{kRefusalMoving});
 }
 
-TEST_F(ResetTest, IsRefusedWhileNobodyKnowsWhetherAWheelTurns) {
+TEST_F(ResetTest, IsRefusedWhileItIsUnknownWhetherAWheelTurns) {
   sensors_.valid &= ~std::uint64_t{kValidJoints};
   EXPECT_EQ(reset(), std::uint64_t{kRefusalMoving});
 }
@@ -142,7 +142,7 @@ TEST_F(MonitorTest, AResetDuringTheRampCountsAsMoving) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopping);
 }
 
-TEST_F(MonitorTest, AResetInInitIsRefusedNamingWhoIsMissing) {
+TEST_F(MonitorTest, AResetInInitIsRefusedNamingTheMissingNode) {
   new_run();
   input_.command = nullptr;
   EXPECT_EQ(reset(), std::uint64_t{kRefusalInit});

@@ -53,7 +53,7 @@ TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown)
 }
 
 // Runaway has 3.75 rad/s and 0.15 s; 95 rad/s too fast are 25 times as much, and do with a 25th of that and the window.
-TEST_F(WheelFollowingTest, TheFasterAWheelRunsAwayTheSoonerItIsTold) {
+TEST_F(WheelFollowingTest, TheFasterAWheelRunsAwayTheSoonerItIsReported) {
   turn_wheels(100);
   steps(20 + 150 / 25 + 1);
   EXPECT_NE(permit_.causes & (kCauseRunaway | kCauseWheelSpeed), 0u);

@@ -70,7 +70,7 @@ class CommandsLockstepTest(RobotTestCase):
         wait_for("the reason", lambda: "stale" in self.desk.reasons)
         self.assertEqual(self.fastest, 0.0)
 
-    def test_a_stamp_of_the_wall_clock_is_told_as_such(self) -> None:
+    def test_a_stamp_of_the_wall_clock_is_reported(self) -> None:
         self.send(rospy.get_time() - time.time(), "is not the robot's /clock")
         self.step(400)
         self.assertEqual(self.fastest, 0.0)

@@ -87,7 +87,7 @@ class CommandsTest(RobotTestCase):
         self.expect_refusal(2.0, "s old by its stamp, more than cmd_vel_timeout (1.25 s)")
         self.drive_stamped()
 
-    def test_a_clock_an_hour_ahead_is_told_once(self) -> None:
+    def test_a_clock_an_hour_ahead_is_reported_once(self) -> None:
         self.expect_refusal(-HOUR, "is stamped 3600 s in the future")
         self.drive_stamped()
 

@@ -78,7 +78,7 @@ class OdometryTest(RobotTestCase):
         near = math.hypot(pose.position.x - x, pose.position.y - y) < 0.001
         return near and abs(math.remainder(yaw_of(pose.orientation) - yaw, 2 * math.pi)) < 0.001
 
-    def test_the_pose_is_what_it_is_told_to_be(self) -> None:
+    def test_the_pose_is_what_it_is_set_to(self) -> None:
         answer = self.set_odometry(1.5, -2.5, 0.5 + 4 * math.pi)
         self.assertTrue(answer.success, answer.message)
         self.assertIn("1.5 m, -2.5 m, 0.5", answer.message)

@@ -85,7 +85,7 @@ class SendCmdTest(unittest.TestCase):
         sender.wait()
         wait_for("the zero", self.zero_came)
 
-    def test_sends_what_it_is_told_and_ends(self) -> None:
+    def test_sends_what_the_arguments_say_and_ends(self) -> None:
         sender = self.started("--linear", "-0.3", "--angular", "0", "--period", "0.1", "--count", "4")
         self.assertEqual(sender.wait(), 0, sender.output)
         wait_for("the zero", self.zero_came)
@@ -95,7 +95,7 @@ class SendCmdTest(unittest.TestCase):
         self.assertIn("cmd_vel 4:", sender.output)
         self.assertNotIn("cmd_vel 5:", sender.output)
 
-    def test_waits_for_somebody_who_listens(self) -> None:
+    def test_waits_for_a_subscriber(self) -> None:
         self.subscriber.unregister()
         sender = self.started("--period=0.1", "--count=1")
         wait_for("the missing subscriber", lambda: "no node subscribes to /cmd_vel" in sender.output)

@@ -168,7 +168,7 @@ class StartTest(unittest.TestCase):
             for node in robot.nodes.values():
                 self.assertEqual(node.end(), 0, node.output)
 
-    def test_waiting_node_names_whom_it_waits_for(self) -> None:
+    def test_waiting_node_names_the_nodes_it_waits_for(self) -> None:
         program = Program(CONTROLLER)
         try:
             wait_for("the names", lambda: "waiting for mujoco_plant, state_estimator, safety_monitor" in program.output)
@@ -229,7 +229,7 @@ class StartTest(unittest.TestCase):
             code = program.end()
         self.assertEqual(code, 0, program.output)
 
-    def test_tells_nothing_of_an_earlier_session_as_fresh(self) -> None:
+    def test_publishes_nothing_of_an_earlier_session_as_fresh(self) -> None:
         # The controller ends first, so its last command drives; then the monitor latches its loss.
         with running_robot() as robot:
             robot.drive_until("0.5 m/s", robot.driving)

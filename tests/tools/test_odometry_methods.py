@@ -33,7 +33,7 @@ def test_a_robot_without_any_error_is_where_each_says(method):
     assert np.hypot(path.x - true.x, path.y - true.y).max() <= JUMPS * 9  # m, of way
 
 
-def test_raw_wheels_turn_by_the_base_they_believe():
+def test_raw_wheels_turn_by_the_nominal_base():
     recording = drive(ARC, errors=Errors(0.0, 0.0, 0.02, 0.0))
     assert raw_wheels(recording).yaw[-1] == pytest.approx(1.02 * 4.0, abs=ROUNDING)
     assert calibrated_wheels(recording).yaw[-1] == pytest.approx(4.0, abs=ROUNDING)
