@@ -126,7 +126,7 @@ TEST_F(CommandReportTest, WarnsOncePerTimeout) {
   EXPECT_TRUE(lines[0].warning);
   EXPECT_THAT(lines[0].text, HasSubstr("1.25 s"));
   EXPECT_THAT(report().look(frame_), IsEmpty());
-  EXPECT_EQ(receive(0.5, 0.2).size(), 1u) << "the motion begins again: told again";
+  EXPECT_EQ(receive(0.5, 0.2).size(), 1u) << "the motion begins again: reported again";
 }
 
 TEST_F(CommandReportTest, DoesNotWarnWhenAStandingRobotIsLeftAlone) {

@@ -34,7 +34,7 @@ TEST_F(ReasonHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
   publish(kReasonSaturated);
   EXPECT_EQ(look(), kReasonJerkYielded | kReasonSaturated);
   publish(0);
-  EXPECT_EQ(look(), 0u) << "told once";
+  EXPECT_EQ(look(), 0u) << "reported once";
 }
 
 TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {

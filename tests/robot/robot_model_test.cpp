@@ -238,7 +238,7 @@ TEST(RobotModel, WithoutAnImuLinkTheImuIsInTheBase) {
   EXPECT_EQ(robot.imu_in_base.orientation, (Quaternion{0, 0, 0, 1}));
 }
 
-// Steiner: two point-like masses m at ±d on x have m·d² each about y and z, whoever sits where.
+// Steiner: two point-like masses m at ±d on x have m·d² each about y and z, wherever they are.
 TEST(RigidBodies, FixedLinksAreLumpedByTheParallelAxisTheorem) {
   const auto link = [](const std::string& name) {
     return "<link name=\"" + name +

@@ -49,7 +49,7 @@ TEST_F(RunningLoop, BrakesWhenTheMonitorStops) {
     loop.controller->step();
   }
   EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
-  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "there was a permit, and it is told from none";
+  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "there was a permit, and it is distinguished from none";
   EXPECT_EQ(loop.machine.mode, JointMode::kBrake);
 }
 

@@ -44,7 +44,7 @@ TEST(LoopHold, AnswersWithTheAskingUnderWhichItStands) {
   LoopHold hold;
   const std::atomic<bool> stopping{false};
   const std::uint64_t first = hold.ask({.paused = 1});
-  EXPECT_FALSE(hold.stands(first)) << "nobody has looked";
+  EXPECT_FALSE(hold.stands(first)) << "no cycle has looked";
   ASSERT_FALSE(hold.may_tick(3));
   hold.stand(kMillisecond, stopping);
   EXPECT_TRUE(hold.stands(first));

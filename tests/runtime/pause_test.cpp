@@ -1,4 +1,4 @@
-/// A simulated machine that is paused, or set down anew, and what the other nodes make of it.
+/// A simulated machine that is paused, or set down again, and what the other nodes make of it.
 
 #include <gtest/gtest.h>
 

@@ -40,7 +40,7 @@ class BodyConditionsTest : public testing::Test {
     begin();
   }
 
-  /// Anew, with the parameters and the robot as they are now; healthy for 10 cycles.
+  /// Restarts with the parameters and the robot as they are now; healthy for 10 cycles.
   void begin() {
     facts_ = BodyConditions(parameters_, robot_, kPeriod);
     steps(10);
@@ -381,7 +381,7 @@ TEST_F(BodyConditionsTest, ANewRunKnowsNothing) {
   facts_.enter_run();
   EXPECT_FALSE(facts_.attitude().known());
   step();
-  EXPECT_TRUE(quiet()) << "the count begins anew";
+  EXPECT_TRUE(quiet()) << "the count restarts";
 }
 
 TEST_F(BodyConditionsTest, SkippedCyclesCount) {

@@ -258,7 +258,7 @@ TEST_F(HeartbeatTest, AFaultEndsTheRampInFault) {
   EXPECT_EQ(permit_.state, SupervisorState::kFault);
 }
 
-// The fixture has asked for motion since a few cycles; nobody ever sent a heartbeat.
+// The fixture has requested motion for a few cycles; no heartbeat was ever sent.
 TEST_F(CausesTest, MotionWithoutAnyHeartbeatStopsAfterTheTimeout) {
   const std::uint64_t since = permit_.since_cycle;  // the first cycle of DRIVE; the next is the first after it
   while (cycle() < since + 1 + kHeartbeat) {

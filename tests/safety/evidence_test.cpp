@@ -1,4 +1,4 @@
-// What a permit tells of its causes, and for how long.
+// What a permit reports of its causes, and for how long.
 
 #include "safety/monitor_fixture.h"
 
@@ -22,7 +22,7 @@ class EvidenceTest : public MonitorTest {
     steps(kStart);
     drive();
   }
-  std::vector<std::uint64_t> told() const {
+  std::vector<std::uint64_t> reported() const {
     std::vector<std::uint64_t> causes;
     for (const CauseEvidence& evidence : permit_.evidence) {
       if (evidence.cause != 0) causes.push_back(evidence.cause);
@@ -47,7 +47,7 @@ TEST_F(EvidenceTest, AWarningStaysForASecondAfterItsFactAndSlowsDownAsLong) {
   step();
   EXPECT_EQ(permit_.warnings, 0u);
   EXPECT_EQ(permit_.speed_limit, kNoSpeedLimit);
-  EXPECT_EQ(told(), Causes());
+  EXPECT_EQ(reported(), Causes());
 }
 
 TEST_F(EvidenceTest, AFactThatComesAndGoesIsOneWarning) {
@@ -70,7 +70,7 @@ TEST_F(EvidenceTest, StandsInTheOrderInWhichCausesCameWithWarningsLast) {
   const std::uint64_t stopped = cycle();
   input_.command = nullptr;
   steps(kLoss);
-  EXPECT_EQ(told(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseBatteryLow}));
+  EXPECT_EQ(reported(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseBatteryLow}));
   EXPECT_EQ(permit_.evidence[0].cycle, stopped);
   EXPECT_EQ(permit_.evidence[1].cycle, cycle());
   EXPECT_EQ(permit_.evidence[1].value, static_cast<double>(kLoss));
@@ -103,7 +103,7 @@ TEST_F(EvidenceTest, IsClearedByAnAcceptedReset) {
   step();
   stand();
   ASSERT_EQ(reset(), 0u);
-  EXPECT_EQ(told(), Causes());
+  EXPECT_EQ(reported(), Causes());
 }
 
 TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
@@ -118,7 +118,7 @@ TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
   monitor_.restore(last);
   monitor_.reset({});
   step();
-  EXPECT_EQ(told(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));
+  EXPECT_EQ(reported(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));
   EXPECT_EQ(permit_.evidence[0].cycle, last.evidence[0].cycle);
   EXPECT_EQ(permit_.evidence[1].value, last.evidence[1].value);
 }
@@ -128,7 +128,7 @@ TEST_F(EvidenceTest, OutlivesANewRun) {
   step();
   new_run();
   steps(5);
-  EXPECT_EQ(told(), Causes{kCauseEmergencyStopService});
+  EXPECT_EQ(reported(), Causes{kCauseEmergencyStopService});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Every cause whose reaction nobody can change (fixed_reactions.h): latched in its cycle, and what the gate then does.
+// Every cause whose reaction cannot be set (fixed_reactions.h): latched in its cycle, and what the gate then does.
 
 #include <string>
 
@@ -100,7 +100,7 @@ TEST_P(FixedCauses, LatchInTheirCycleAndReachTheMotors) {
   const std::uint64_t deadline = permit_.ramp_until;
   EXPECT_EQ(deadline, ramp ? latched + kRamp : 0);
 
-  gate_obeys_ = true;  // what it tells is another matter than what it does
+  gate_obeys_ = true;  // what it reports and what it does are two things
   const auto acts = [&] { return ramp ? ramps() : braked(); };
   while (!acts() && cycle() < latched + kToMotors) step();
   EXPECT_TRUE(acts());

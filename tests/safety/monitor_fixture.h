@@ -29,7 +29,8 @@ class MonitorTest : public testing::Test {
   static constexpr std::uint64_t kHeartbeat = 300;
   static constexpr std::uint64_t kRamp = 300;
   static constexpr std::uint64_t kSilence = 1250;  ///< cycles of cmd_vel_timeout
-  static constexpr std::uint64_t kStands = 102;  ///< cycles until it is believed: kStandingTime, the anchor, the count
+  static constexpr std::uint64_t kStands =
+      102;  ///< cycles until it counts as standing: kStandingTime, the anchor, the count
   static constexpr std::uint64_t kStart = 120;
   static constexpr double kQuantum = 2 * std::numbers::pi / 4096;
   static constexpr double kSpeed = 5;             ///< rad/s, when it drives
@@ -112,7 +113,7 @@ class MonitorTest : public testing::Test {
     command_.zero_requests = command_.first_cycle = input_.state_first_cycle = 0;
     monitor_.reset(input_.operator_input);
   }
-  /// `linear` m/s wished, and the wheels' targets; 0: the brake holds.
+  /// `linear` m/s requested, and the wheels' targets; 0: the brake holds.
   void ask_for(double linear) {
     command_.twist_requested.linear[0] = linear;
     target(linear == 0 ? 0 : kSpeed);
@@ -129,7 +130,7 @@ class MonitorTest : public testing::Test {
     steps(5);
     ASSERT_EQ(permit_.state, SupervisorState::kDrive);
   }
-  /// Standing long enough to be believed.
+  /// Standing long enough to count as standing.
   void stand() {
     ask_for(0);
     turn_wheels(0);
@@ -162,8 +163,8 @@ class MonitorTest : public testing::Test {
   bool begun_ = false;
   bool noisy_gyro_ = true;
   bool fresh_state_ = true;              ///< the command descends from the state of its own cycle
-  bool gate_obeys_ = true;               ///< false: it tells that it lets everything pass
-  bool gate_works_ = true;               ///< false: it tells that it brakes always
+  bool gate_obeys_ = true;               ///< false: it reports that it lets everything pass
+  bool gate_works_ = true;               ///< false: it reports that it always brakes
   std::uint64_t refused_frames_ = 0;     ///< which it counts beyond its own
   std::array<double, kWheels> speed_{};  ///< rad/s, true
 
@@ -184,7 +185,7 @@ class MonitorTest : public testing::Test {
     ++next_tick_;
   }
 
-  /// What a gate tells that works and obeys, or does not.
+  /// What a gate reports that works and follows the permit, or does not.
   GateReport told_of(const GateReport& true_report) const {
     constexpr std::uint64_t kRefusal = kGateNoPermit | kGatePermitExpired | kGatePermitBrake | kGateRampOver;
     GateReport report = true_report;

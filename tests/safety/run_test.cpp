@@ -164,7 +164,7 @@ TEST_F(RunTest, HeartbeatsOfTheLastRunAreNotAwaited) {
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
-// A restart of the driver, which no clock tells.
+// A restart of the driver, which no clock shows.
 
 TEST_F(RunTest, ADriverStartedAgainIsLostHoweverSoonItIsBack) {
   drive();

@@ -110,7 +110,7 @@ TEST(Slide, GrowsNoFasterThanTyresCarryAndNotBeyondTheLimit) {
     motion.step(sensors);
     slide.step(motion, false, 1);
   }
-  EXPECT_NEAR(slide.speed(), 2.0, 0.05) << "nobody knows, but for two windows";
+  EXPECT_NEAR(slide.speed(), 2.0, 0.05) << "unknown, but for two windows";
   slide.enter_run();
   EXPECT_FALSE(slide.possible());
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What state_estimator publishes, and where it may be told to be."""
+"""What state_estimator publishes, and setting its pose."""
 
 import math
 
@@ -134,7 +134,7 @@ class OdometryTest(RobotTestCase):
         np.testing.assert_allclose(felt, [0, 0, 9.81], atol=0.8)
         orientation = np.diag(np.reshape(self.imu.orientation_covariance, (3, 3)))
         self.assertTrue((orientation[:2] > 0).all(), orientation)
-        self.assertLess(orientation[2], 1e-6, "the heading was told")
+        self.assertLess(orientation[2], 1e-6, "the heading was set")
         for covariance in (self.imu.angular_velocity_covariance, self.imu.linear_acceleration_covariance):
             self.assertTrue((np.diag(np.reshape(covariance, (3, 3))) > 0).all(), covariance)
 

@@ -20,7 +20,7 @@ STATES = {"INIT": SafetyStatus.INIT, "READY": SafetyStatus.READY, "STOPPED": Saf
 class SendCmdTest(unittest.TestCase):
     def setUp(self) -> None:
         self.received: list[tuple[float, float, float]] = []
-        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.hear, tcp_nodelay=True)
+        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.receive, tcp_nodelay=True)
         self.monitor = self.monitor_that_says("READY")
 
     def tearDown(self) -> None:
@@ -46,7 +46,7 @@ class SendCmdTest(unittest.TestCase):
         """Received, in their order, without the zeros."""
         return [twist for _, *twist in self.received if twist != [0.0, 0.0]]
 
-    def hear(self, message: Twist) -> None:
+    def receive(self, message: Twist) -> None:
         self.received.append((time.monotonic(), message.linear.x, message.angular.z))
 
     def started(self, *arguments: str) -> Program:
@@ -100,7 +100,7 @@ class SendCmdTest(unittest.TestCase):
         sender = self.started("--period=0.1", "--count=1")
         wait_for("the missing subscriber", lambda: "no node subscribes to /cmd_vel" in sender.output)
         self.assertNotIn("cmd_vel 1:", sender.output)
-        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.hear, tcp_nodelay=True)
+        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.receive, tcp_nodelay=True)
         self.assertEqual(sender.wait(), 0, sender.output)
         wait_for("the zero", self.zero_came)
         self.assertEqual(self.commands(), [[0.5, 0.2]])

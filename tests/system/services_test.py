@@ -64,7 +64,7 @@ class ServicesTest(RobotTestCase):
         return answer.success, answer.message
 
     def cycle(self) -> int:
-        """Which the plant says it is in, once it has said so anew."""
+        """Which the plant says it is in, once it has said so again."""
         self.plant.clear()
         wait_for("diagnostics of the plant", lambda: "cycle" in self.plant)
         return int(self.plant["cycle"])

@@ -20,8 +20,8 @@ def driven(excitation, limits, axis):
     speed = way = 0.0
     ways = []
     for k in range(round(excitation.seconds / PERIOD)):
-        wish = excitation.command(k * PERIOD)[axis]
-        speed += max(-limits.deceleration * PERIOD, min(limits.acceleration * PERIOD, wish - speed))
+        request = excitation.command(k * PERIOD)[axis]
+        speed += max(-limits.deceleration * PERIOD, min(limits.acceleration * PERIOD, request - speed))
         way += speed * PERIOD
         ways.append(way)
     return ways

@@ -37,7 +37,7 @@ class Connection:
 
 
 class FakePublisher:
-    """`impl` is itself, and tells of the connections as rospy's does."""
+    """`impl` is itself, and reports the connections as rospy's does."""
 
     def __init__(self, *connections: Connection) -> None:
         self.connections = connections

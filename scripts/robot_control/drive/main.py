@@ -48,15 +48,15 @@ class SafetyWatch:
     """What safety_status says, every message of it: a stop that was followed by a release at once is none the less."""
 
     def __init__(self) -> None:
-        self._heard: deque[tuple[Status, float]] = deque()
+        self._received: deque[tuple[Status, float]] = deque()
         self._last: tuple[Status, float] | None = None
-        self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._hear, tcp_nodelay=True)
+        self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
 
     def look(self, release: Release) -> list[Line]:
         """Gives `release` what has come since the last look, or how long nothing has."""
         lines = []
-        while self._heard:
-            self._last = self._heard.popleft()
+        while self._received:
+            self._last = self._received.popleft()
             lines += release.look(self._last[1], self._last[0])
         now = time.monotonic()
         if self._last is None:
@@ -64,8 +64,8 @@ class SafetyWatch:
         connected = self._subscriber.get_num_connections() > 0
         return lines + release.look(now, self._last[0], now - self._last[1], connected=connected)
 
-    def _hear(self, message: SafetyStatus) -> None:
-        self._heard.append((status_of(message), time.monotonic()))
+    def _receive(self, message: SafetyStatus) -> None:
+        self._received.append((status_of(message), time.monotonic()))
 
 
 def status_of(message: SafetyStatus) -> Status:

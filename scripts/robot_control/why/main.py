@@ -93,7 +93,7 @@ def answer_live() -> int:
     while not rospy.is_shutdown():
         listener.ask_master()
         screen.show(listener.facts())
-        if listener.strangers > 1:  # another master: this program is no part of its graph
+        if listener.unknown_to_master > 1:  # another master: this program is no part of its graph
             os.execv(sys.executable, [sys.executable, *sys.argv])
         time.sleep(FRAME)
     return 0

@@ -8,7 +8,7 @@ from robot_control.common.terminal_dialog import NoAnswerError, Questions
 
 @pytest.fixture
 def asked():
-    """A function: Questions that will hear this text, then the end."""
+    """A function: Questions that will receive this text, then the end."""
     descriptors = []
 
     def make(text, going_on=lambda: True):
