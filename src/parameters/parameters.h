@@ -101,17 +101,4 @@ struct Overlay {
 Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {},
                            const std::string& base_path = "");
 
-/// Every path that may be set ("robot.rate", …), in the order of the schema.
-std::vector<std::string> parameter_paths();
-
-struct ParameterDescription {
-  std::string path;
-  std::string unit;       ///< empty where there is none
-  std::string rule;       ///< "a number of 100 … 2000 Hz", "one of wall, lockstep"
-  bool optional = false;  ///< may be absent
-};
-
-/// The same with what is allowed, for documentation and tools.
-std::vector<ParameterDescription> describe_parameters();
-
 }  // namespace robot_control
