@@ -9,8 +9,8 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;    // ns
-constexpr std::int64_t kPatience = 10'000'000'000;  // ns; never reached where the loop answers
+constexpr std::int64_t kMillisecond = 1'000'000;   // ns
+constexpr std::int64_t kTimeout = 10'000'000'000;  // ns; never reached where the loop answers
 
 TEST(LoopHold, TicksWhenNothingIsAsked) {
   LoopHold hold;
@@ -54,7 +54,7 @@ TEST(LoopHold, AnswersWithTheAskingUnderWhichItStands) {
 
 TEST(LoopHold, AwaitsNothingWhereNoLoopRuns) {
   LoopHold hold;
-  EXPECT_FALSE(hold.await_stand(hold.ask({.paused = 1}), kPatience));
+  EXPECT_FALSE(hold.await_stand(hold.ask({.paused = 1}), kTimeout));
 }
 
 TEST(LoopHold, HandsTheFaultsOver) {
@@ -81,7 +81,7 @@ TEST(LoopHold, AParkedLoopLeavesTheMachineToItsHolder) {
   });
   while (!hold.looping()) std::this_thread::yield();
   for (int round = 0; round < 100; ++round) {
-    ASSERT_TRUE(hold.await_stand(hold.ask({.parked = 1}), kPatience));
+    ASSERT_TRUE(hold.await_stand(hold.ask({.parked = 1}), kTimeout));
     guarded = 0;
     hold.ask({.paused = 1, .parked = 1});
     EXPECT_EQ(guarded, 0u);

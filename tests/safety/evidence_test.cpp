@@ -10,16 +10,13 @@ class EvidenceTest : public MonitorTest {
   static constexpr double kSlow = 0.6;  // m/s; the robot drives at 0.5
 
   EvidenceTest() {
-    SafetyParameters chosen = parameters();
-    chosen.heartbeat_timeout = 0;
+    SafetyParameters chosen = without_heartbeat();
     chosen.slow_speed = kSlow;
     chosen.battery_low = {22, 0, Reaction::kSlow};
     chosen.imu_lost.reaction = Reaction::kWarn;
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     sensors_.valid |= kValidBattery;
     sensors_.battery_voltage = 24;
-    new_run();
-    steps(kStart);
+    begin_with(chosen);
     drive();
   }
   std::vector<std::uint64_t> reported() const {

@@ -98,18 +98,7 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
               .operator_input = {}};
   }
 
-  static RobotModel make_robot() {
-    RobotModel robot;
-    robot.joints.assign(2, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
-    robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
-                    {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
-    robot.wheels[1].side = Side::kRight;
-    robot.wheel_base = 0.5;
-    robot.mass = 12;
-    return robot;
-  }
-
-  const RobotModel robot_ = make_robot();
+  const RobotModel robot_ = two_wheels();
   std::optional<SafetyMonitor> monitor_;
   SensorFrame sensors_;
   CommandFrame command_;

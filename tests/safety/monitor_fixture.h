@@ -19,6 +19,18 @@ namespace robot_control {
 
 inline constexpr std::uint64_t kToMotors = 3;  ///< cycles from a cause to what the gate does about it
 
+/// Two wheels of 0.1 m radius, 0.5 m apart.
+inline RobotModel two_wheels() {
+  RobotModel robot;
+  robot.joints.assign(2, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
+  robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
+                  {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
+  robot.wheels[1].side = Side::kRight;
+  robot.wheel_base = 0.5;
+  robot.mass = 12;
+  return robot;
+}
+
 /// Healthy case: standing in READY at cycle kStart, nothing asked for, encoders of 4096 counts. Heartbeat timeout 0.3
 /// s, ramp at most 0.3 s. Two wheels of 0.1 m radius, 0.5 m apart, of at most 15 rad/s.
 class MonitorTest : public testing::Test {
@@ -58,15 +70,19 @@ class MonitorTest : public testing::Test {
     return derived_limits(parameters, robot(), 15);
   }
 
-  static RobotModel robot() {
-    RobotModel robot;
-    robot.joints.assign(kWheels, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
-    robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
-                    {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
-    robot.wheels[1].side = Side::kRight;
-    robot.wheel_base = 0.5;
-    robot.mass = 12;
-    return robot;
+  static SafetyParameters without_heartbeat() {
+    SafetyParameters chosen = parameters();
+    chosen.heartbeat_timeout = 0;
+    return chosen;
+  }
+
+  static RobotModel robot() { return two_wheels(); }
+
+  /// As the healthy case, with another monitor.
+  void begin_with(const SafetyParameters& chosen) {
+    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
+    new_run();
+    steps(kStart);
   }
 
   /// The next cycle.
@@ -96,7 +112,7 @@ class MonitorTest : public testing::Test {
       next_tick_ = cycle;
     }
     while (next_tick_ < cycle) tick(given);
-    sensors_.gate = told_of(gate_.report());
+    sensors_.gate = reported_by(gate_.report());
     monitor_.step(input_, permit_);
     given_head_ = sensors_.head;
     tick(given);
@@ -186,7 +202,7 @@ class MonitorTest : public testing::Test {
   }
 
   /// What a gate reports that works and follows the permit, or does not.
-  GateReport told_of(const GateReport& true_report) const {
+  GateReport reported_by(const GateReport& true_report) const {
     constexpr std::uint64_t kRefusal = kGateNoPermit | kGatePermitExpired | kGatePermitBrake | kGateRampOver;
     GateReport report = true_report;
     report.refused += refused_frames_;

@@ -8,12 +8,9 @@ namespace {
 class WheelFollowingTest : public MonitorTest {
  protected:
   WheelFollowingTest() {
-    SafetyParameters chosen = parameters();
-    chosen.heartbeat_timeout = 0;
+    SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = Reaction::kOff;
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
-    new_run();
-    steps(kStart);
+    begin_with(chosen);
     drive();
     steps(100);
   }

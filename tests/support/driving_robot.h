@@ -31,7 +31,7 @@ struct MeasuredStop {
 class DrivingRobot {
  public:
   static constexpr double kFullSpeed = 1.0;       ///< m/s: max_linear_speed
-  static constexpr double kPatience = 30.0;       ///< s: what takes longer has not happened
+  static constexpr double kTimeout = 30.0;        ///< s: what takes longer has not happened
   static constexpr std::size_t kRestCycles = 20;  ///< twice what the monitor asks for
 
   explicit DrivingRobot(const Parameters& parameters)
@@ -127,8 +127,8 @@ class DrivingRobot {
 
   /// Until the condition holds. False: it did not in time.
   template <class Condition>
-  bool await(Condition condition, double patience_s = kPatience) {
-    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+  bool await(Condition condition, double timeout_s = kTimeout) {
+    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
     for (look(); !condition(); look()) {
       if (monotonic_ns() > end_ns) return false;
       sleep_ns(kLookNs);

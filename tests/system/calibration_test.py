@@ -26,7 +26,7 @@ class CalibrationTest(RobotTestCase):
         cls.estimator: dict[str, str] = {}
         rospy.set_param(f"{PLANT}/left_radius_error", LEFT)
         rospy.set_param(f"{ESTIMATOR}/calibration_file", str(cls.file))
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.hear_diagnostics)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         super().setUpClass()
 
     @classmethod
@@ -37,7 +37,7 @@ class CalibrationTest(RobotTestCase):
         shutil.rmtree(cls.folder)
 
     @classmethod
-    def hear_diagnostics(cls, message: DiagnosticArray) -> None:
+    def receive_diagnostics(cls, message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name == ESTIMATOR:
                 cls.estimator = {pair.key: pair.value for pair in status.values}

@@ -38,22 +38,22 @@ class OdometryTest(RobotTestCase):
         cls.imu_count = 0
         cls.estimator: dict[str, str] = {}
         cls.estimator_message = ""
-        rospy.Subscriber("wheel_odom", Odometry, cls.hear_wheels)
-        rospy.Subscriber("imu/data", Imu, cls.hear_imu)
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.hear_diagnostics)
+        rospy.Subscriber("wheel_odom", Odometry, cls.receive_wheels)
+        rospy.Subscriber("imu/data", Imu, cls.receive_imu)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         rospy.wait_for_service("set_odometry", LIMIT)
 
     @classmethod
-    def hear_wheels(cls, message: Odometry) -> None:
+    def receive_wheels(cls, message: Odometry) -> None:
         cls.wheels = message
 
     @classmethod
-    def hear_imu(cls, message: Imu) -> None:
+    def receive_imu(cls, message: Imu) -> None:
         cls.imu = message
         cls.imu_count += 1
 
     @classmethod
-    def hear_diagnostics(cls, message: DiagnosticArray) -> None:
+    def receive_diagnostics(cls, message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name == ESTIMATOR:
                 cls.estimator_message = status.message

@@ -17,7 +17,7 @@ from robot_control.common.topic_sender import Signals
 from robot_control.installed_files import share_file
 from robot_control.parameter_layers import DEFAULTS, leaves
 
-PATIENCE = 5.0
+TIMEOUT = 5.0
 """s to receive a report of every node; each reports once per second"""
 
 State = Sequence[Sequence[tuple[str, Sequence[str]]]]
@@ -57,8 +57,8 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
 
 
 def await_all(condition: Callable[[], bool], signals: Signals) -> None:
-    """Until it holds, at most PATIENCE."""
-    end = time.monotonic() + PATIENCE
+    """Until it holds, at most TIMEOUT."""
+    end = time.monotonic() + TIMEOUT
     while not condition() and time.monotonic() < end and signals.going_on():
         time.sleep(0.02)
 

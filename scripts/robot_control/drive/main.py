@@ -13,7 +13,7 @@ from robot_control.drive.release import Line, Phase, Release, Status
 from robot_control.drive.send_plan import SendPlan, parse_plan
 from robot_control.msg import SafetyStatus
 
-PATIENCE = 10.0
+TIMEOUT = 10.0
 """s to wait for a subscriber; then it is sent all the same"""
 SILENT_WAIT = 2.0
 """s of these in which nothing is said about it"""
@@ -32,10 +32,10 @@ def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
     """So that the first send is not lost."""
     begin = time.monotonic()
     warned = False
-    while publisher.get_num_connections() == 0 and signals.going_on() and time.monotonic() < begin + PATIENCE:
+    while publisher.get_num_connections() == 0 and signals.going_on() and time.monotonic() < begin + TIMEOUT:
         if not warned and time.monotonic() > begin + SILENT_WAIT:
             warned = True
-            rospy.logwarn(f"no node subscribes to {publisher.resolved_name} yet: waiting for {PATIENCE:g} s at most")
+            rospy.logwarn(f"no node subscribes to {publisher.resolved_name} yet: waiting for {TIMEOUT:g} s at most")
         time.sleep(LOOK)
 
 

@@ -34,8 +34,8 @@ class LoopHold {
   /// The loop stands, under this asking or a later one.
   bool stands(std::uint64_t number) const noexcept { return answered_.load(std::memory_order_acquire) >= number; }
 
-  /// `stands`, waited for. False after `patience_ns`, or when no loop runs.
-  bool await_stand(std::uint64_t number, std::int64_t patience_ns) const noexcept;
+  /// `stands`, waited for. False after `timeout_ns`, or when no loop runs.
+  bool await_stand(std::uint64_t number, std::int64_t timeout_ns) const noexcept;
 
   /// The cycle that the loop asked for last.
   std::uint64_t next_cycle() const noexcept { return next_cycle_.load(std::memory_order_acquire); }
