@@ -5,8 +5,8 @@
 /// MessageAllocator has it; names, checksums and bytes on the wire are templates over the allocator and stay.
 ///
 /// It also bounds what a received message allocates: roscpp resizes an array to the length that the sender wrote, up to
-/// 2³² elements, before it looks whether the message is as long. Beyond kLargestArray bytes it throws std::length_error,
-/// which roscpp catches: the message or request is rejected.
+/// 2³² elements, before it looks whether the message is as long. Beyond kLargestArray bytes it throws
+/// std::length_error, which roscpp catches: the message or request is rejected.
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/TransformStamped.h>
