@@ -7,8 +7,7 @@ log["truth_linear"]  # numpy, one value per cycle
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from os import PathLike, fspath
 from typing import Any
 
@@ -16,38 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_control._robot_control import ClosedLoop as _ClosedLoop
-from robot_control.installed_files import share_file
+from robot_control.parameter_layers import flow_text, layered
 
 Log = dict[str, NDArray[np.float64]]
 Command = Callable[[float], tuple[float, float]] | tuple[float, float] | None
-
-
-def _yaml(value: object) -> str:
-    """YAML text of a number, a truth value, a text or a list of them."""
-    if isinstance(value, bool | np.bool_):
-        return "true" if value else "false"
-    if isinstance(value, float | np.floating):
-        return repr(float(value)) if np.isfinite(value) else {"nan": ".nan", "inf": ".inf"}.get(str(value), "-.inf")
-    if isinstance(value, list | tuple | np.ndarray):
-        return "[" + ", ".join(json.dumps(item) if isinstance(item, str) else _yaml(item) for item in value) + "]"
-    return str(value)
-
-
-def _flow(value: object) -> str:
-    """YAML text of a nested dict in braces; texts quoted, so that none can be taken for anything else."""
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(str(key))}: {_flow(item)}" for key, item in value.items()) + "}"
-    return json.dumps(value) if isinstance(value, str) else _yaml(value)
-
-
-def leaves(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Dotted path and YAML text of every value of a nested dict."""
-    for key, value in tree.items():
-        path = f"{prefix}{key}"
-        if isinstance(value, Mapping):
-            yield from leaves(value, path + ".")
-        else:
-            yield path, _yaml(value)
 
 
 class ClosedLoop:
@@ -75,19 +46,10 @@ class ClosedLoop:
         urdf: str | PathLike[str] | None = None,
         scene: str | PathLike[str] | None = None,
     ) -> None:
-        values: list[tuple[str, str]] = []
-        path = share_file("config/robot_params.yaml")
-        if isinstance(params, Mapping):
-            values += leaves(params)
-        elif params is not None:
-            path = fspath(params)
-        if urdf is not None:
-            values.append(("robot.urdf", fspath(urdf)))
-        if scene is not None:
-            values.append(("mujoco_plant.scene", fspath(scene)))
         self._running = False
-        self._path = path
-        self._values = values
+        self._path, self._values = layered(params, urdf)
+        if scene is not None:
+            self._values.append(("mujoco_plant.scene", fspath(scene)))
         self._paused = False
         self._loop = self._new_loop(seed)
 
@@ -136,7 +98,7 @@ class ClosedLoop:
         Raises:
             ParameterError: with every reason; then nothing has changed.
         """
-        self._loop.set_parameters(_flow(values))
+        self._loop.set_parameters(flow_text(values))
 
     def command(self, linear: float = 0.0, angular: float = 0.0) -> None:
         """As if just received on cmd_vel: linear [m/s], angular [rad/s]. Times out like cmd_vel."""

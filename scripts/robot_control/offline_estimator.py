@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robot_control._robot_control import OfflineEstimator, slip_reasons, state_flags, state_sensors
-from robot_control.closed_loop import leaves
-from robot_control.installed_files import share_file
+from robot_control.parameter_layers import layered, leaves
 
 FloatArray = NDArray[np.float64]
 Estimate = dict[str, NDArray[Any]]
@@ -79,15 +78,8 @@ class Estimator:
         encoder_counts: float | None = None,
         period: float | None = None,
     ) -> None:
-        values: list[tuple[str, str]] = []
-        path = share_file("config/robot_params.yaml")
-        if isinstance(params, Mapping):
-            values += leaves(params)
-        elif params is not None:
-            path = fspath(params)
-        if urdf is not None:
-            values.append(("robot.urdf", fspath(urdf)))
-        elif (wheel_radius is None) != (wheel_base is None):
+        path, values = layered(params, urdf)
+        if urdf is None and (wheel_radius is None) != (wheel_base is None):
             one, other = ("wheel_base", "wheel_radius") if wheel_radius is None else ("wheel_radius", "wheel_base")
             raise ValueError(f"{one} without {other}: give both, or the urdf that {one} is laid over")
         given: dict[str, Any] = {"wheel_radius": wheel_radius, "wheel_base": wheel_base}

@@ -27,7 +27,7 @@ std::string lower_ending(const std::filesystem::path& path) {
 std::string read_bytes(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    refuse(path, "mesh", "there is no such file", "Mend the <mesh filename>, or put the file there");
+    refuse(path, "mesh", "there is no such file", "Repair the <mesh filename>, or put the file there");
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size == 0) {

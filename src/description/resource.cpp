@@ -199,7 +199,7 @@ fs::path resolve_resource(const std::string& uri, const RobotDescription& descri
   // a/b/../c, where b is not there: cleaned up, as a URL is
   if (fs::path cleaned = path.lexically_normal(); is_there(cleaned)) return cleaned;
   refuse(description.source, element_of(uri), "there is no file " + path.string(),
-         "Put it there, or mend the file name (letters count in upper and lower case)");
+         "Put it there, or correct the file name (letters count in upper and lower case)");
 }
 
 }  // namespace robot_control

@@ -73,7 +73,7 @@ UrdfDocument parse_urdf(const RobotDescription& description) {
   document.unsaid_axes = unsaid_axes(robot);
   document.sideways_plugins = plugins_that_say(robot, kSidewaysWords);
   document.steering_plugins = plugins_that_say(robot, kSteeringWords);
-  mend_markup(robot);
+  repair_markup(robot);
 
   std::string errors;
   document.model = parsed_by_urdfdom(printed(robot), errors);

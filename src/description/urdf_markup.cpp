@@ -206,30 +206,30 @@ bool three_numbers(const std::string& text) {
   return stream >> x >> y >> z && !(stream >> rest);
 }
 
-void mend_shape(TiXmlElement& visual_or_collision) {
+void repair_shape(TiXmlElement& visual_or_collision) {
   TiXmlElement* geometry = visual_or_collision.FirstChildElement("geometry");
   TiXmlElement* mesh = geometry == nullptr ? nullptr : geometry->FirstChildElement("mesh");
   if (mesh == nullptr || mesh->Attribute("scale") == nullptr) return;
   if (!three_numbers(mesh->Attribute("scale"))) mesh->SetAttribute("scale", "0 0 0");
 }
 
-void mend_link(TiXmlElement& link) {
+void repair_link(TiXmlElement& link) {
   TiXmlElement* visual = link.FirstChildElement("visual");
   while (visual != nullptr) {
     TiXmlElement* next = visual->NextSiblingElement("visual");
     const TiXmlElement* geometry = visual->FirstChildElement("geometry");
     remove(*visual, "material");
-    mend_shape(*visual);
+    repair_shape(*visual);
     if (geometry == nullptr || geometry->FirstChildElement() == nullptr) link.RemoveChild(visual);
     visual = next;
   }
   for (TiXmlElement* collision = link.FirstChildElement("collision"); collision != nullptr;
        collision = collision->NextSiblingElement("collision")) {
-    mend_shape(*collision);
+    repair_shape(*collision);
   }
 }
 
-void mend_joint(TiXmlElement& joint) {
+void repair_joint(TiXmlElement& joint) {
   remove(joint, "safety_controller");
   remove(joint, "calibration");
   const TiXmlElement* axis = joint.FirstChildElement("axis");
@@ -249,7 +249,7 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
   xml.Parse(description.text.c_str());
   if (xml.Error()) {
     const std::string line = xml.ErrorRow() > 0 ? " line " + std::to_string(xml.ErrorRow()) : "";
-    refuse(description.source + line, "XML", xml.ErrorDesc(), "Mend the markup");
+    refuse(description.source + line, "XML", xml.ErrorDesc(), "Repair the markup");
   }
   TiXmlElement* root = xml.RootElement();
   if (root == nullptr || root->ValueStr() != "robot") {
@@ -310,14 +310,14 @@ std::set<std::string> unsaid_axes(const TiXmlElement& robot) {
   return joints;
 }
 
-void mend_markup(TiXmlElement& robot) {
+void repair_markup(TiXmlElement& robot) {
   TiXmlElement* element = robot.FirstChildElement();
   while (element != nullptr) {
     TiXmlElement* next = element->NextSiblingElement();
     if (element->ValueStr() == "link") {
-      mend_link(*element);
+      repair_link(*element);
     } else if (element->ValueStr() == "joint") {
-      mend_joint(*element);
+      repair_joint(*element);
     } else {
       robot.RemoveChild(element);
     }

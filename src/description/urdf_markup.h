@@ -47,6 +47,6 @@ inline const std::vector<std::string> kSteeringWords{"ackermann", "steer", "tric
 std::set<std::string> unsaid_axes(const TiXmlElement& robot);
 
 /// As above.
-void mend_markup(TiXmlElement& robot);
+void repair_markup(TiXmlElement& robot);
 
 }  // namespace robot_control

@@ -59,7 +59,7 @@ std::string expand_xacro(const std::string& path) {
   }
   if (result.code != 0) {
     refuse(path, "xacro", on_one_line(result.errors),
-           "Mend the file; set ROS_PACKAGE_PATH so that $(find …) works; give arguments without default by hand: "
+           "Repair the file; set ROS_PACKAGE_PATH so that $(find …) works; give arguments without default by hand: "
            "xacro FILE name:=value > robot.urdf");
   }
   return result.output;

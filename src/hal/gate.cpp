@@ -57,14 +57,14 @@ void Gate::reset() noexcept {
 std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
-  observe(input);
+  read_samples(input);
   if (!passes(input)) brake(parameters_.fail_action);
   remember();
   last_cycle_ = input.cycle;
   return {commands_.data(), limits_.size()};
 }
 
-void Gate::observe(const GateInput& input) noexcept {
+void Gate::read_samples(const GateInput& input) noexcept {
   const SensorFrame& sensors = *input.sensors;
   const bool there = (sensors.valid & kValidJoints) != 0 && sensors.joint_count == limits_.size();
   samples_ = std::span(sensors.joints).first(there ? limits_.size() : 0);
@@ -78,7 +78,10 @@ bool Gate::passes(const GateInput& input) noexcept {
     report_.reasons = kGateFirstTick;
     return false;
   }
-  if (!permitted(input) || !fresh(input) || !sound(*input.command) || !sensed(*input.command)) return false;
+  if (!permit_is_alive(input) || !permit_allows_motion(*input.permit, input.cycle) || !command_is_fresh(input) ||
+      !command_is_valid(*input.command) || !samples_suffice(*input.command)) {
+    return false;
+  }
 
   std::copy_n(input.command->joints.begin(), limits_.size(), commands_.begin());
   const bool held = (report_.reasons & kGateCommandHeld) != 0;
@@ -101,7 +104,7 @@ bool Gate::passes(const GateInput& input) noexcept {
   return true;
 }
 
-bool Gate::permitted(const GateInput& input) noexcept {
+bool Gate::permit_is_alive(const GateInput& input) noexcept {
   if (input.permit_found == Lookup::kCorrupt) {
     report_.reasons |= kGateChecksum;
     ++report_.refused;
@@ -126,10 +129,10 @@ bool Gate::permitted(const GateInput& input) noexcept {
     report_.reasons |= kGatePermitExpired;
     return false;
   }
-  return allowed(permit, input.cycle);
+  return true;
 }
 
-bool Gate::allowed(const Permit& permit, std::uint64_t cycle) noexcept {
+bool Gate::permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexcept {
   switch (permit.action) {
     case PermitAction::kDrive:
       ramping_ = false;
@@ -150,7 +153,7 @@ bool Gate::allowed(const Permit& permit, std::uint64_t cycle) noexcept {
   return false;
 }
 
-bool Gate::fresh(const GateInput& input) noexcept {
+bool Gate::command_is_fresh(const GateInput& input) noexcept {
   if (input.command_found == Lookup::kCorrupt) {
     report_.reasons |= kGateChecksum;
     ++report_.refused;
@@ -173,7 +176,7 @@ bool Gate::fresh(const GateInput& input) noexcept {
   return true;
 }
 
-bool Gate::sound(const CommandFrame& command) noexcept {
+bool Gate::command_is_valid(const CommandFrame& command) noexcept {
   if (command.joint_count != limits_.size()) {
     report_.reasons |= kGateWrongJointCount;
     ++report_.refused;
@@ -189,13 +192,13 @@ bool Gate::sound(const CommandFrame& command) noexcept {
   return wrong == 0;
 }
 
-bool Gate::usable(std::size_t joint) const noexcept {
+bool Gate::has_position(std::size_t joint) const noexcept {
   return joint < samples_.size() && std::isfinite(samples_[joint].position);
 }
 
-bool Gate::sensed(const CommandFrame& command) noexcept {
+bool Gate::samples_suffice(const CommandFrame& command) noexcept {
   for (std::size_t i = 0; i < limits_.size(); ++i) {
-    if (is_brake(command.joints[i]) || !needs_sample(limits_[i]) || usable(i)) continue;
+    if (is_brake(command.joints[i]) || !needs_sample(limits_[i]) || has_position(i)) continue;
     report_.reasons |= kGateBadSensors;
     return false;
   }
@@ -209,12 +212,12 @@ void Gate::clamp(double elapsed) noexcept {
     report_.reasons |= clamp_effort(limits, command);
     if (is_brake(command)) continue;
     const JointMemory& memory = memory_[i];
-    const bool measured = usable(i) && std::isfinite(samples_[i].effort);
+    const bool measured = has_position(i) && std::isfinite(samples_[i].effort);
     const double from = memory.driven ? memory.effort : 0.0;
     const double to = memory.driven || !measured ? from : std::clamp(samples_[i].effort, -limits.effort, limits.effort);
     const double step = limits.effort_rate * elapsed;
     report_.reasons |= clamp_rate(std::min(from, to) - step, std::max(from, to) + step, command);
-    if (!usable(i)) continue;
+    if (!has_position(i)) continue;
     report_.reasons |= clamp_speed(limits, samples_[i].position, memory.speed.value(), command);
     report_.reasons |= clamp_position(limits, samples_[i].position, command);
   }

@@ -7,22 +7,23 @@
 /// Then it clamps the command. Up to 3 missed commands the last one is held; after that the gate brakes, which is
 /// counted and not latched.
 ///
-/// At tick k (all of the driver's present run, else the frame counts as missing):
-///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife)  ∧  cycle not before that of an earlier tick's permit,
-///            so a revoked permit does not come back
-///   action   kDrive, or kRamp while k ≤ ramp_until and for at most longest_ramp cycles in a row, whatever its
-///            ramp_until says
-///   command  k − kCommandLife ≤ cycle ≤ k − 1; older than k − 1 is *held*
-///   numbers  every field of every joint finite, every mode a JointMode, joint_count that of the robot; the samples of
-///            the joints that are to move finite, if a clamp needs them
+/// Conditions in tick k. `cycle`, `expiry` … are fields of the frame; frames of another run than the driver's count as
+/// missing. Lives are 4 cycles each (kPermitLife in permit.h, kCommandLife in command_frame.h).
+///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife), and no newer permit was found in an earlier tick: a
+///            revoked permit does not become valid again
+///   action   kDrive; or kRamp while k ≤ ramp_until, and for at most GateParameters::longest_ramp cycles in a row
+///   command  k − kCommandLife ≤ cycle ≤ k − 1; one of cycle k − 1 is on time, an older one is *held*
+///   numbers  every field of every joint finite, every mode a JointMode, joint_count that of the robot. Of a joint that
+///            is to move and has a speed limit or end stops, the position sample, too
 ///   clamps   joint_clamp.h, in this order:
 ///            |effort| ≤ limit · |Δeffort| ≤ effort_rate·Δt · speed limit · end stops
-/// When a brake ends, the driver's brake torque ends at once. The first effort after it may therefore lie anywhere
-/// between the torque of the brake and zero, plus one step of effort_rate·Δt.
 ///
-/// Tick 0 brakes. A brake is JointCommand{} on every joint; under FailAction::kCoast kEffort 0 on wheels, unless the
-/// command itself requests the brake on every joint. `refused` counts frames that arrived and failed a check; `missed`
-/// counts ticks in which only the command was missing.
+/// The torque of a brake is the driver's and may be large. It ends at once when the brake ends, so the first effort
+/// after it may lie anywhere between the measured torque and zero, plus one step of effort_rate·Δt.
+///
+/// Tick 0 brakes. A brake is JointCommand{} on every joint. Under FailAction::kCoast, wheels get no torque (kEffort 0)
+/// instead, unless the command itself requests the brake on every joint. GateReport counts: `refused` frames that
+/// arrived and failed a check, `missed` ticks in which the permit was good and the command was missing.
 
 #include <array>
 #include <cstdint>
@@ -53,7 +54,8 @@ struct GateInput {
 
 class Gate {
  public:
-  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument: limits that are none, more than kMaxJoints.
+  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument: a limit outside the range that
+  /// JointLimits names, or more than kMaxJoints joints.
   Gate(std::vector<JointLimits> limits, const GateParameters& parameters, double period);
 
   /// A new run: counters restart.
@@ -68,18 +70,18 @@ class Gate {
   /// Of one joint, from tick to tick.
   struct JointMemory {
     JointSpeed speed;
-    bool driven = false;  ///< in the last tick, by a command
-    double effort = 0;    ///< that it then got
+    bool driven = false;  ///< a command moved it in the last tick
+    double effort = 0;    ///< the effort that it got then
   };
 
-  void observe(const GateInput& input) noexcept;
-  bool permitted(const GateInput& input) noexcept;
-  bool allowed(const Permit& permit, std::uint64_t cycle) noexcept;
-  bool fresh(const GateInput& input) noexcept;
-  bool sound(const CommandFrame& command) noexcept;
-  bool sensed(const CommandFrame& command) noexcept;
-  bool usable(std::size_t joint) const noexcept;
-  bool passes(const GateInput& input) noexcept;
+  void read_samples(const GateInput& input) noexcept;
+  bool passes(const GateInput& input) noexcept;  ///< all checks; then `commands_` is what the driver gets
+  bool permit_is_alive(const GateInput& input) noexcept;
+  bool permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexcept;
+  bool command_is_fresh(const GateInput& input) noexcept;
+  bool command_is_valid(const CommandFrame& command) noexcept;
+  bool samples_suffice(const CommandFrame& command) noexcept;
+  bool has_position(std::size_t joint) const noexcept;
   void clamp(double elapsed) noexcept;
   void brake(FailAction wheels) noexcept;
   void remember() noexcept;
@@ -91,8 +93,8 @@ class Gate {
   std::span<const JointSample> samples_;     ///< of this tick; empty: missing
   std::optional<std::uint64_t> last_cycle_;  ///< of the last tick
   std::uint64_t newest_permit_ = 0;          ///< cycle of the newest permit seen in this run
-  bool ramping_ = false;                     ///< the last living permit was a ramp
-  std::uint64_t ramp_began_ = 0;             ///< in this tick
+  bool ramping_ = false;                     ///< the last permit that had not expired was a ramp
+  std::uint64_t ramp_began_ = 0;             ///< the tick of its first permit
   std::array<JointCommand, kMaxJoints> commands_{};
   GateReport report_;
 };

@@ -25,7 +25,7 @@ struct JointLimits {
   double lower = -std::numeric_limits<double>::infinity();       ///< rad or m, end stop
   double upper = std::numeric_limits<double>::infinity();        ///< rad or m, end stop, > lower
   double soft_zone = 0;                                          ///< rad or m before either end stop, ≥ 0
-  bool wheel = false;                                            ///< obeys FailAction
+  bool wheel = false;                                            ///< GateParameters::fail_action applies
 };
 
 }  // namespace robot_control

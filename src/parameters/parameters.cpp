@@ -240,20 +240,4 @@ Parameters read_parameters(const std::string& yaml_path, const std::vector<Overl
   return parameters;
 }
 
-std::vector<ParameterDescription> describe_parameters() {
-  std::vector<ParameterDescription> descriptions;
-  for (const Block& block : schema()) {
-    for (const Key& key : block.keys) {
-      descriptions.push_back({path_of(block, key), std::string(key.unit), rule_of(key), (key.traits & kOptional) != 0});
-    }
-  }
-  return descriptions;
-}
-
-std::vector<std::string> parameter_paths() {
-  std::vector<std::string> paths;
-  for (const ParameterDescription& description : describe_parameters()) paths.push_back(description.path);
-  return paths;
-}
-
 }  // namespace robot_control

@@ -88,8 +88,8 @@ struct Overlay {
 
 /// Throws ParameterError. The file consists of the blocks `robot`, `mujoco_plant`, `state_estimator`,
 /// `diff_drive_controller`, `safety_monitor`, `telemetry`; every key must be there, in the file or in an overlay,
-/// except what the URDF knows (`robot.wheel_base`, …) or what is derived from it (`pid_kp`, …): the optional ones of
-/// describe_parameters. With an empty `yaml_path` the overlays are everything there is.
+/// except what the URDF knows (`robot.wheel_base`, …) or what is derived from it (`pid_kp`, …): those that are
+/// kOptional in the schema. With an empty `yaml_path` the overlays are everything there is.
 ///
 /// `base_path`: a complete file over which that of `yaml_path` is laid key by key, so that it may hold only the keys
 /// that it changes; empty, not there or the same file: none.
@@ -100,18 +100,5 @@ struct Overlay {
 /// an overlay from the current folder; they come out absolute.
 Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {},
                            const std::string& base_path = "");
-
-/// Every path that may be set ("robot.rate", …), in the order of the schema.
-std::vector<std::string> parameter_paths();
-
-struct ParameterDescription {
-  std::string path;
-  std::string unit;       ///< empty where there is none
-  std::string rule;       ///< "a number of 100 … 2000 Hz", "one of wall, lockstep"
-  bool optional = false;  ///< may be absent
-};
-
-/// The same with what is allowed, for documentation and tools.
-std::vector<ParameterDescription> describe_parameters();
 
 }  // namespace robot_control

@@ -39,9 +39,9 @@ constexpr auto rows(const std::array<Key, Sizes>&... parts) {
   return all;
 }
 
-// Facts that are true or false: lost, stuck.
+// Conditions that are true or false: lost, stuck.
 template <auto Condition>
-constexpr std::array<Key, 2> fact(std::string_view group) {
+constexpr std::array<Key, 2> condition_without_limit(std::string_view group) {
   using C = robot_control::Condition;
   // A minute: what lasts longer is no condition to stop for.
   return {{{"persistence", in_condition<Condition, &C::persistence>, "s", 0, 60, 0, {}, group},
@@ -53,7 +53,7 @@ constexpr std::array<Key, 3> condition(std::string_view group, std::string_view 
   using C = robot_control::Condition;
   constexpr unsigned traits = (SafetyParameters{}.*Condition).limit ? 0U : unsigned{kOptional};
   return rows(std::to_array<Key>({{"limit", in_condition<Condition, &C::limit>, unit, min, max, traits, {}, group}}),
-              fact<Condition>(group));
+              condition_without_limit<Condition>(group));
 }
 
 // seed and cycles: any value that a YAML integer, a Python int and a ROS parameter can all carry.
@@ -244,7 +244,7 @@ constexpr auto kSafetyMonitor = rows(kSafetyLimits
 #define CAUSE(...)
 #define CONDITION(id, name, sentence, remedy, actor, unit, min, max, ...) \
     , condition<&Safety::name>(#name, unit, min, max)
-#define FACT(id, name, ...) , fact<&Safety::name>(#name)
+#define CONDITION_WITHOUT_LIMIT(id, name, ...) , condition_without_limit<&Safety::name>(#name)
 #include "signals/stop_causes.def"
     );
 // clang-format on

@@ -109,7 +109,9 @@ py::dict stand(const Parameters& parameters) {
   return result;
 }
 
-Parameters parameters_from(const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+Parameters parameters_from(const std::string& path, const Values& values) {
   std::vector<Overlay> overlays;
   for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
   Parameters parameters = read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
@@ -119,50 +121,64 @@ Parameters parameters_from(const std::string& path, const std::vector<std::pair<
   return parameters;
 }
 
-}  // namespace
-}  // namespace robot_control
+py::dict controller_parameters(const Parameters& parameters) {
+  using namespace py::literals;
+  const SpeedLimits limits = speed_limits(parameters.controller);
+  const auto axis = [](const MotionLimits& of) {
+    return py::dict("speed"_a = of.speed, "acceleration"_a = of.acceleration, "deceleration"_a = of.deceleration,
+                    "jerk"_a = of.jerk);
+  };
+  return py::dict("linear"_a = axis(limits.linear), "angular"_a = axis(limits.angular),
+                  "cmd_vel_timeout"_a = parameters.controller.cmd_vel_timeout, "rate"_a = parameters.loop.rate,
+                  "lockstep"_a = parameters.loop.clock == ClockMode::kLockstep);
+}
 
-PYBIND11_MODULE(_robot_control, module) {
-  using namespace robot_control;
-  py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
-  py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
-  py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
-  module.def(
-      "describe",
-      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
-        return describe(robot_of(parameters_from(path, values)));
-      },
-      py::arg("path"), py::arg("values"));
-  module.def(
-      "mjcf",
-      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
-        const Parameters parameters = parameters_from(path, values);
-        return exported_mjcf(robot_of(parameters), parameters.plant, parameters.loop.period());
-      },
-      py::arg("path"), py::arg("values"));
-  module.def(
-      "stand",
-      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
-        return stand(parameters_from(path, values));
-      },
-      py::arg("path"), py::arg("values"));
-  module.def(
-      "wheel_loops",
-      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
-        const Parameters parameters = parameters_from(path, values);
-        return wheel_loops(parameters, robot_of(parameters));
-      },
-      py::arg("path"), py::arg("values"));
-  module.def(
-      "derived_wheel_loops",
-      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
-        Parameters parameters = parameters_from(path, values);
-        parameters.controller.pid_kp.reset();
-        parameters.controller.pid_ki.reset();
-        parameters.controller.pid_kd = 0;
-        return wheel_loops(parameters, robot_of(parameters));
-      },
-      py::arg("path"), py::arg("values"));
+py::list derived_wheel_loops(Parameters parameters) {
+  parameters.controller.pid_kp.reset();
+  parameters.controller.pid_ki.reset();
+  parameters.controller.pid_kd = 0;
+  return wheel_loops(parameters, robot_of(parameters));
+}
+
+/// m, of a ramp from `speed` and the cycle before it begins.
+double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
+  const Parameters& parameters = loop.parameters();
+  const MotionLimits limits = speed_limits(parameters.controller).linear;
+  const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
+  return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();
+}
+
+std::vector<std::pair<std::string, std::string>> column_units(const ClosedLoop& loop) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const Column& column : columns_of(loop)) names.emplace_back(column.name, column.unit);
+  return names;
+}
+
+std::vector<std::string> stop_causes() {
+  std::vector<std::string> names;
+  for (const BitName& row : kStopCauseNames) names.emplace_back(row.name);
+  return names;
+}
+
+/// Functions of a parameter file and the values laid over it.
+void bind_parameters(py::module_& module) {
+  const auto define = [&](const char* name, auto function) {
+    module.def(
+        name,
+        [function](const std::string& path, const Values& values) { return function(parameters_from(path, values)); },
+        py::arg("path"), py::arg("values"));
+  };
+  define("describe", [](const Parameters& parameters) { return describe(robot_of(parameters)); });
+  define("mjcf", [](const Parameters& parameters) {
+    return exported_mjcf(robot_of(parameters), parameters.plant, parameters.loop.period());
+  });
+  define("stand", stand);
+  define("wheel_loops", [](const Parameters& parameters) { return wheel_loops(parameters, robot_of(parameters)); });
+  define("derived_wheel_loops", derived_wheel_loops);
+  define("controller_parameters", controller_parameters);
+}
+
+void bind_spectral_radius(py::module_& module) {
   module.def(
       "spectral_radius",
       [](double kp, double ki, double kd, double model_inertia, double inertia, double damping, double period,
@@ -172,29 +188,12 @@ PYBIND11_MODULE(_robot_control, module) {
       },
       py::kw_only(), py::arg("kp"), py::arg("ki"), py::arg("kd"), py::arg("model_inertia"), py::arg("inertia"),
       py::arg("damping"), py::arg("period"), py::arg("bandwidth"), py::arg("delay") = 0);
-  module.def(
-      "controller_parameters",
-      [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
-        using namespace py::literals;
-        const Parameters parameters = parameters_from(path, values);
-        const SpeedLimits limits = speed_limits(parameters.controller);
-        const auto axis = [](const MotionLimits& of) {
-          return py::dict("speed"_a = of.speed, "acceleration"_a = of.acceleration, "deceleration"_a = of.deceleration,
-                          "jerk"_a = of.jerk);
-        };
-        return py::dict("linear"_a = axis(limits.linear), "angular"_a = axis(limits.angular),
-                        "cmd_vel_timeout"_a = parameters.controller.cmd_vel_timeout, "rate"_a = parameters.loop.rate,
-                        "lockstep"_a = parameters.loop.clock == ClockMode::kLockstep);
-      },
-      py::arg("path"), py::arg("values"));
-  std::vector<std::string> causes;
-  for (const BitName& row : kStopCauseNames) causes.emplace_back(row.name);
-  module.attr("stop_causes") = causes;
-  bind_offline_estimator(module);
+}
+
+void bind_closed_loop(py::module_& module) {
   py::class_<ClosedLoop>(module, "ClosedLoop")
-      .def(py::init([](const std::string& path, const std::vector<std::pair<std::string, std::string>>& values) {
-             return ClosedLoop(parameters_from(path, values));
-           }),
+      .def(py::init(
+               [](const std::string& path, const Values& values) { return ClosedLoop(parameters_from(path, values)); }),
            py::arg("path"), py::arg("values"))
       .def("command", [](ClosedLoop& loop, double linear, double angular) { loop.command(planar(linear, angular)); })
       .def("e_stop", &ClosedLoop::e_stop)
@@ -205,22 +204,25 @@ PYBIND11_MODULE(_robot_control, module) {
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
       .def("run", &run, py::arg("cycles"), py::arg("command"))
       .def("record", &record, py::arg("commands"))
-      .def(
-          "stop_distance",
-          [](const ClosedLoop& loop, double speed, bool emergency) {
-            const Parameters& parameters = loop.parameters();
-            const MotionLimits limits = speed_limits(parameters.controller).linear;
-            const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
-            return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();
-          },
-          py::arg("speed"), py::arg("emergency"))
+      .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
       .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot()); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)
       .def_property_readonly("time", &ClosedLoop::time)
-      .def_property_readonly("columns", [](const ClosedLoop& loop) {
-        std::vector<std::pair<std::string, std::string>> names;
-        for (const Column& column : columns_of(loop)) names.emplace_back(column.name, column.unit);
-        return names;
-      });
+      .def_property_readonly("columns", &column_units);
+}
+
+}  // namespace
+}  // namespace robot_control
+
+PYBIND11_MODULE(_robot_control, module) {
+  using namespace robot_control;
+  py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
+  py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
+  py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
+  module.attr("stop_causes") = stop_causes();
+  bind_parameters(module);
+  bind_spectral_radius(module);
+  bind_offline_estimator(module);
+  bind_closed_loop(module);
 }

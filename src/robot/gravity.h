@@ -1,5 +1,6 @@
 #pragma once
-/// What is derived from a robot's weight is derived with this; a simulated world has the gravity of its scene.
+/// The gravity of every law: of the estimator, and of what is derived from a weight. A simulated world has the gravity
+/// of its scene, the same unless that says otherwise.
 
 namespace robot_control {
 

@@ -2,12 +2,13 @@
 /// A process that crashes reports it in one line on stderr: node, signal, reason, remedy.
 ///
 ///   SIGBUS    memory that was mapped is gone: shared memory truncated, or its file system full
-///   SIGSEGV   an address that is not its own      SIGILL, SIGFPE      an impossible instruction, a division by zero
-///   SIGABRT   it gave up: the message before says why
+///   SIGSEGV   an invalid address                  SIGILL, SIGFPE      an invalid instruction, a division by zero
+///   SIGABRT   it called abort: the message before says why
 ///
-/// Then it dies of that very signal: exit status and core dump are those of a process without last words. Between
-/// fault and death there is no lock, no allocation and no wait, and only async-signal-safe calls (signal-safety(7)); a
-/// stderr that takes nothing at once is left alone. The line is one write, so those of dying neighbours do not mix.
+/// Then it ends by the same signal: exit status and core dump are those of a process without this report. Between
+/// fault and end there is no lock, no allocation and no wait, and only async-signal-safe calls (signal-safety(7)); if
+/// stderr does not accept the line at once, it is dropped. The line is one write, so lines of several processes do not
+/// mix.
 
 #include <array>
 #include <cstddef>
@@ -18,13 +19,12 @@ namespace robot_control {
 inline constexpr std::size_t kLongestName = 64;  ///< bytes; more is cut off
 inline constexpr std::size_t kLongestConsequence = 100;
 
-/// `name`: of the node; `consequence`: of its death, "the motors brake without it". Whatever handled these signals
-/// before is forgotten, and the calling thread, the main one, gets an AlternateStack. Once per process, before others
-/// make threads.
+/// `name`: of the node; `consequence`: of its end, "the motors brake without it". Earlier handlers of these signals are
+/// replaced, and the calling thread, the main one, gets an AlternateStack. Once per process, before it has threads.
 void install_last_words(const std::string& name, const std::string& consequence);
 
-/// Room for the last words of one thread whose own stack has overflowed, as long as this object lives. Where the thread
-/// has such room already (AddressSanitizer gives it), that stays.
+/// Stack for the report of one thread whose own stack has overflowed, as long as this object lives. Where the thread
+/// has such a stack already (AddressSanitizer gives it), that stays.
 class AlternateStack {
  public:
   AlternateStack() noexcept;

@@ -13,7 +13,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kPatience = 2'000'000'000;    // ns; a loop that has not stopped by then waits for another node
+constexpr std::int64_t kTimeout = 2'000'000'000;     // ns; a loop that has not stopped by then waits for another node
 constexpr std::int64_t kStandstill = 5'000'000'000;  // ns without a cycle; a period is 10 ms at most
 constexpr std::int64_t kLook = 500'000;              // ns
 
@@ -77,7 +77,7 @@ std::string SimulationServices::waiting_for() const {
 ServiceAnswer SimulationServices::set_pause(bool pause) {
   const std::uint64_t number = ask_pause(pause);
   if (!pause) return {true, "running" + waiting_for()};
-  if (hold_.await_stand(number, kPatience)) return {true, "paused " + before(hold_.next_cycle())};
+  if (hold_.await_stand(number, kTimeout)) return {true, "paused " + before(hold_.next_cycle())};
   return {true, "will pause; no cycle runs now" + waiting_for()};
 }
 
@@ -85,7 +85,7 @@ ServiceAnswer SimulationServices::step(std::uint64_t cycles) {
   const std::unique_lock exclusive(exclusive_, std::try_to_lock);
   if (!exclusive.owns_lock()) return busy();
   Steps steps;
-  const std::int64_t end_ns = monotonic_ns() + kPatience;
+  const std::int64_t end_ns = monotonic_ns() + kTimeout;
   for (;;) {
     {
       const std::lock_guard lock(request_mutex_);
@@ -138,7 +138,7 @@ ServiceAnswer SimulationServices::reset() {
     if (request_.parked == 0) return {true, "no cycle has run yet" + waiting_for()};
   }
   ServiceAnswer answer{true, "a new run begins at cycle 0"};
-  if (!hold_.await_stand(number, kPatience)) {
+  if (!hold_.await_stand(number, kTimeout)) {
     answer = hold_.looping() ? ServiceAnswer{false, "the loop does not come to a stop" + waiting_for()} : ended();
   } else {
     try {

@@ -14,7 +14,7 @@ using Entry = std::pair<const char*, const Condition SafetyParameters::*>;
 constexpr Entry kConditions[] = {
 #define CAUSE(...)
 #define CONDITION(id, name, ...) {#name, &SafetyParameters::name},
-#define FACT(id, name, ...) {#name, &SafetyParameters::name},
+#define CONDITION_WITHOUT_LIMIT(id, name, ...) {#name, &SafetyParameters::name},
 #include "signals/stop_causes.def"
 };
 // clang-format on

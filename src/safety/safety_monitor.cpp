@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 #include "safety/parameter_check.h"
 
 namespace robot_control {
@@ -160,8 +160,8 @@ void SafetyMonitor::supervise(const MonitorInput& input, bool repeated) noexcept
   const std::uint64_t brake = active_.with(Reaction::kBrake);
   SupervisorInput supervised;
   supervised.cycle = cycle;
-  supervised.repair = for_repair(brake);
-  supervised.brake = brake & ~supervised.repair;
+  supervised.fault = leading_to_fault(brake);
+  supervised.brake = brake & ~supervised.fault;
   supervised.ramp = active_.with(Reaction::kRamp);
   supervised.missing = presence_.missing();
   supervised.released = release_.released();

@@ -13,9 +13,14 @@
 ///   body_conditions.h                                    does the gate obey, does the driver report a fault, does the
 ///                                                        body tilt, fall or collide
 ///
+/// Calls: after construction `restore` where an earlier permit or a latch file is there, and `begin` where the run is
+/// already going on; `reset` at the start of every run; `step` once per cycle with that cycle's sensors. In between,
+/// what does not come from a sensor frame: `driver_lost`, `driver_ended`, `sensors_corrupt`, `note_emergency_stop`,
+/// `refuse_reset` (runtime/cycles/monitor_cycle.h).
+///
 /// States: INIT until sensors, state and command of this run were each received once and motion is released
 /// (motion_release.h). READY and DRIVE permit motion until a node is restarted or a cause latches a stop
-/// (stop_category.h, SafetyParameters). The permit of cycle k expires after cycle k + kPermitLife, so a monitor that
+/// (fixed_reactions.h, SafetyParameters). The permit of cycle k expires after cycle k + kPermitLife, so a monitor that
 /// makes no progress permits no motion.
 ///
 /// Driver lost: latched when no current sensor frame arrives (wall clock), and when a frame carries another
@@ -65,7 +70,8 @@ namespace robot_control {
 
 class SafetyMonitor {
  public:
-  /// `period` s. Limits that are absent are none: derived_limits.h fills them. Throws std::invalid_argument: what
+  /// `period` s. A condition without a limit is not evaluated: call derived_limits (derived_limits.h) first.
+  /// Throws std::invalid_argument: what
   /// parameter_check.h refuses.
   SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 

@@ -46,7 +46,7 @@ struct SafetyParameters {
 #define CAUSE(...)
 #define CONDITION(id, name, sentence, remedy, actor, unit, min, max, limit, persistence, reaction, meaning) \
   Condition name{limit, persistence, Reaction::reaction};
-#define FACT(id, name, sentence, remedy, actor, unit, persistence, reaction, meaning) \
+#define CONDITION_WITHOUT_LIMIT(id, name, sentence, remedy, actor, unit, persistence, reaction, meaning) \
   Condition name{0, persistence, Reaction::reaction};  ///< limit unused
 #include "signals/stop_causes.def"
   // clang-format on

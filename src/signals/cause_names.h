@@ -15,7 +15,7 @@ namespace robot_control {
 
 // clang-format off
 inline constexpr auto kStopCauseNames = std::to_array<BitName>({
-#define CAUSE(id, name, sentence, remedy, actor, unit) {kCause##id, #name, sentence, remedy, actor, unit},
+#define CAUSE(id, name, sentence, remedy, actor, unit, ...) {kCause##id, #name, sentence, remedy, actor, unit},
 #include "signals/stop_causes.def"
 });
 // clang-format on

@@ -94,7 +94,7 @@ def columns() -> list[str]:
 def words() -> Iterator[str]:
     """Names of causes, reasons, states, verdicts, components and faults, by the table or the enum of which they are."""
     causes = (ROOT / "src/signals/stop_causes.def").read_text()
-    found = re.findall(r"^(?:CAUSE|CONDITION|FACT)\(\w+, (\w+),", causes, re.MULTILINE)
+    found = re.findall(r"^(?:CAUSE|CONDITION|CONDITION_WITHOUT_LIMIT)\(\w+, (\w+),", causes, re.MULTILINE)
     yield from (f"StopCauseNames: {name}" for name in found)
     signals = _sources("src/signals")
     for table, body in re.findall(r"k(\w+Names) = std::to_array<BitName>\(\{(.*?)\n\}\);", signals, re.DOTALL):

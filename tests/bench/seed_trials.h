@@ -39,7 +39,7 @@ class SeedTrials {
   void work() {
     const std::uint64_t block = std::max<std::uint64_t>(1, runs_ / 1000);  // seeds that a thread takes at a time
     for (std::uint64_t from = next_.fetch_add(block); from < runs_; from = next_.fetch_add(block)) {
-      if (from > 0 && from / block % 100 == 0) tell(std::to_string(from) + " of " + std::to_string(runs_));
+      if (from > 0 && from / block % 100 == 0) report(std::to_string(from) + " of " + std::to_string(runs_));
       for (std::uint64_t i = from; i < std::min(from + block, runs_); ++i) judge(first_ + i);
     }
   }
@@ -47,12 +47,12 @@ class SeedTrials {
   void judge(std::uint64_t seed) {
     const auto violated = violation_(seed);
     if (violated && failed_.fetch_add(1) < kTold) {
-      tell("seed " + std::to_string(seed) + ": " + *violated + "\n    again: scripts/bench " + bench_ + " --first " +
-           std::to_string(seed) + " --runs 1");
+      report("seed " + std::to_string(seed) + ": " + *violated + "\n    again: scripts/bench " + bench_ + " --first " +
+             std::to_string(seed) + " --runs 1");
     }
   }
 
-  void tell(const std::string& text) {
+  void report(const std::string& text) {
     const std::lock_guard lock(telling_);
     std::cerr << text << std::endl;
   }

@@ -8,7 +8,7 @@
 namespace robot_control::bench {
 namespace {
 
-constexpr double kPatience = 6.0;        // s, after which a robot that still moves does not stop
+constexpr double kTimeout = 6.0;         // s, after which a robot that still moves does not stop
 constexpr double kSendInterval = 0.1;    // s
 constexpr double kStandingSpeed = 0.01;  // m/s
 constexpr double kBlow = 20.0;           // m/s², no motor brakes that hard
@@ -108,7 +108,7 @@ StopMeasurement measure_stop(const std::string& path, const StopScenario& scenar
   measured.fact = scenario.fact;
   measured.period = parameters.loop.period();
   const std::uint64_t begin = cycles_of(kFactTime, measured.period);
-  const std::uint64_t end = begin + cycles_of(kPatience, measured.period);
+  const std::uint64_t end = begin + cycles_of(kTimeout, measured.period);
   const std::uint64_t interval = cycles_of(kSendInterval, measured.period);
   Observer before(measured, false);
   Observer after(measured, true);

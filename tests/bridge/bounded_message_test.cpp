@@ -67,9 +67,9 @@ TEST(BoundedMessage, RefusesAnotherLengthWithoutAnException) {
 }
 
 TEST(BoundedMessage, CopiesNoNameThatIsTooLong) {
-  const BoundedTwistStamped heard = read<BoundedTwistStamped>(wire(stamped(kLongestFrameId + 1)));
-  EXPECT_FALSE(heard.accepted);
-  EXPECT_TRUE(heard.message.header.frame_id.empty());
+  const BoundedTwistStamped received = read<BoundedTwistStamped>(wire(stamped(kLongestFrameId + 1)));
+  EXPECT_FALSE(received.accepted);
+  EXPECT_TRUE(received.message.header.frame_id.empty());
 }
 
 TEST(BoundedMessage, RefusesANameThatPointsBeyondTheMessage) {

@@ -34,7 +34,7 @@ class CommandInputTest : public testing::Test {
 
   const VelocityCommand& value() const { return input_.value(); }
 
-  std::string told() {
+  std::string reported() {
     std::string text;
     for (const ReportLine& line : input_.lines()) text += (line.warning ? "W " : "I ") + line.text + "\n";
     return text;
@@ -54,7 +54,7 @@ TEST_F(CommandInputTest, PassesOnWhatOneNodeSends) {
   EXPECT_EQ(value().count, 2u);
   EXPECT_EQ(value().twist.linear[0], 0.3);
   EXPECT_EQ(value().age_ns, kSecond / 50);
-  EXPECT_EQ(told(), "");
+  EXPECT_EQ(reported(), "");
 }
 
 TEST_F(CommandInputTest, AStampTooOldOrOfTheFutureIsRefusedAndTheCommandBeforeStands) {
@@ -66,24 +66,24 @@ TEST_F(CommandInputTest, AStampTooOldOrOfTheFutureIsRefusedAndTheCommandBeforeSt
   EXPECT_EQ(value().twist.linear[0], 0.5);
 }
 
-TEST_F(CommandInputTest, AClockThatIsAnHourOffIsToldOnce) {
+TEST_F(CommandInputTest, AClockThatIsAnHourOffIsReportedOnce) {
   for (int i = 0; i < 36'000; ++i) {
     receive_stamped("/teleop", 0.5, kHour);
     pass(kSecond / 10);
   }
   EXPECT_EQ(value().stale, 36'000u);
   EXPECT_EQ(value().count, 0u);
-  EXPECT_EQ(told(),
+  EXPECT_EQ(reported(),
             "W cmd_vel_stamped of /teleop is 3600 s old by its stamp, more than cmd_vel_timeout (1.25 s): refused; it "
             "was long under way, or that sender's clock is behind; synchronise it (chrony), or let it publish on "
             "cmd_vel, whose age counts from its arrival\n");
   receive_stamped("/teleop", 0.5, -kHour);
-  EXPECT_THAT(told(), HasSubstr("/teleop is stamped 3600 s in the future")) << "that is another fault";
+  EXPECT_THAT(reported(), HasSubstr("/teleop is stamped 3600 s in the future")) << "that is another fault";
   receive_stamped("/ahead", 0.5, -kHour);
-  EXPECT_THAT(told(), HasSubstr("/ahead is stamped 3600 s in the future, more than clocks may differ (0.1 s)"));
+  EXPECT_THAT(reported(), HasSubstr("/ahead is stamped 3600 s in the future, more than clocks may differ (0.1 s)"));
 }
 
-TEST_F(CommandInputTest, AClockThatFlickersIsToldEveryTenSecondsAtMost) {
+TEST_F(CommandInputTest, AClockThatFlickersIsReportedEveryTenSecondsAtMost) {
   std::size_t lines = 0;
   for (int i = 0; i < 300; ++i) {  // 60 s
     receive_stamped("/teleop", 0.5, i % 2 == 0 ? kHour : 0);
@@ -137,7 +137,7 @@ TEST_F(CommandInputTest, SimulatedTimeIsAClockLikeAnyOther) {
   EXPECT_EQ(value().age_ns, kSecond / 100);
   receive("/wall", 0.9, 1'700'000'000 * kSecond);
   EXPECT_EQ(value().stale, 1u);
-  EXPECT_THAT(told(), HasSubstr("is not the robot's /clock"));
+  EXPECT_THAT(reported(), HasSubstr("is not the robot's /clock"));
 }
 
 TEST_F(CommandInputTest, WithoutATimeoutNoStampIsLookedAt) {
@@ -155,18 +155,18 @@ TEST_F(CommandInputTest, TwoNodesAreNamedOnceAndOverrideEachOther) {
   }
   EXPECT_EQ(value().count, 200u);
   EXPECT_EQ(value().many_senders, 0u);
-  EXPECT_EQ(told(),
+  EXPECT_EQ(reported(),
             "W 2 nodes send commands: /navigation, /teleop; each message overrides the one before (one_sender: true "
             "refuses them)\n");
   pass(2 * kSecond);
   receive("/teleop", 0.5);
-  EXPECT_EQ(told(), "I one sender of commands is left: /teleop\n");
+  EXPECT_EQ(reported(), "I one sender of commands is left: /teleop\n");
 }
 
 TEST_F(CommandInputTest, OneNodeOnBothTopicsIsOneSender) {
   receive("/teleop", 0.5);
   receive_stamped("/teleop", 0.5);
-  EXPECT_EQ(told(), "");
+  EXPECT_EQ(reported(), "");
 }
 
 TEST_F(CommandInputTest, SendersSlowerThanAShortTimeoutAreACrowdAllTheSame) {
@@ -184,10 +184,10 @@ TEST_F(CommandInputTest, TakingTurnsSlowerThanTheTimeoutIsNoCrowd) {
     receive(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
     pass(2 * kSecond);
   }
-  EXPECT_EQ(told(), "");
+  EXPECT_EQ(reported(), "");
 }
 
-TEST_F(CommandInputTest, WhoseStampsAreRefusedIsNoSender) {
+TEST_F(CommandInputTest, ANodeWhoseStampsAreRefusedIsNoSender) {
   input_ = CommandInput(1.25, true);
   receive("/teleop", 0.5);
   receive_stamped("/late", 0.5, kHour);
@@ -207,29 +207,29 @@ TEST_F(CommandInputTest, WithOneSenderMessagesOfAllAreRefusedUntilOneIsLeft) {
     pass(kSecond / 10);
     receive("/teleop", 0.5);
   }
-  EXPECT_EQ(value().many_senders, 1u) << "/navigation was heard 1.2 s ago";
+  EXPECT_EQ(value().many_senders, 1u) << "/navigation was received 1.2 s ago";
   EXPECT_EQ(value().crowded, 13u);
   EXPECT_EQ(value().count, 1u);
-  EXPECT_THAT(told(), HasSubstr("refused (one_sender), ramping down to standstill until one is left"));
+  EXPECT_THAT(reported(), HasSubstr("refused (one_sender), ramping down to standstill until one is left"));
   pass(kSecond / 10);
   EXPECT_TRUE(input_.look(now_.loop_ns)) << "without any message, too";
   EXPECT_EQ(value().many_senders, 0u);
   receive("/teleop", 0.5);
   EXPECT_EQ(value().count, 2u);
-  EXPECT_EQ(told(), "I one sender of commands is left: /teleop\n");
+  EXPECT_EQ(reported(), "I one sender of commands is left: /teleop\n");
 }
 
 TEST_F(CommandInputTest, ANewcomerToACrowdIsNamed) {
   receive("/a", 0);
   receive("/b", 0);
-  EXPECT_THAT(told(), HasSubstr("2 nodes send commands: /a, /b"));
+  EXPECT_THAT(reported(), HasSubstr("2 nodes send commands: /a, /b"));
   receive("/c", 0);
-  EXPECT_THAT(told(), HasSubstr("3 nodes send commands: /a, /b, /c"));
+  EXPECT_THAT(reported(), HasSubstr("3 nodes send commands: /a, /b, /c"));
   receive("/a", 0);
-  EXPECT_EQ(told(), "");
+  EXPECT_EQ(reported(), "");
 }
 
-TEST_F(CommandInputTest, AFlickeringCrowdIsToldEveryTenSecondsAtMost) {
+TEST_F(CommandInputTest, FlickeringSendersAreReportedEveryTenSecondsAtMost) {
   std::size_t warnings = 0;
   for (int i = 0; i < 30; ++i) {  // 60 s: /b sends every 2 s, and is a sender for 1.25 of them
     receive("/b", 0.5);

@@ -81,7 +81,7 @@ class CommandReportTest : public testing::Test {
   CommandReport report_{robot(), parameters()};
 };
 
-TEST_F(CommandReportTest, TellsTheWheelSpeedsOfTheArticlesCommand) {
+TEST_F(CommandReportTest, ReportsTheWheelSpeedsOfTheArticlesCommand) {
   // 0.5 ∓ 0.2 · 0.5 / 2
   const std::vector<ReportLine> lines = receive(0.5, 0.2);
   ASSERT_EQ(lines.size(), 1u);
@@ -89,7 +89,7 @@ TEST_F(CommandReportTest, TellsTheWheelSpeedsOfTheArticlesCommand) {
   EXPECT_THAT(lines[0].text, HasSubstr("left 0.45 m/s, right 0.55 m/s"));
 }
 
-TEST_F(CommandReportTest, TellsTheSpeedsAfterTheLimits) {
+TEST_F(CommandReportTest, ReportsTheSpeedsAfterTheLimits) {
   // 3 m/s is thrice the limit, so both axes are divided by 3: 1 ∓ 0.4 · 0.5 / 2
   EXPECT_THAT(receive(3, 1.2)[0].text, HasSubstr("left 0.90 m/s, right 1.10 m/s (cmd_vel 3 m/s, 1.2 rad/s, "
                                                  "limited to 1 m/s, 0.4 rad/s)"));
@@ -114,7 +114,7 @@ TEST_F(CommandReportTest, IsSilentWhileTheValueStays) {
   EXPECT_THAT(report().look(frame_), IsEmpty());
 }
 
-TEST_F(CommandReportTest, TellsAChangedValue) {
+TEST_F(CommandReportTest, ReportsAChangedValue) {
   receive(0.5, 0.2);
   EXPECT_EQ(receive(0.5, 0.0).size(), 1u);
 }
@@ -126,7 +126,7 @@ TEST_F(CommandReportTest, WarnsOncePerTimeout) {
   EXPECT_TRUE(lines[0].warning);
   EXPECT_THAT(lines[0].text, HasSubstr("1.25 s"));
   EXPECT_THAT(report().look(frame_), IsEmpty());
-  EXPECT_EQ(receive(0.5, 0.2).size(), 1u) << "the motion begins again: told again";
+  EXPECT_EQ(receive(0.5, 0.2).size(), 1u) << "the motion begins again: reported again";
 }
 
 TEST_F(CommandReportTest, DoesNotWarnWhenAStandingRobotIsLeftAlone) {
@@ -157,7 +157,7 @@ TEST_F(CommandReportTest, LeavesStampsAndSendersToTheirOwnWarnings) {
   EXPECT_THAT(report().look(frame_), IsEmpty()) << "no zero was commanded";
 }
 
-TEST_F(CommandReportTest, TellsWhatIsDoneAndNotWhatIsAskedWhileARobotIsStopped) {
+TEST_F(CommandReportTest, ReportsWhatIsDoneAndNotWhatIsRequestedWhileTheRobotIsStopped) {
   for (const std::uint64_t reason : {kReasonPermitBrake, kReasonPermitRamp, kReasonNoPermit, kReasonBadSensors}) {
     ++frame_.head.run;
     const std::vector<ReportLine> lines = receive(0.5, 0.2, reason | kReasonAccelerationLimited);
@@ -168,7 +168,7 @@ TEST_F(CommandReportTest, TellsWhatIsDoneAndNotWhatIsAskedWhileARobotIsStopped) 
   }
 }
 
-TEST_F(CommandReportTest, TellsThatAStopTookTheEffectAndThatAReleaseGaveItBack) {
+TEST_F(CommandReportTest, ReportsThatAStopEndedTheEffectAndThatAReleaseRestoredIt) {
   receive(0.5, 0.2);
   std::vector<ReportLine> lines = go_on(kReasonPermitBrake);
   ASSERT_EQ(lines.size(), 1u);
@@ -184,24 +184,24 @@ TEST_F(CommandReportTest, ASingleLateCycleIsNoStop) {
   EXPECT_THAT(go_on(0), IsEmpty());
 }
 
-TEST_F(CommandReportTest, TellsThatTheMonitorSlowsItDown) {
+TEST_F(CommandReportTest, ReportsThatTheMonitorSlowsItDown) {
   EXPECT_THAT(receive(0.5, 0.2, kReasonPermitSlow).at(0).text, HasSubstr("but the safety monitor limits the speed"));
 }
 
-TEST_F(CommandReportTest, AStandingRobotThatIsToldToStandIsNoNews) {
+TEST_F(CommandReportTest, AStandingRobotThatIsCommandedToStandIsNoNews) {
   EXPECT_THAT(receive(0, 0), IsEmpty());
   EXPECT_THAT(go_on(kReasonPermitBrake), IsEmpty());
   EXPECT_THAT(go_on(0), IsEmpty());
 }
 
-TEST_F(CommandReportTest, AChangingCommandIsToldOnceASecond) {
+TEST_F(CommandReportTest, AChangingCommandIsReportedOnceASecond) {
   std::size_t lines = 0;
   for (int i = 0; i < 200; ++i) lines += receive(0.2 + 0.001 * i, 0.3, 0, kLookSecond / 20).size();
   EXPECT_GE(lines, 9u);
   EXPECT_LE(lines, 10u);
 }
 
-TEST_F(CommandReportTest, TheLastOfManyChangesIsTold) {
+TEST_F(CommandReportTest, TheLastOfManyChangesIsReported) {
   receive(0.5, 0.2);
   EXPECT_THAT(receive(0.1, 0, 0, kLookTick), IsEmpty());
   EXPECT_THAT(receive(0.3, 0, 0, kLookTick), IsEmpty());
@@ -215,7 +215,7 @@ TEST_F(CommandReportTest, AChangeThatNoWheelShowsIsNoNews) {
   EXPECT_THAT(receive(0.504, 0.2), IsEmpty());
 }
 
-TEST_F(CommandReportTest, TimeoutsAndRefusalsOfAFlickeringSenderAreToldOnceASecond) {
+TEST_F(CommandReportTest, TimeoutsAndRefusalsOfAFlickeringSenderAreReportedOnceASecond) {
   std::size_t lines = 0;
   for (int i = 0; i < 100; ++i) {
     lines += receive(0.5, 0.2, 0, kLookTick).size();
@@ -231,7 +231,7 @@ TEST_F(CommandReportTest, TimeoutsAndRefusalsOfAFlickeringSenderAreToldOnceASeco
   EXPECT_LE(lines, 3u * 6 + 3) << "three kinds, 6 s";
 }
 
-TEST_F(CommandReportTest, BeginsAnewWithARun) {
+TEST_F(CommandReportTest, RestartsWithARun) {
   receive(0.5, 0.2);
   frame_ = {};
   frame_.head.run = 2;

@@ -16,7 +16,7 @@ class CommandSendersTest : public testing::Test {
   CommandSenders senders_;
 };
 
-TEST_F(CommandSendersTest, AreThoseHeardWithinTheWindow) {
+TEST_F(CommandSendersTest, AreThoseReceivedWithinTheWindow) {
   EXPECT_THAT(senders_.at(0), IsEmpty());
   senders_.add("/b", 10);
   senders_.add("/a", 50);

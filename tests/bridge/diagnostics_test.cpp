@@ -106,7 +106,7 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
   EXPECT_EQ(value_of(report(kSlipSideways), "slip_lately"), "sideways");
 }
 
-TEST_F(StateReport, TellsHowFarEachSensorAgrees) {
+TEST_F(StateReport, ReportsHowFarEachSensorAgrees) {
   state_.confidence[kGyro] = 0.5;
   state_.nis[kLateralContact] = 1.25;
   state_.rejected[kVerticalContact] = 17;
@@ -119,7 +119,7 @@ TEST_F(StateReport, TellsHowFarEachSensorAgrees) {
 }
 
 // 1 rad/s is 57.2958 °/s.
-TEST_F(StateReport, TellsWhatWasLearned) {
+TEST_F(StateReport, ReportsTheSelfCalibration) {
   state_.calibration = {
       .radius_ratio = 1.01, .wheel_base_factor = 0.98, .radius_ratio_deviation = 0.001, .wheel_base_deviation = 0.002};
   state_.gyro_bias = {0, 0, 1};
@@ -146,7 +146,7 @@ TEST(CommandReasons, AreEachAValueInWords) {
   EXPECT_EQ(value_of(report, "requested_m_s"), "0.5");
 }
 
-TEST(CommandReasons, OfAMomentAreTold) {
+TEST(CommandReasons, OfAMomentAreReported) {
   DiagnosticReport report("diff_drive_controller", "diffbot");
   report_command(report, {}, kReasonJerkYielded | kReasonSaturated, {});
   EXPECT_EQ(value_of(report, "reasons"), "");

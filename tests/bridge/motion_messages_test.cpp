@@ -160,7 +160,7 @@ TEST_F(MotionMessagesTest, ImuDataCarriesTheSamplesAndEveryCovariance) {
   EXPECT_THAT(message.linear_acceleration_covariance, ElementsAre(36, 0, 0, 0, 36, 0, 0, 0, 36));
 }
 
-TEST_F(MotionMessagesTest, ThereIsImuDataOnlyWhereBothSensorsAreBelieved) {
+TEST_F(MotionMessagesTest, ThereIsImuDataOnlyWhereBothSensorsAreValid) {
   state_.flags = kStateValid;
   EXPECT_TRUE(has_imu_data(sensors_, state_));
   for (const std::uint64_t flags :
@@ -225,7 +225,7 @@ TEST_F(MotionMessagesTest, DriveStateComparesTheWheelsWithThePlanOfTwoCyclesBefo
   EXPECT_THAT(message.sentences, testing::IsEmpty());
 }
 
-TEST_F(MotionMessagesTest, DriveStateTellsEveryReasonWithSentenceAndRemedy) {
+TEST_F(MotionMessagesTest, DriveStateReportsEveryReasonWithSentenceAndRemedy) {
   for (const BitName& row : kCommandReasonNames) {
     const msg::DriveState message = drive_state(command_, command_, row.bit, robot_, stamp_);
     EXPECT_THAT(message.reasons, ElementsAre(std::string(row.name)));

@@ -34,7 +34,7 @@ TEST(Pacer, DoesNotMakeUpForAGap) {
   EXPECT_FALSE(pacer.due(1, 501 * kMillisecond));
 }
 
-TEST(Pacer, BeginsAnewWithARun) {
+TEST(Pacer, RestartsWithARun) {
   Pacer pacer(1);
   EXPECT_TRUE(pacer.due(1, 0));
   EXPECT_FALSE(pacer.due(1, kMillisecond));

@@ -34,7 +34,7 @@ TEST_F(ReasonHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
   publish(kReasonSaturated);
   EXPECT_EQ(look(), kReasonJerkYielded | kReasonSaturated);
   publish(0);
-  EXPECT_EQ(look(), 0u) << "told once";
+  EXPECT_EQ(look(), 0u) << "reported once";
 }
 
 TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {
@@ -48,7 +48,7 @@ TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {
   EXPECT_EQ(look(), kReasonRefused);
 }
 
-TEST_F(ReasonHistoryTest, BeginsAnewWithARun) {
+TEST_F(ReasonHistoryTest, RestartsWithARun) {
   publish(0);
   look();
   publish(kReasonRefused);

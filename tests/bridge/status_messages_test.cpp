@@ -73,7 +73,7 @@ TEST_F(SafetyStatusTest, HasASentenceAndARemedyForEveryCause) {
   for (const std::string& text : status.remedies) EXPECT_THAT(text, Not(IsEmpty()));
 }
 
-TEST_F(SafetyStatusTest, SaysWhoHasToActForEveryCause) {
+TEST_F(SafetyStatusTest, NamesTheActorOfEveryCause) {
   permit_.causes = kCauseEmergencyStopTopic | kCauseControllerLost | kCauseStall;
   EXPECT_THAT(message().actors, ElementsAre("operator", "integrator", "technician"));
 }
@@ -94,7 +94,7 @@ TEST_F(SafetyStatusTest, InventsNoEvidence) {
   EXPECT_THAT(message().details, ElementsAre("0.4 rad, limit 0.35 rad"));
 }
 
-TEST_F(SafetyStatusTest, TellsWarningsBesideTheCauses) {
+TEST_F(SafetyStatusTest, ReportsWarningsBesideTheCauses) {
   permit_.warnings = kCauseBatteryLow;
   permit_.evidence[0] = {.cause = kCauseBatteryLow, .value = 20.9, .limit = 21};
   const msg::SafetyStatus status = message();
@@ -116,21 +116,21 @@ TEST_F(SafetyStatusTest, AsksForAResetOfWhatLatchedAlone) {
   EXPECT_THAT(status.warning_sentences[0], Not(HasSubstr("e_stop_reset")));
 }
 
-TEST_F(SafetyStatusTest, TellsTheSpeedLimitWhereThereIsOne) {
+TEST_F(SafetyStatusTest, ReportsTheSpeedLimitWhereThereIsOne) {
   EXPECT_EQ(message().speed_limit, std::numeric_limits<double>::infinity());
   EXPECT_EQ(waiting_status({}).speed_limit, std::numeric_limits<double>::infinity());
   permit_.speed_limit = 0.3;
   EXPECT_EQ(message().speed_limit, 0.3);
 }
 
-TEST_F(SafetyStatusTest, NamesWhoIsMissingInInitAlone) {
+TEST_F(SafetyStatusTest, NamesTheMissingNodeInInitAlone) {
   permit_.missing = kMissingState;
   EXPECT_THAT(message().missing, IsEmpty());
   permit_.state = SupervisorState::kInit;
   EXPECT_THAT(message().missing, ElementsAre(HasSubstr("state_estimator")));
 }
 
-TEST_F(SafetyStatusTest, TellsNewsFromRepetition) {
+TEST_F(SafetyStatusTest, DistinguishesNewsFromRepetition) {
   Permit later = permit_;
   later.head.cycle += 1;
   EXPECT_FALSE(news(permit_, later));

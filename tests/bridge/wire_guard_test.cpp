@@ -115,7 +115,7 @@ std::string nested(int levels) {
   return text;
 }
 
-TEST(WireGuard, AValueIsNestedAsDeepAsAnybodyNeedsAndNoDeeper) {
+TEST(WireGuard, AValueIsNestedAsDeepAsTheLimitAndNoDeeper) {
   int offset = 0;
   XmlRpc::XmlRpcValue value(nested(kDeepestValue - 1), &offset);
   for (int level = 1; level < kDeepestValue; ++level) {

@@ -132,9 +132,9 @@ TEST_F(CyclicXacro, OrForeignFilesThatItIncludesAreNamed) {
   folder_.write("wide.xacro", utf16("<robot name=\"r\"><link name=\"a\"/></robot>", false, true));
   folder_.write("pointer.xacro", kPointer);
   for (const std::string name : {"wide", "pointer"}) {
-    const std::string told = name == "pointer" ? "git-LFS pointer" : "UTF-16";
+    const std::string named = name == "pointer" ? "git-LFS pointer" : "UTF-16";
     EXPECT_THAT(reading("r.xacro", kHead + "<xacro:include filename=\"" + name + ".xacro\"/></robot>"),
-                AllOf(HasSubstr(name + ".xacro"), HasSubstr(told)));
+                AllOf(HasSubstr(name + ".xacro"), HasSubstr(named)));
   }
   EXPECT_THAT(reading("main.xacro", utf16(kHead + "</robot>", false, true)), HasSubstr("UTF-16"));
 }

@@ -126,7 +126,7 @@ TEST_F(MujocoModelTest, ASceneThatDoesNotCompileIsRefusedWithMujocosMessage) {
   const std::string scene = scene_file(
       "typo.xml", "<mujoco><worldbody><geom type=\"plane\" size=\"1 1 1\" bogus=\"3\"/></worldbody></mujoco>");
   EXPECT_THAT(refusal(scene), testing::AllOf(HasSubstr("typo.xml"), HasSubstr("unrecognized attribute: 'bogus'"),
-                                             Not(HasSubstr("\n")), HasSubstr("Mend the scene")));
+                                             Not(HasSubstr("\n")), HasSubstr("Repair the scene")));
 }
 
 TEST_F(MujocoModelTest, ASceneThatIsNotThereIsRefused) {

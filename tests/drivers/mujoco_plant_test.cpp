@@ -199,7 +199,7 @@ TEST_F(MujocoPlantTest, ReportsTheTorqueThatWasAppliedNotTheOneAskedFor) {
   EXPECT_EQ(sensors(*plant).joints[1].effort, 3.5);
 }
 
-// In free space a wheel's angular momentum tells the mean torque: J (Δq̇ + Δω_y) = τ T.
+// In free space a wheel's angular momentum gives the mean torque: J (Δq̇ + Δω_y) = τ T.
 TEST_F(MujocoPlantTest, EffortIsTheMeanOverThePeriod) {
   const std::string space = scene_file("space.xml", R"(<mujoco><option gravity="0 0 0"/><worldbody>
     <site name="start"/></worldbody></mujoco>)");

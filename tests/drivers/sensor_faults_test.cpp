@@ -1,6 +1,6 @@
 /// Every sensor × every kind: what comes out of it. In cycle k the healthy left wheel is at k mrad and turns with
 /// k mrad/s, the right one at −k and −k, gyro and accelerometer read (k, 2k, 3k)·10⁻³, the battery gives 24 V + k mV
-/// and k mA, nobody presses the e-stop button.
+/// and k mA, the e-stop button is not pressed.
 
 #include "drivers/sensors/sensor_faults.h"
 

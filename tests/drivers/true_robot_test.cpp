@@ -23,7 +23,7 @@ TEST_F(TrueRobotTest, IsTheUrdfWhereNothingErrs) {
   EXPECT_NEAR(robot.mass, 12, 1e-12);
 }
 
-TEST_F(TrueRobotTest, DoesNotHeedWhatTheUserBelieves) {
+TEST_F(TrueRobotTest, IgnoresTheNominalValues) {
   RobotParameters parameters;
   parameters.wheel_radius = 0.2;
   parameters.wheel_base = 0.9;

@@ -161,7 +161,7 @@ TEST_F(BusAccessTest, ADirectoryIsRefused) {
   EXPECT_THAT(error(), HasSubstr("a directory stands in its place"));
 }
 
-TEST_F(BusAccessTest, APipeIsRefusedAndHoldsNobody) {
+TEST_F(BusAccessTest, APipeIsRefusedAndBlocksNoProcess) {
   ASSERT_EQ(mkfifo(file().c_str(), 0600), 0);
   alarm(kAlarm);
   EXPECT_THAT(error(), HasSubstr("a pipe stands in its place"));

@@ -1,4 +1,4 @@
-/// Objects that somebody damaged, from their heads on: a reader maps them or says why not, the next writer makes
+/// Damaged objects, from their heads on: a reader maps them or says why not, the next writer makes
 /// the channel whole.
 
 #include <gtest/gtest.h>

@@ -166,7 +166,7 @@ TEST_F(BusTest, TheNextWriterTakesOverFramesAndSequence) {
   EXPECT_EQ(reader.sequence(), sequence);
 }
 
-TEST_F(BusTest, ATakeOverBeginsAnewWhatTheWriterSaysOfItself) {
+TEST_F(BusTest, ATakeOverResetsWhatTheWriterReportsOfItself) {
   {
     const OwnedChannel<Frames> first(bus_.name(), ChannelNames::kState);
     attach_to_run(first.memory()->head, 7);
@@ -190,7 +190,7 @@ TEST_F(BusTest, AReaderSeesThatTheWriterIsGoneAndKeepsItsMapping) {
 
 // ---------------------------------------------------------------- leftovers
 
-TEST_F(BusTest, AnUnlockedLeftoverOfAnotherLayoutIsRetiredAndMadeAnew) {
+TEST_F(BusTest, AnUnlockedLeftoverOfAnotherLayoutIsRetiredAndRecreated) {
   ForeignChannel<LatestFrames<WideFrame>> old_reader(bus_.name(), ChannelNames::kState);
   wide();
   ASSERT_TRUE(old_reader.poll());
@@ -252,7 +252,7 @@ TEST_F(BusTest, AnUnlinkedChannelGoesOnWithItsOldReadersUntilASuccessorAppears) 
   EXPECT_NE(reader_.memory(), old);
 }
 
-TEST_F(BusTest, ATruncatedLeftoverIsMadeAnew) {
+TEST_F(BusTest, ATruncatedLeftoverIsRecreated) {
   { OwnedChannel<Frames>(bus_.name(), ChannelNames::kState); }
   ASSERT_EQ(truncate(file().c_str(), sizeof(Frames) - 1), 0);
   EXPECT_FALSE(reader_.poll());
@@ -261,7 +261,7 @@ TEST_F(BusTest, ATruncatedLeftoverIsMadeAnew) {
   EXPECT_TRUE(reader_.poll());
 }
 
-TEST_F(BusTest, ALeftoverShorterThanAHeadIsMadeAnew) {
+TEST_F(BusTest, ALeftoverShorterThanAHeadIsRecreated) {
   plant("short");
   EXPECT_FALSE(reader_.poll());
   EXPECT_EQ(reader_.obstacle(), "is truncated");
@@ -289,7 +289,7 @@ TEST_F(BusTest, AFileOfAnotherKindIsReplacedAndNeverWrittenTo) {
   EXPECT_TRUE(std::string(std::istreambuf_iterator<char>(old), {}) == content);
 }
 
-TEST_F(BusTest, AnObjectWhoseMakerDiedHalfWayIsMadeAnew) {
+TEST_F(BusTest, AnObjectWhoseMakerDiedHalfWayIsRecreated) {
   plant(std::string(sizeof(Frames), '\0'));
   EXPECT_FALSE(reader_.poll());
   EXPECT_EQ(reader_.obstacle(), "has no content yet");

@@ -38,7 +38,7 @@ TEST_F(GateRamp, CountsCyclesThatWereSkipped) {
   expect_brake(kGateRampTooLong);
 }
 
-TEST_F(GateRamp, AMissingPermitDoesNotBeginItAnew) {
+TEST_F(GateRamp, AMissingPermitDoesNotRestartIt) {
   for (int tick = 0; tick < 10; ++tick) next();
   input_.permit_found = Lookup::kMissing;
   next();
@@ -147,7 +147,7 @@ TEST_F(GateRate, WhileItDrivesTheMeasuredEffortCountsForNothing) {
   EXPECT_NEAR(joints_[0].effort, 0.8, 1e-15);
 }
 
-TEST_F(GateRate, AJointThatBrakedAloneBeginsAnew) {
+TEST_F(GateRate, AJointThatBrakedAloneRestarts) {
   ask(0.4);
   next();
   command_.joints[0].mode = JointMode::kBrake;
@@ -192,7 +192,7 @@ TEST_F(GateSpeed, LetsItBrakeByTorque) {
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
 }
 
-TEST_F(GateSpeed, TellsItOfARampToo) {
+TEST_F(GateSpeed, ReportsItOfARampToo) {
   permit_.action = PermitAction::kRamp;
   permit_.ramp_until = 1000;
   turn(30);
@@ -310,7 +310,7 @@ TEST_F(GateThatCoasts, GivesWheelsNoTorqueAndBrakesTheOthersWhateverIsMissing) {
   expect_coast();
 }
 
-TEST_F(GateThatCoasts, ACommandThatBrakesEveryJointIsObeyed) {
+TEST_F(GateThatCoasts, ACommandThatBrakesEveryJointIsApplied) {
   command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
   expect_brake(kGateControllerBrake);
 }

@@ -91,7 +91,7 @@ TEST_F(GateGarbage, NeverMovesAJointBeyondItsLimitsOrWithoutAPermit) {
   EXPECT_GT(moved, 100u);  // else the fuzz proved nothing
 }
 
-/// Random joints on random ways, told random things, tick after tick.
+/// Random joints on random paths with random commands, tick after tick.
 class GateRandomDrive : public GateFixture {
  protected:
   GateRandomDrive() : GateFixture(kArm) {}

@@ -72,7 +72,7 @@ TEST_F(GateTest, PermitThatClaimsALongerLifeDoesNotGetIt) {
   expect_brake(kGatePermitExpired);
 }
 
-TEST_F(GateTest, PermitThatExpiresEarlierIsHeard) {
+TEST_F(GateTest, APermitThatExpiresEarlierCounts) {
   permit_.expiry = 99;
   expect_brake(kGatePermitExpired);
 }
@@ -281,7 +281,7 @@ TEST_F(GateTest, OneBrakingJointAmongDrivingOnesPasses) {
   EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);
 }
 
-TEST_F(GateTest, ANewRunBeginsItsCountersAnew) {
+TEST_F(GateTest, ANewRunRestartsItsCounters) {
   input_.command_found = Lookup::kMissing;
   step();
   gate_.reset();

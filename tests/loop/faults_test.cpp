@@ -19,7 +19,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPatience = 240;  // s
+constexpr double kTimeout = 240;  // s
 
 // One fault after the other, each in a block of cycles: drive, fail, recover, stop, reset what was latched.
 constexpr std::uint64_t kBlock = 1200;
@@ -69,7 +69,7 @@ class Faults : public ::testing::Test {
 };
 
 TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
-  FourNodes(parameters_, robot_, true, true).run(kPatience, [&](DriverProcess& driver) {
+  FourNodes(parameters_, robot_, true, true).run(kTimeout, [&](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     services.set_pause(true);
     ServiceAnswer answer;
@@ -108,7 +108,7 @@ TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
 }
 
 TEST_F(Faults, OfTheMachineAloneCanBeInjectedWhileTheNodesAreThoseOfTheRobot) {
-  FourNodes(parameters_, robot_, true).run(kPatience, [&](DriverProcess& driver) {
+  FourNodes(parameters_, robot_, true).run(kTimeout, [&](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     services.set_pause(true);
     ServiceAnswer answer;

@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::uint64_t kClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 
-using Wish = std::function<Twist(double time)>;
+using Request = std::function<Twist(double time)>;
 
 Twist twist(double linear, double angular) {
   return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
 }
 
-/// Full speed, hard reversals, spins, and stops that are long enough for the brake: a new wish every 0.7 s.
+/// Full speed, hard reversals, spins, and stops that are long enough for the brake: a new request every 0.7 s.
 Twist restless(double time) {
   constexpr double kTable[][2] = {{1, 0},  {-1, 0}, {0, 2}, {0, -2}, {1, 2},  {-1, 2},
                                   {1, -2}, {0, 0},  {0, 0}, {0, 0},  {-1, -2}};
@@ -32,11 +32,11 @@ class GateInTheLoop : public testing::Test {
  protected:
   GateInTheLoop() : parameters_(read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml")) {}
 
-  void expect_no_clamp(const Wish& wish, double seconds) {
+  void expect_no_clamp(const Request& request, double seconds) {
     ClosedLoop loop(parameters_);
     std::uint64_t passed = 0;
     while (loop.time() < seconds) {
-      loop.command(wish(loop.time()));
+      loop.command(request(loop.time()));
       loop.step();
       const GateReport& gate = loop.row().driver->gate;
       ASSERT_EQ(gate.reasons & kClamps, 0u) << "at " << loop.time() << " s, " << parameters_.loop.rate << " Hz";
@@ -75,9 +75,9 @@ TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerKeepsOutOfTheTaper) {
   parameters_.plant.slope = 0.0873;
   parameters_.robot.wheel_velocity_limit = 8;
   ClosedLoop loop(parameters_);
-  const auto drive = [&](double wish, double until) {
+  const auto drive = [&](double request, double until) {
     while (loop.time() < until) {
-      loop.command(twist(wish, 0));
+      loop.command(twist(request, 0));
       loop.step();
     }
     return loop.row().driver->truth.twist_base.linear[0];

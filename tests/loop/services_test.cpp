@@ -152,7 +152,7 @@ TEST_F(Services, InLockstepAStoppedRobotStaysStoppedInTheNextRun) {
   }
 }
 
-/// Motion begins anew from rest: nothing of the first run's 0.5 m/s is left in pose, command or torque.
+/// Motion begins again from rest: nothing of the first run's 0.5 m/s is left in pose, command or torque.
 TEST_F(Services, OnTheWallClockAResetAtSpeedIsFollowedWithoutAJump) {
   constexpr double kEffortStep = 1;  // N·m; max_linear_acceleration takes 0.65 from one cycle to the next
   const auto rows = rows_of(four_processes(ClockMode::kWall, [](DriverProcess& driver) {

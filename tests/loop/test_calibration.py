@@ -23,7 +23,7 @@ def pose_of(log, name):
 
 
 def drive(loop, moves, speed=0.3):
-    """(n, 3) path by wheel odometry; the end as it truly is and as the estimator believes it, seen from the start."""
+    """(n, 3) path by wheel odometry; the end as it truly is and as the estimator estimates it, seen from the start."""
     pilot = Pilot(moves, speed, turn_speed=0.6)
     loop.command(0.0, 0.0)
     log = loop.step(1000)  # at rest: a moment in which the gyro's bias is learned
@@ -82,9 +82,9 @@ def test_makes_the_odometry_of_squares_ten_times_better(before, outcome):
     loop.inject_fault("gyro", "off")
     squares, wrong = drive_squares(loop)
     _, _, uncalibrated, wrong_before = before
-    believed = wheels_of(before[0].robot)
+    nominal = wheels_of(before[0].robot)
     ratio = Truth(ratio=parameters["state_estimator"]["radius_ratio"])
-    raw = largest_mean_return_error(uncalibrated, believed, Truth())
+    raw = largest_mean_return_error(uncalibrated, nominal, Truth())
     calibrated = largest_mean_return_error(squares, wheels_of(loop.robot), ratio)
     print(
         f"raw {1000 * raw:.0f} mm → {1000 * calibrated:.1f} mm; estimate {1000 * wrong_before:.0f} → {1000 * wrong:.1f}"

@@ -139,7 +139,7 @@ def test_a_diverged_simulation_is_noticed(sequence, log):
     assert rules_broken(sequence, log) == {"machine"}
 
 
-def test_who_has_no_brakes_need_not_stand(sequence, log):
+def test_a_robot_without_brakes_need_not_stand(sequence, log):
     log["injected"][:] = 1 << (3 * COMPONENTS.index("left_motor"))  # off
     log["truth_linear"][rows(2.0, 7.0)] = 0.5
     assert rules_broken(sequence, log) == set()

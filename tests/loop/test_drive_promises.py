@@ -20,10 +20,10 @@ def robot(request) -> str:
 
 
 def expect(figures):
-    told = [f"{figure.name} {figure.value:.4g} {figure.unit}, allowed {figure.bound:.4g}" for figure in figures]
-    print("\n".join(told))
+    reported = [f"{figure.name} {figure.value:.4g} {figure.unit}, allowed {figure.bound:.4g}" for figure in figures]
+    print("\n".join(reported))
     assert figures
-    assert not [line for line, figure in zip(told, figures, strict=True) if not figure.good]
+    assert not [line for line, figure in zip(reported, figures, strict=True) if not figure.good]
 
 
 def test_follows_its_profile_as_it_is_and_loaded(robot):
@@ -72,20 +72,20 @@ def test_follows_its_profile_at_every_rate(rate):
 
 @pytest.mark.parametrize("counts", [64, 128, 256])
 def test_follows_its_profile_with_a_coarse_encoder_and_a_slower_tracking_loop(counts):
-    """The robot's speed is then known no better than a count per tracking time: settled cannot be told."""
+    """The robot's speed is then known no better than a count per tracking time: whether it settled is unknown."""
     plant, controller = {"encoder_resolution": counts}, {"tracking_bandwidth": 8.0}
     figures = expect_straight({"mujoco_plant": plant, "diff_drive_controller": controller})
     assert figures.overshoot < 0.04
 
 
-def test_bears_motors_with_friction_and_gears_that_nobody_told_it():
+def test_bears_motors_with_friction_and_gears_that_are_not_described():
     motor = {"motor_friction": 0.005, "motor_damping": 5e-5, "gear_ratio": 20, "rotor_inertia": 2e-5}
     figures = expect_straight({"mujoco_plant": motor})
     assert figures.overshoot < 0.01
 
 
 def test_a_robot_that_is_pushed_back_at_full_torque_is_stopped():
-    """Its ramp waits for wheels that cannot follow, but not so long that nobody could tell."""
+    """Its ramp waits for wheels that cannot follow, but not so long that it would be noticed."""
     params = {
         "robot": {"wheel_effort_limit": 0.4},
         "mujoco_plant": {"push_x": -9.0, "push_start": 1.0, "push_duration": 10.0},

@@ -37,7 +37,7 @@ def test_the_same_sets_in_the_same_cycles_give_the_same_bits():
     assert not same_bits(*logs)
 
 
-def test_the_log_tells_from_which_cycle_on_which_values_held(loop):
+def test_the_log_shows_from_which_cycle_on_which_values_held(loop):
     before = loop.run(1.0, COMMAND)
     loop.set_parameters({"max_linear_speed": 0.4, "pid_kp": 1.0})
     after = loop.run(1.0, COMMAND)
@@ -109,7 +109,7 @@ def test_what_is_no_set_of_values_is_refused(loop, values):
         loop.set_parameters(values)
 
 
-def test_the_fastest_speeds_that_are_accepted_stop_nobody(loop):
+def test_the_fastest_speeds_that_are_accepted_cause_no_stop(loop):
     values = {"max_linear_speed": 1.2, "max_angular_speed": 2.0}
     loop.set_parameters(values)
     log = loop.run(5.0, tuple(values.values()))

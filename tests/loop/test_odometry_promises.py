@@ -1,6 +1,6 @@
 """The odometry on three simulated robots, held to its promises every night; `scripts/bench odometry` tries fifty.
 
-A promise that fifty robots keep is asserted as promised. What three cannot tell is looser, and why stands beside it:
+A promise that fifty robots keep is asserted as promised. What three cannot show is looser, and why stands beside it:
 LOOSER holds the factor by which a figure may miss its bound. What fifty robots miss, or these three, which are the same
 in every build, is in MISSED: the figure of the three may become worse by a quarter, no more; the benchmark's table and
 its exit code go on saying what is missed.

@@ -298,7 +298,7 @@ def test_rates_that_people_have_give_path_and_twist(log, samples, wheels, imu, o
     assert np.hypot(out["x"][-1] - log["truth_x"][rows[-1]], out["y"][-1] - log["truth_y"][rows[-1]]) < 0.1
     moving = out["time"] > 2  # past the ramp
     # The gyro's samples may be 0.02 s old, of a turn that changes by 0.8 rad/s²; the truth's own ripple has 0.03 rad/s.
-    # Wheels may be heard every 0.1 s only.
+    # Samples of the wheels may come every 0.1 s only.
     assert np.max(np.abs(out["linear"][moving, 0] - log["truth_linear"][rows[moving]])) < 0.1
     assert np.max(np.abs(out["angular"][moving, 2] - log["truth_angular"][rows[moving]])) < 0.1
     assert np.mean(out["flags"] & FLAGS["slip"] != 0) < 0.05
@@ -313,11 +313,11 @@ def test_wheels_alone_make_a_path(log, samples):
 
 
 @pytest.mark.parametrize("accelerometer", [True, False])
-def test_without_a_gyro_nobody_can_know_the_wheels_and_the_yaw_says_so(log, samples, accelerometer):
+def test_without_a_gyro_the_wheels_are_not_calibrated_and_the_yaw_is_less_certain(log, samples, accelerometer):
     time, left, right, _, accel = samples
     out = Estimator().process(time, left, right * 1.01, accel=accel if accelerometer else None)
     assert out["radius_ratio"][-1] == pytest.approx(1, abs=1e-3)
-    assert out["radius_ratio_deviation"][-1] > 0.009  # the parameter's 0.01, less what rounding and counts tell
+    assert out["radius_ratio_deviation"][-1] > 0.009  # the parameter's 0.01, less what rounding and counts show
     _, yaw = path_error(out, log)
     assert yaw > 0.05  # 1 % of 3.5 m over a base of 0.5 m: 0.07 rad
     assert yaw < 2 * np.sqrt(out["pose_covariance"][-1, 5, 5])
@@ -429,7 +429,7 @@ def test_what_was_learned_is_kept_and_read_again(tmp_path, samples):
     again = Estimator({"state_estimator": {"calibration_file": str(path)}}).process(*part(samples, slice(0, 1)))
     assert again["radius_ratio"][0] == learned["radius_ratio"][-1]
     assert again["wheel_base_factor"][0] == learned["wheel_base_factor"][-1]
-    assert again["radius_ratio_deviation"][0] < 0.01  # the parameter's, of a robot that nobody knows
+    assert again["radius_ratio_deviation"][0] < 0.01  # the parameter's, of an unknown robot
 
 
 def standing(rows):

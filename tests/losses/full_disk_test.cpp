@@ -16,7 +16,7 @@ namespace {
 
 constexpr rlim_t kLimit = 512 * 1024;  // bytes, less than half a second of log
 
-/// Nobody else sees it.
+/// No other process sees it.
 bool mount_small_disk(const std::string& folder) {
   return unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
          mount("tmpfs", folder.c_str(), "tmpfs", MS_NOSUID | MS_NODEV, "size=512k") == 0;
@@ -47,7 +47,7 @@ class AFullDisk : public Losses {
   std::filesystem::path folder_;
 };
 
-TEST_F(AFullDisk, HarmsNothingAndItsLossesAreToldAndCounted) {
+TEST_F(AFullDisk, HarmsNothingAndItsLossesAreReportedAndCounted) {
   if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
     GTEST_SKIP() << "mounting is not granted";
   }

@@ -10,7 +10,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kHogSeconds = 2.0;  // it ends by itself if nobody ends it
+constexpr double kHogSeconds = 2.0;  // it ends by itself if it is not ended
 
 bool may_run_in_real_time() {
   return ChildProcess([] {
@@ -23,7 +23,7 @@ void stay_on(const cpu_set_t& cores) {
   sched_setaffinity(0, sizeof cores, &cores);
 }
 
-/// Spins on the chain's core once told to.
+/// Spins on the chain's core when signalled.
 class Hog {
  public:
   Hog(int priority, std::int64_t core) : process_([this, priority, core] { return spin(priority, core); }) {

@@ -73,8 +73,8 @@ class Losses : public ::testing::Test {
     EXPECT_LT(log().longest_step(), 1.05 * DrivingRobot::kFullSpeed * nodes().parameters().loop.period());
   }
 
-  /// Stopped for good: a standing wish to drive moves nothing and is what a reset is refused for; released, the robot
-  /// stands until a new command, and then drives.
+  /// Stopped for good: a continuing request to drive moves nothing and is what a reset is refused for; released, the
+  /// robot stands until a new command, and then drives.
   void expect_latched_until_reset_and_new_command(std::uint64_t cause) {
     EXPECT_TRUE(robot_.await([&] { return (robot_.permit().causes & cause) != 0; }))
         << "wanted " << names_of(kStopCauseNames, cause) << "; " << robot_.situation();

@@ -69,7 +69,7 @@ class AWoundedChannel : public Losses, public ::testing::WithParamInterface<Chan
     close(descriptor);
   }
 
-  /// Braked for good or drives as before: never on numbers that nobody wrote.
+  /// Braked for good or drives as before: never on numbers that no node wrote.
   void expect_brakes_or_drives_on(std::uint64_t before) {
     robot_.await([&] { return log().rested(DrivingRobot::kRestCycles) || !nodes().lives(LoopNode::kPlant); }, 1.0);
     if (!nodes().lives(LoopNode::kPlant)) return;
@@ -120,7 +120,7 @@ TEST_P(AWoundedChannel, CutOffEndsThoseAloneWhoMapItAndTheRobotBrakes) {
   expect_undisturbed();
 }
 
-TEST_P(AWoundedChannel, OverwrittenIsNotBelieved) {
+TEST_P(AWoundedChannel, OverwrittenIsNotTrusted) {
   const std::uint64_t before = robot_.cycle();
   log().forget();
   robot_.keep_mappings();

@@ -96,7 +96,7 @@ TEST_P(ALostPlant, IsNamedByEveryOtherAndHoldsTheLatch) {
 INSTANTIATE_TEST_SUITE_P(Each, ALostPlant, ::testing::Values(SIGSTOP, SIGKILL, SIGSEGV),
                          [](const auto& each) { return name_of_signal(each.param); });
 
-/// It was away for some milliseconds, or nobody could see it go: time is no witness.
+/// It was away for some milliseconds, or its absence could not be seen: time proves nothing.
 class APlantStartedAgain : public Losses {
  protected:
   void start_again() {
@@ -139,7 +139,7 @@ TEST_P(ALostTelemetry, HarmsNothing) {
   nodes().start(LoopNode::kTelemetry);
   expect_drives_on(200);
   nodes().process(LoopNode::kTelemetry).send(GetParam());
-  expect_drives_on(kRingRows + 500);  // its rings are full by then, were anybody to wait for room
+  expect_drives_on(kRingRows + 500);  // its rings are full by then, if a node waited for room
   if (GetParam() == SIGSTOP) {
     nodes().process(LoopNode::kTelemetry).send(SIGCONT);
     EXPECT_TRUE(robot_.await([&] { return nodes().desk().lost_rows.load() > 0; })) << "what was lost is counted";

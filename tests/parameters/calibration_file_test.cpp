@@ -115,7 +115,7 @@ TEST_F(CalibrationFile, OfAnotherRobotIsRefusedWithAllThatDiffers) {
                     HasSubstr("delete it to restart the calibration")));
 }
 
-// Who measured and set radius_ratio anew means it: an old file must not override it in silence.
+// A radius_ratio that was measured and set again is meant: an old file must not override it silently.
 TEST_F(CalibrationFile, OfOtherInitialValuesIsRefused) {
   write();
   parameters_.calibration.radius_ratio = 1.004;

@@ -71,7 +71,7 @@ TEST_F(ReadConditions, LeavesTheLimitToTheRobotWhereItFollowsFromIt) {
   EXPECT_THAT(read_parameters(file.path()).safety.wheel_speed.limit, Optional(20.0));
 }
 
-TEST_F(ReadConditions, AsksForTheLimitThatNothingTells) {
+TEST_F(ReadConditions, AsksForTheLimitThatIsNotDerived) {
   set("tilt", "{persistence: 0.1, reaction: warn}");
   EXPECT_THAT(file.refusal(),
               HasSubstr("safety_monitor.tilt.limit: missing " + at("tilt") + "; add it: a number of 0.01 … 1.5 rad"));

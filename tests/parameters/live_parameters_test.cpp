@@ -50,10 +50,10 @@ TEST_F(LiveParameters, TakesAnySetOfLimitsAndGains) {
 
 TEST_F(LiveParameters, SaysWhatWasAndWhatIs) {
   const LiveChange change = read("{feed_forward: {mass: 13}, pid_kp: 1.5, keep_curvature: off, max_linear_speed: 2}");
-  std::vector<std::string> told;
-  for (const LiveValue& value : change.values) told.push_back(value.key + " " + value.before + " " + value.after);
-  EXPECT_THAT(told, ElementsAre("max_linear_speed 1 2", "keep_curvature true false", "pid_kp derived 1.5",
-                                "feed_forward.mass derived 13"));
+  std::vector<std::string> reported;
+  for (const LiveValue& value : change.values) reported.push_back(value.key + " " + value.before + " " + value.after);
+  EXPECT_THAT(reported, ElementsAre("max_linear_speed 1 2", "keep_curvature true false", "pid_kp derived 1.5",
+                                    "feed_forward.mass derived 13"));
 }
 
 TEST_F(LiveParameters, LaysARequestOverTheLastOne) {
@@ -145,7 +145,7 @@ TEST_F(LiveParameters, QuotesWhatWasSentUpToAWholeCharacter) {
   EXPECT_THAT(problem(start + "éx"), HasSubstr("request = " + start + "…: "));
 }
 
-TEST_F(LiveParameters, TellsEveryReasonAtOnce) {
+TEST_F(LiveParameters, ReportsEveryReasonAtOnce) {
   const LiveChange change =
       read("{max_linear_speed: 0, pid_kp: .nan, command_rate: 1, cmd_vel_timeout: 0.001, typo: 1}");
   EXPECT_EQ(change.problems.size(), 5u) << ::testing::PrintToString(change.problems);

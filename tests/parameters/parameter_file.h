@@ -9,8 +9,10 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "parameters/parameters.h"
+#include "parameters/schema.h"
 
 namespace robot_control {
 
@@ -22,6 +24,15 @@ inline std::string shipped_text() {
   std::ostringstream text;
   text << std::ifstream(shipped_path()).rdbuf();
   return text.str();
+}
+
+/// Every path that may be set ("robot.rate", …), in the order of the schema.
+inline std::vector<std::string> parameter_paths() {
+  std::vector<std::string> paths;
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) paths.push_back(path_of(block, key));
+  }
+  return paths;
 }
 
 /// One a line.

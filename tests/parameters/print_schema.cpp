@@ -24,7 +24,7 @@ void print_conditions() {
 #define CAUSE(...)
 #define CONDITION(id, name, sentence, remedy, actor, unit, min, max, limit, persistence, reaction, meaning) \
   std::cout << #name "\t" #limit "\t" #persistence "\t" #reaction "\t" unit meaning "\n";
-#define FACT(id, name, sentence, remedy, actor, unit, persistence, reaction, meaning) \
+#define CONDITION_WITHOUT_LIMIT(id, name, sentence, remedy, actor, unit, persistence, reaction, meaning) \
   std::cout << #name "\t{}\t" #persistence "\t" #reaction "\t" unit meaning "\n";
 #include "signals/stop_causes.def"
 }

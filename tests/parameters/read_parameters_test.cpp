@@ -148,13 +148,11 @@ TEST_F(ReadParameters, NamesTheRuleOfAMapThatIsNone) {
 }
 
 TEST_F(ReadParameters, OverlaysAloneAreEnough) {
-  std::set<std::string> optional;
-  for (const ParameterDescription& description : describe_parameters()) {
-    if (description.optional) optional.insert(description.path);
-  }
   std::vector<Overlay> all;
-  for (const std::string& path : parameter_paths()) {
-    if (!optional.contains(path)) all.push_back({path, "", "dict"});
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      if ((key.traits & kOptional) == 0) all.push_back({path_of(block, key), "", "dict"});
+    }
   }
   // Values as a Python dict would bring them.
   const std::map<std::string, std::string> values{{"robot.urdf", "a.urdf"},
@@ -495,7 +493,7 @@ TEST_F(ReadParameters, TakesEverySpellingOfANumber) {
   }
 }
 
-TEST_F(ReadParameters, EscapesWhatATerminalWouldObey) {
+TEST_F(ReadParameters, EscapesWhatATerminalWouldInterpret) {
   file.set("rate", "  rate: \"\\e[31m\"");
   EXPECT_THAT(file.refusal(), HasSubstr("\\x1b[31m"));
   EXPECT_THAT(file.refusal(), Not(HasSubstr("\x1b")));
@@ -563,11 +561,11 @@ TEST(Schema, EveryNumberHasARange) {
 }
 
 TEST(Schema, DescribesWhatIsAllowed) {
-  for (const ParameterDescription& description : describe_parameters()) {
-    if (description.path != "diff_drive_controller.cmd_vel_timeout") continue;
-    EXPECT_EQ(description.rule, "a number of 0 … 60 s (0 = off)");
-    EXPECT_EQ(description.unit, "s");
-    EXPECT_FALSE(description.optional);
+  for (const Block& block : schema()) {
+    for (const Key& key : block.keys) {
+      if (path_of(block, key) != "diff_drive_controller.cmd_vel_timeout") continue;
+      EXPECT_EQ(rule_of(key), "a number of 0 … 60 s (0 = off)");
+    }
   }
 }
 

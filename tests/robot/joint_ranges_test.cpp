@@ -34,7 +34,7 @@ TEST(JointRanges, AContinuousJointHasNone) {
   EXPECT_FALSE(with_joint("continuous", "<limit lower=\"-1\" upper=\"1\" effort=\"9\" velocity=\"1\"/>").range);
 }
 
-TEST(JointRanges, LowerEqualsUpperMeansThatNobodyKnows) {
+TEST(JointRanges, LowerEqualsUpperMeansUnknown) {
   EXPECT_FALSE(with_joint("revolute", "<limit lower=\"0\" upper=\"0\" effort=\"9\" velocity=\"1\"/>").range);
 }
 
@@ -76,7 +76,7 @@ TEST(JointRanges, AnEffortRateOfZeroIsRefused) {
   EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), testing::HasSubstr("robot/wheel_effort_rate"));
 }
 
-TEST(JointRanges, NobodyLimitsTheEffortRateOfOtherJoints) {
+TEST(JointRanges, NothingLimitsTheEffortRateOfOtherJoints) {
   const JointModel arm = with_joint("revolute", "<limit lower=\"-1\" upper=\"1\" effort=\"9\" velocity=\"1\"/>");
   EXPECT_EQ(arm.effort_rate, 0);
 }

@@ -118,7 +118,7 @@ TEST(RobotModel, EffectiveWheelBaseAndRadiusOverrideTheUrdf) {
 }
 
 // The base and the wheels' 12 kg, doubled: the yaw inertia about the same centre of gravity doubles, too.
-TEST(RobotModel, AnotherMassIsBelievedInThePlaceOfTheUrdfs) {
+TEST(RobotModel, AnotherMassReplacesTheUrdfs) {
   const RobotModel urdf = read_robot(diffbot_urdf(), {});
   RobotParameters parameters;
   parameters.mass = 24;
@@ -129,7 +129,7 @@ TEST(RobotModel, AnotherMassIsBelievedInThePlaceOfTheUrdfs) {
 }
 
 // Steiner: moved to the middle of the axle, the robot loses m d².
-TEST(RobotModel, AnotherCentreOfGravityIsBelievedInThePlaceOfTheUrdfs) {
+TEST(RobotModel, AnotherCentreOfGravityReplacesTheUrdfs) {
   const RobotModel urdf = read_robot(diffbot_urdf(), {});
   RobotParameters parameters;
   parameters.centre_of_gravity = Vector3{0, 0, 0.02};
@@ -202,7 +202,7 @@ TEST(RobotModel, ImuSitsAtItsLink) {
 
 // Roll then pitch then yaw about fixed axes: x of an IMU rolled and yawed by a right angle each points to the left, its
 // y up.
-TEST(RobotModel, AnotherPlaceOfTheImuIsBelievedInThePlaceOfTheUrdfs) {
+TEST(RobotModel, AnotherPlaceOfTheImuReplacesTheUrdfs) {
   RobotParameters parameters;
   parameters.imu_position = Vector3{-0.1, 0.03, 0.2};
   parameters.imu_orientation = Vector3{std::acos(0.0), 0, std::acos(0.0)};
@@ -238,7 +238,7 @@ TEST(RobotModel, WithoutAnImuLinkTheImuIsInTheBase) {
   EXPECT_EQ(robot.imu_in_base.orientation, (Quaternion{0, 0, 0, 1}));
 }
 
-// Steiner: two point-like masses m at ±d on x have m·d² each about y and z, whoever sits where.
+// Steiner: two point-like masses m at ±d on x have m·d² each about y and z, wherever they are.
 TEST(RigidBodies, FixedLinksAreLumpedByTheParallelAxisTheorem) {
   const auto link = [](const std::string& name) {
     return "<link name=\"" + name +

@@ -138,7 +138,7 @@ TEST(Tracks, AreRefusedForTheirManyRollers) {
               HasSubstr("10 wheels roll, and nothing says which of them drive: tracks are not supported"));
 }
 
-TEST(Tracks, WhoseDrivenWheelsAreToldDriveOnThem) {
+TEST(Tracks, WhoseDrivenWheelsAreGivenDriveOnThem) {
   EXPECT_EQ(
       refusal_of(robot_of(axles({"0.4", "0.2", "0", "-0.2", "-0.4"}) + transmission("left0") + transmission("right0"))),
       "accepted");

@@ -80,6 +80,17 @@ Made healthy(Random& random) {
   return m;
 }
 
+/// Every healthy robot that `change` spoils in one thing is suspicious for `reason`.
+template <class Change>
+void expect_suspicion(unsigned seeds, Change change, const std::string& reason) {
+  for (unsigned seed = 0; seed < seeds; ++seed) {
+    Random random(seed);
+    Made m = healthy(random);
+    change(m, random);
+    EXPECT_THAT(suspicion(made(m)), HasSubstr(reason)) << seed;
+  }
+}
+
 TEST(Suspicious, NothingOfHealthyRobots) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     Random random(seed);
@@ -88,31 +99,19 @@ TEST(Suspicious, NothingOfHealthyRobots) {
 }
 
 TEST(Suspicious, LengthsInMillimetres) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    Random random(seed);
-    Made m = healthy(random);
-    m.unit = 1000;
-    EXPECT_THAT(suspicion(made(m)), HasSubstr("millimetres")) << seed;
-  }
+  expect_suspicion(
+      40, [](Made& m, Random&) { m.unit = 1000; }, "millimetres");
 }
 
 TEST(Suspicious, MassesInGrams) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    Random random(seed);
-    Made m = healthy(random);
-    m.grain = 1000;
-    EXPECT_THAT(suspicion(made(m)), HasSubstr("grams")) << seed;
-  }
+  expect_suspicion(
+      40, [](Made& m, Random&) { m.grain = 1000; }, "grams");
 }
 
 TEST(Suspicious, ABaseThatWeighsNextToNothing) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    Random random(seed);
-    Made m = healthy(random);
-    m.mass = between(random, 0.001, 0.1) * m.wheel_mass;
-    EXPECT_THAT(suspicion(made(m)), HasSubstr("<link name=\"base_link\">: it and what is fixed to it weigh only"))
-        << seed;
-  }
+  expect_suspicion(
+      20, [](Made& m, Random& random) { m.mass = between(random, 0.001, 0.1) * m.wheel_mass; },
+      "<link name=\"base_link\">: it and what is fixed to it weigh only");
 }
 
 TEST(Suspicious, WheelsOfSixtyCentimetresAndMoreThatStandCloseTogether) {

@@ -94,13 +94,14 @@ TEST(UrdfTraps, AWheelThatTurnsOnlySoFarIsNone) {
               HasSubstr("left: it turns only from -1 to 1 rad"));
 }
 
-TEST(UrdfTraps, AMimicOfNobodyIsIgnored) {
-  const std::string follower =
-      link("f", inertial("1")) +
-      joint({.name = "follower", .child = "f", .axis = "<axis xyz=\"0 0 1\"/>", .rest = "<mimic joint=\"nobody\"/>"});
+TEST(UrdfTraps, AMimicOfNoJointIsIgnored) {
+  const std::string follower = link("f", inertial("1")) + joint({.name = "follower",
+                                                                 .child = "f",
+                                                                 .axis = "<axis xyz=\"0 0 1\"/>",
+                                                                 .rest = "<mimic joint=\"absent_joint\"/>"});
   const RobotModel robot = read_robot(robot_of(two_wheels() + follower), {});
   EXPECT_EQ(robot.bodies->moved_by("follower")->joint.mimicked, "");
-  EXPECT_THAT(notes_of(robot, RobotNote::Kind::kIgnored), HasSubstr("nobody"));
+  EXPECT_THAT(notes_of(robot, RobotNote::Kind::kIgnored), HasSubstr("absent_joint"));
 }
 
 /// A prism with 40 sides about z, 1 high from z = 0: 80 corners, in an OBJ file.

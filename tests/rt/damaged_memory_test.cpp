@@ -1,4 +1,4 @@
-/// Readers on memory that somebody damaged: they end, within the memory, and take nothing for a frame that its
+/// Readers on damaged memory: they end, within the memory, and take nothing for a frame that its
 /// writer did not seal.
 
 #include <gtest/gtest.h>

@@ -114,39 +114,39 @@ TEST(LastWords, TruncatedSharedMemoryIsNamedWithItsRemedyAndTheConsequence) {
                     HasSubstr("the process ends, the motors brake without it"), HasSubstr("remedy: look at 'df")));
 }
 
-TEST(LastWords, AnAddressThatIsNotItsOwnIsTold) {
+TEST(LastWords, AnAddressThatIsNotItsOwnIsReported) {
   const Death death = death_of(write_nowhere);
   EXPECT_EQ(death.signal, SIGSEGV);
   EXPECT_EQ(lines_of(death.words), 1);
   EXPECT_THAT(death.words, AllOf(StartsWith("some_node: SIGSEGV at 0x10: "), HasSubstr("core dump")));
 }
 
-TEST(LastWords, AnImpossibleInstructionIsTold) {
+TEST(LastWords, AnImpossibleInstructionIsReported) {
   const Death death = death_of([] { __builtin_trap(); });
   EXPECT_EQ(death.signal, SIGILL);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGILL at 0x"));
 }
 
-TEST(LastWords, ADivisionByZeroIsTold) {
+TEST(LastWords, ADivisionByZeroIsReported) {
   const Death death = death_of([] { raise(SIGFPE); });
   EXPECT_EQ(death.signal, SIGFPE);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGFPE: it divided"));
 }
 
-TEST(LastWords, WhoGivesUpSaysSo) {
+TEST(LastWords, AnAbortIsReported) {
   const Death death = death_of([] { std::abort(); });
   EXPECT_EQ(death.signal, SIGABRT);
   EXPECT_EQ(lines_of(death.words), 1);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGABRT: it gave up"));
 }
 
-TEST(LastWords, ASignalFromAnotherProcessIsTold) {
+TEST(LastWords, ASignalFromAnotherProcessIsReported) {
   const Death death = death_of([] { kill(getpid(), SIGSEGV); });
   EXPECT_EQ(death.signal, SIGSEGV);
   EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV from another process: "));
 }
 
-TEST(LastWords, WhoLivesSaysNothing) {
+TEST(LastWords, ALivingProcessReportsNothing) {
   const Death death = death_of([] {});
   EXPECT_EQ(death.signal, 0);
   EXPECT_EQ(death.words, "");

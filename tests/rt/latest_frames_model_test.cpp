@@ -18,7 +18,7 @@ struct Frame {
   FrameHead head;
 };
 
-/// Publication 1, of cycle 1, is there before anybody looks.
+/// Publication 1, of cycle 1, is there before a reader starts.
 class LatestFramesModelTest : public testing::Test {
  protected:
   LatestFramesModelTest() {

@@ -83,7 +83,7 @@ TEST_F(LatestFramesTest, NewestWithinReachesCycleZero) {
   EXPECT_EQ(found_.head.cycle, 0u);
 }
 
-TEST_F(LatestFramesTest, TellsACorruptFrame) {
+TEST_F(LatestFramesTest, ReportsACorruptFrame) {
   TestFrame frame = test_frame(kRun, 10);
   seal(frame);
   frame.values[50] ^= 1;
@@ -93,7 +93,7 @@ TEST_F(LatestFramesTest, TellsACorruptFrame) {
   EXPECT_EQ(reader_.newest_within(kRun, 6, 10, found_), Lookup::kCorrupt);
 }
 
-TEST_F(LatestFramesTest, TellsAToken) {
+TEST_F(LatestFramesTest, ReportsAToken) {
   TestFrame token = test_frame(kRun, 10);
   token.head.kind = FrameKind::kToken;
   writer_.publish(token);

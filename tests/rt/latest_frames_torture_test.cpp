@@ -14,9 +14,9 @@ namespace robot_control {
 namespace {
 
 constexpr std::uint64_t kTorturedRun = 7;
-constexpr std::int64_t kDuration = 700'000'000;     // ns, at least
-constexpr std::int64_t kPatience = 60'000'000'000;  // ns; how many frames fit into a time is the machine's affair
-constexpr std::uint64_t kFrames = 100;              // at least
+constexpr std::int64_t kDuration = 700'000'000;    // ns, at least
+constexpr std::int64_t kTimeout = 60'000'000'000;  // ns; how many frames fit into a time is the machine's affair
+constexpr std::uint64_t kFrames = 100;             // at least
 
 void write_until(const std::atomic<bool>& stop, LatestFrames<TestFrame>* memory, std::uint64_t first = 0) {
   FrameWriter<TestFrame> writer(memory);
@@ -33,7 +33,7 @@ std::uint64_t read_and_check(const LatestFrames<TestFrame>* memory) {
   std::uint64_t last = 0;
   std::uint64_t seen = 0;
   const std::int64_t begin = monotonic_ns();
-  while ((seen < kFrames || monotonic_ns() < begin + kDuration) && monotonic_ns() < begin + kPatience) {
+  while ((seen < kFrames || monotonic_ns() < begin + kDuration) && monotonic_ns() < begin + kTimeout) {
     const Lookup newest = reader.newest(frame);
     EXPECT_NE(newest, Lookup::kCorrupt);
     if (newest != Lookup::kFrame) continue;

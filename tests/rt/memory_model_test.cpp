@@ -38,7 +38,7 @@ class MemoryModelTest : public testing::TestWithParam<Schedules> {
   std::vector<std::uint64_t> result_ = std::vector<std::uint64_t>(4);
 };
 
-TEST_P(MemoryModelTest, AReleasedMessageIsSeenByWhoAcquiresIt) {
+TEST_P(MemoryModelTest, AReleasedMessageIsSeenByItsAcquirer) {
   const Outcomes found = outcomes(
       [&] {
         x_.store(1, kRelaxed);

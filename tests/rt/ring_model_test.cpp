@@ -44,14 +44,14 @@ class RingModelTest : public testing::Test {
     return true;
   }
 
-  /// Nobody tells the writer what was read.
+  /// The writer does not learn what was read.
   Report rows_overwritten(std::uint64_t rows) {
     return explore(rows, nullptr, [this](Reader& reader) {
       for (int i = 0; i < 3; ++i) take(reader);
     });
   }
 
-  /// The reader tells its position; the writer drops what finds no room.
+  /// The reader publishes its position; the writer drops what finds no room.
   Report rows_dropped(std::uint64_t rows) {
     return explore(rows, &read_, [this](Reader& reader) {
       for (int i = 0; i < 3; ++i) {

@@ -76,10 +76,10 @@ TEST_F(RingTest, AReaderMayStartWhereAnEarlierOneEnded) {
 
 TEST_F(RingTest, APositionOfAnotherObjectIsBroughtBack) {
   append(0, 10);
-  RingReader<WideRow> stranger(memory_.get(), 5000);
-  EXPECT_FALSE(stranger.take(row_));
+  RingReader<WideRow> other(memory_.get(), 5000);
+  EXPECT_FALSE(other.take(row_));
   append(10, 1);
-  ASSERT_TRUE(stranger.take(row_));
+  ASSERT_TRUE(other.take(row_));
   EXPECT_TRUE(is_row(row_, 10));
 }
 

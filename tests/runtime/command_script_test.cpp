@@ -89,7 +89,7 @@ TEST(CommandScript, ACycleThatComesAgainBringsNothing) {
   EXPECT_FALSE(script.advance(0).has_twist);
 }
 
-TEST(CommandScript, BeginsAnewInANewRun) {
+TEST(CommandScript, RestartsInANewRun) {
   CommandScript script = CommandScript::parse(kHealthy, "script.csv");
   script.advance(1000);
   script.rewind();

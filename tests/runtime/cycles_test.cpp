@@ -49,7 +49,7 @@ TEST_F(RunningLoop, BrakesWhenTheMonitorStops) {
     loop.controller->step();
   }
   EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
-  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "there was a permit, and it is told from none";
+  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "there was a permit, and it is distinguished from none";
   EXPECT_EQ(loop.machine.mode, JointMode::kBrake);
 }
 
@@ -83,7 +83,7 @@ TEST_F(RunningLoop, StopsWhenTheMonitorIsRestarted) {
   EXPECT_NE(loop.newest_permit().causes & kCauseMonitorRestarted, 0u);
 }
 
-TEST_F(RunningLoop, BeginsInInitWhenDriverAndMonitorBothStartAnew) {
+TEST_F(RunningLoop, BeginsInInitWhenDriverAndMonitorBothRestart) {
   loop.driver.set_driver_instance(100);
   loop.driver.begin_run(2);
   loop.restart_monitor();
@@ -196,7 +196,7 @@ TEST_F(RunningLoop, LatchesTheLossOfTheDriverOnceItIsSilent) {
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
 }
 
-TEST_F(RunningLoop, LatchesTheLossOfADriverThatIsBackBeforeSilenceTold) {
+TEST_F(RunningLoop, LatchesTheLossOfADriverThatIsBackBeforeItsSilenceIsNoticed) {
   loop.driver.set_driver_instance(100);
   loop.driver.begin_run(2);
   loop.steps(5);

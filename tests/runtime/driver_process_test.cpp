@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kMoment = 1'000'000;  // ns
 
-/// Is set down again slowly, and notes in a plain number that somebody has it.
+/// Is set down again slowly, and notes in a plain number that it is in use.
 class SlowMachine final : public Driver {
  public:
   void start() override {
@@ -59,10 +59,10 @@ class DriverProcessTest : public testing::Test {
   std::unique_ptr<DriverProcess> process_;
 };
 
-TEST_F(DriverProcessTest, ItsServicesNameWhomTheLoopWaitsFor) {
+TEST_F(DriverProcessTest, ItsServicesNameTheNodesThatTheLoopWaitsFor) {
   parameters_.loop.wait_for_nodes = true;
   DriverProcess& process = opened();
-  EXPECT_EQ(process.services()->set_pause(false).message, "running") << "nobody has looked yet";
+  EXPECT_EQ(process.services()->set_pause(false).message, "running") << "no cycle has looked yet";
   process.poll();
   EXPECT_EQ(process.services()->set_pause(false).message,
             "running; waiting for state_estimator, diff_drive_controller, safety_monitor");

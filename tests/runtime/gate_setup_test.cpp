@@ -30,7 +30,7 @@ TEST(GateSetup, AWheelsLimitsAreThoseOfItsModel) {
   EXPECT_TRUE(limits.wheel);
 }
 
-TEST(GateSetup, WhatNobodyKnowsIsNoLimit) {
+TEST(GateSetup, WhatIsUnknownIsNoLimit) {
   const JointLimits limits = limits_of([](JointModel& joint) {
     joint.velocity_limit = 0;
     joint.effort_rate = 0;

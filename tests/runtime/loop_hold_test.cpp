@@ -9,8 +9,8 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;    // ns
-constexpr std::int64_t kPatience = 10'000'000'000;  // ns; never reached where the loop answers
+constexpr std::int64_t kMillisecond = 1'000'000;   // ns
+constexpr std::int64_t kTimeout = 10'000'000'000;  // ns; never reached where the loop answers
 
 TEST(LoopHold, TicksWhenNothingIsAsked) {
   LoopHold hold;
@@ -44,7 +44,7 @@ TEST(LoopHold, AnswersWithTheAskingUnderWhichItStands) {
   LoopHold hold;
   const std::atomic<bool> stopping{false};
   const std::uint64_t first = hold.ask({.paused = 1});
-  EXPECT_FALSE(hold.stands(first)) << "nobody has looked";
+  EXPECT_FALSE(hold.stands(first)) << "no cycle has looked";
   ASSERT_FALSE(hold.may_tick(3));
   hold.stand(kMillisecond, stopping);
   EXPECT_TRUE(hold.stands(first));
@@ -52,9 +52,9 @@ TEST(LoopHold, AnswersWithTheAskingUnderWhichItStands) {
   EXPECT_FALSE(hold.stands(hold.ask({.paused = 1, .step_until = 5})));
 }
 
-TEST(LoopHold, AwaitsNobodyWhereNoLoopRuns) {
+TEST(LoopHold, AwaitsNothingWhereNoLoopRuns) {
   LoopHold hold;
-  EXPECT_FALSE(hold.await_stand(hold.ask({.paused = 1}), kPatience));
+  EXPECT_FALSE(hold.await_stand(hold.ask({.paused = 1}), kTimeout));
 }
 
 TEST(LoopHold, HandsTheFaultsOver) {
@@ -67,7 +67,7 @@ TEST(LoopHold, HandsTheFaultsOver) {
 }
 
 /// The parked loop's thread leaves `guarded` alone, although its wait is over again and again.
-TEST(LoopHold, WhoeverParksTheLoopHasTheMachineForItself) {
+TEST(LoopHold, AParkedLoopLeavesTheMachineToItsHolder) {
   LoopHold hold;
   std::atomic<bool> stopping{false};
   std::uint64_t guarded = 0;  // not atomic: a race is the thread sanitizer's to find
@@ -81,7 +81,7 @@ TEST(LoopHold, WhoeverParksTheLoopHasTheMachineForItself) {
   });
   while (!hold.looping()) std::this_thread::yield();
   for (int round = 0; round < 100; ++round) {
-    ASSERT_TRUE(hold.await_stand(hold.ask({.parked = 1}), kPatience));
+    ASSERT_TRUE(hold.await_stand(hold.ask({.parked = 1}), kTimeout));
     guarded = 0;
     hold.ask({.paused = 1, .parked = 1});
     EXPECT_EQ(guarded, 0u);

@@ -207,7 +207,7 @@ TEST_F(NodeFaults, AreTheSameInEveryRun) {
   }
 }
 
-TEST_F(NodeFaults, OfANewRunBeginAnew) {
+TEST_F(NodeFaults, OfANewRunRestart) {
   Loop other(Nodes::kWithFaults);
   inject(FaultComponent::kController, FaultKind::kGarbage);
   loop.steps(50);

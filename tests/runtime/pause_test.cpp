@@ -1,4 +1,4 @@
-/// A simulated machine that is paused, or set down anew, and what the other nodes make of it.
+/// A simulated machine that is paused, or set down again, and what the other nodes make of it.
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ TEST_F(PausedLoop, ShowsNothingBeforeTheFirstCycle) {
   EXPECT_EQ(loop.sensors.reader.sequence(), before);
 }
 
-TEST_F(PausedLoop, IsIgnoredByEverybody) {
+TEST_F(PausedLoop, IsIgnoredByEveryNode) {
   const StateFrame state = loop.newest_state();
   const CommandFrame command = loop.newest_command();
   const Permit permit = loop.newest_permit();

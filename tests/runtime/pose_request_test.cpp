@@ -5,7 +5,7 @@
 namespace robot_control {
 namespace {
 
-// Exactly, and in the very next cycle: whoever sets a pose may compare with ==.
+// Exactly, and in the very next cycle: a program that sets a pose may compare with ==.
 TEST(PoseRequest, HoldsExactlyFromTheNextCycleOn) {
   Loop loop;
   loop.steps(400);  // longer than the window in which the robot comes to stand

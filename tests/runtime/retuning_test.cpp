@@ -101,7 +101,7 @@ TEST_F(RetuningTest, AsksNoMarginForTheSpeedsOfTheStart) {
   EXPECT_THROW(close.set("{max_linear_speed: 1.01}"), ParameterError);
 }
 
-TEST_F(RetuningTest, LetsPassWhatTheMonitorOnlyTells) {
+TEST_F(RetuningTest, LetsPassWhatTheMonitorOnlyReports) {
   parameters.safety.wheel_speed.reaction = Reaction::kWarn;
   Retuning warned(parameters, robot, inbox);
   EXPECT_NO_THROW(warned.set("{max_linear_speed: 5}"));
@@ -147,7 +147,7 @@ class RetunedLoop : public ::testing::Test {
   DriveTuning tuning;
 };
 
-TEST_F(RetunedLoop, TellsFromTheStartWhatHolds) {
+TEST_F(RetunedLoop, ReportsFromTheStartWhatHolds) {
   EXPECT_EQ(tuning.count, 0u);
   EXPECT_EQ(tuning.linear.speed, 1.0);
   EXPECT_GT(tuning.wheels[1].kp, 0);

@@ -152,7 +152,7 @@ TEST_F(AttitudeTest, IsNotKnownForLongWithoutAnAccelerometer) {
   EXPECT_FALSE(attitude_.known());
   step({0, 0, 0}, rest());
   EXPECT_TRUE(attitude_.known());
-  EXPECT_NEAR(attitude_.tilt(), 0, kSmall) << "begins anew";
+  EXPECT_NEAR(attitude_.tilt(), 0, kSmall) << "restarts";
 }
 
 TEST_F(AttitudeTest, KnowsUpsideDown) {

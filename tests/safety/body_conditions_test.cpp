@@ -40,7 +40,7 @@ class BodyConditionsTest : public testing::Test {
     begin();
   }
 
-  /// Anew, with the parameters and the robot as they are now; healthy for 10 cycles.
+  /// Restarts with the parameters and the robot as they are now; healthy for 10 cycles.
   void begin() {
     facts_ = BodyConditions(parameters_, robot_, kPeriod);
     steps(10);
@@ -286,7 +286,7 @@ TEST_F(BodyConditionsTest, ASlowImuIsNotStuck) {
   }
 }
 
-TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteTellsNothing) {
+TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
   const double before = facts_.attitude().tilt();
   for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -303,7 +303,7 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteTellsNothing) {
   EXPECT_EQ(cycles_until(kCauseTilt, 100), -1);
 }
 
-TEST_F(BodyConditionsTest, ASampleThatIsNotValidTellsNothing) {
+TEST_F(BodyConditionsTest, ASampleThatIsNotValidIsIgnored) {
   sensors_.valid = kValidJoints;
   force_ = {100, 0, 0};
   rate_ = {30, 0, 0};
@@ -381,7 +381,7 @@ TEST_F(BodyConditionsTest, ANewRunKnowsNothing) {
   facts_.enter_run();
   EXPECT_FALSE(facts_.attitude().known());
   step();
-  EXPECT_TRUE(quiet()) << "the count begins anew";
+  EXPECT_TRUE(quiet()) << "the count restarts";
 }
 
 TEST_F(BodyConditionsTest, SkippedCyclesCount) {

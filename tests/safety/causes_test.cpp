@@ -88,7 +88,7 @@ TEST_F(CausesTest, ControllerIsLostInTheTwentiethCycleWithoutACommand) {
   expect_stop(SupervisorState::kStopped, kCauseControllerLost);
 }
 
-TEST_F(CausesTest, ACommandInTimeBeginsTheCountAnew) {
+TEST_F(CausesTest, ACommandInTimeRestartsTheCount) {
   for (int i = 0; i < 5; ++i) {
     ++input_.operator_input.heartbeats;
     input_.command = nullptr;
@@ -251,14 +251,14 @@ TEST_F(HeartbeatTest, ASevererCauseEndsTheRampAtOnce) {
   EXPECT_EQ(permit_.causes, kCauseHeartbeatLost | kCauseEmergencyStopService);
 }
 
-TEST_F(HeartbeatTest, AFaultEndsTheRampForRepair) {
+TEST_F(HeartbeatTest, AFaultEndsTheRampInFault) {
   steps(kHeartbeat + 1);
   sensors_.faults = kFaultLink;
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kFault);
 }
 
-// The fixture has asked for motion since a few cycles; nobody ever sent a heartbeat.
+// The fixture has requested motion for a few cycles; no heartbeat was ever sent.
 TEST_F(CausesTest, MotionWithoutAnyHeartbeatStopsAfterTheTimeout) {
   const std::uint64_t since = permit_.since_cycle;  // the first cycle of DRIVE; the next is the first after it
   while (cycle() < since + 1 + kHeartbeat) {

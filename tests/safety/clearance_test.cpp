@@ -33,9 +33,9 @@ double topic_limit(double value, double parameter = 0) {
 }
 
 TEST(ClearanceTest, TheRobotStopsExactlyWithinIt) {
-  for (const double way : {1e-9, 1e-3, 0.1, 1.0, 30.0, 1e6}) {
-    const double v = limit(way);
-    EXPECT_NEAR(v * kDelay + v * v / (2 * kDeceleration), way, 1e-12 * way);
+  for (const double distance : {1e-9, 1e-3, 0.1, 1.0, 30.0, 1e6}) {
+    const double v = limit(distance);
+    EXPECT_NEAR(v * kDelay + v * v / (2 * kDeceleration), distance, 1e-12 * distance);
   }
 }
 
@@ -48,8 +48,8 @@ TEST(ClearanceTest, TheTopicGoesBeforeTheParameter) {
   EXPECT_EQ(topic_limit(kInfinity, 0.1), kNoSpeedLimit);
 }
 
-TEST(ClearanceTest, NoWayOnTheTopicIsNoSpeed) {
-  for (const double way : {0.0, -0.0, -1.0, -kInfinity, kNaN}) EXPECT_EQ(topic_limit(way), 0) << way;
+TEST(ClearanceTest, NoDistanceOnTheTopicIsNoSpeed) {
+  for (const double distance : {0.0, -0.0, -1.0, -kInfinity, kNaN}) EXPECT_EQ(topic_limit(distance), 0) << distance;
 }
 
 TEST(ClearanceTest, NeverOverflows) {
@@ -78,11 +78,7 @@ TEST_F(MonitorTest, AClearanceLimitsTheSpeedInItsCycleAndLatchesNothing) {
 
 // After ramp_time (0.3 s), and twice that at most, no wheel may be faster than 1.2 · 0.2 m/s + 0.05 m/s = 2.9 rad/s.
 TEST_F(MonitorTest, AControllerThatDoesNotSlowDownIsStopped) {
-  SafetyParameters patient = parameters();
-  patient.heartbeat_timeout = 0;
-  monitor_ = SafetyMonitor(patient, robot(), kPeriod);
-  new_run();
-  steps(kStart);
+  begin_with(without_heartbeat());
   drive();
   input_.operator_input.clearances = 1;
   input_.operator_input.clearance = 0.016;  // 0.2 m/s
@@ -95,11 +91,7 @@ TEST_F(MonitorTest, AControllerThatDoesNotSlowDownIsStopped) {
 }
 
 TEST_F(MonitorTest, AControllerThatSlowsDownInTimeIsNot) {
-  SafetyParameters patient = parameters();
-  patient.heartbeat_timeout = 0;
-  monitor_ = SafetyMonitor(patient, robot(), kPeriod);
-  new_run();
-  steps(kStart);
+  begin_with(without_heartbeat());
   drive();
   input_.operator_input.clearances = 1;
   input_.operator_input.clearance = 0.026;

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
@@ -124,16 +124,16 @@ class Conditions : public MonitorTest, public testing::WithParamInterface<std::t
     steps(100);
   }
 
-  /// Cycles from the onset to the first in which `told` says so; `patience` at most.
-  template <class Told>
-  std::uint64_t break_until(std::uint64_t patience, Told told) {
+  /// Cycles from the onset to the first in which `reported` says so; `patience` at most.
+  template <class Reported>
+  std::uint64_t break_until(std::uint64_t patience, Reported reported) {
     Robot robot{sensors_, command_, speed_, noisy_gyro_};
     for (JointCommand& joint : command_.joints) joint.velocity *= row_.commanded_to_stand ? 0 : 1;
     for (std::uint64_t k = 0; k < patience; ++k) {
       robot.t = static_cast<double>(k) * kPeriod;
       row_.onset(robot);
       step();
-      if (told()) return k;
+      if (reported()) return k;
     }
     return patience;
   }
@@ -145,12 +145,12 @@ class Conditions : public MonitorTest, public testing::WithParamInterface<std::t
   std::uint64_t persistence_;
 };
 
-TEST_P(Conditions, ReactAsTheyAreToldInTheirCycle) {
+TEST_P(Conditions, ReactAsConfiguredInTheirCycle) {
   ASSERT_EQ(permit_.action, PermitAction::kDrive);
   ASSERT_EQ(permit_.causes | permit_.warnings, 0u);
   const std::uint64_t patience = latest() + 200;
-  const auto told = [&] { return ((permit_.causes | permit_.warnings) & row_.cause) != 0; };
-  const std::uint64_t k = break_until(patience, told);
+  const auto reported = [&] { return ((permit_.causes | permit_.warnings) & row_.cause) != 0; };
+  const std::uint64_t k = break_until(patience, reported);
   if (reaction_ == Reaction::kOff) {
     EXPECT_EQ(k, patience);
     EXPECT_EQ(permit_.action, PermitAction::kDrive);
@@ -211,7 +211,7 @@ TEST(CauseNames, RemediesDoNotSpeakOfTheReset) {
 // The rows are all that can be set: whatever is not fixed is in the table.
 TEST(ConditionTable, HasEveryCauseThatIsNotFixed) {
   std::uint64_t all = kAllCauses;
-  for (const StopRule& rule : kStopRules) all &= ~std::uint64_t{rule.cause};
+  for (const FixedCause& rule : kFixedCauses) all &= ~std::uint64_t{rule.cause};
   for (const Row& row : rows()) all &= ~std::uint64_t{row.cause};
   EXPECT_EQ(all, 0u) << names_of(kStopCauseNames, all);
 }

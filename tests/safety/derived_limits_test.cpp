@@ -1,4 +1,5 @@
-/// What a limit becomes that nobody gave. Two wheels of 3.5 N·m, 0.005 kg·m² and 30 rad/s, told at most 15 rad/s.
+/// What a limit becomes that was not given. Two wheels of 3.5 N·m, 0.005 kg·m² and 30 rad/s, commanded at most 15
+/// rad/s.
 
 #include "safety/derived_limits.h"
 

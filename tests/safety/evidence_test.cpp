@@ -1,4 +1,4 @@
-// What a permit tells of its causes, and for how long.
+// What a permit reports of its causes, and for how long.
 
 #include "safety/monitor_fixture.h"
 
@@ -10,19 +10,16 @@ class EvidenceTest : public MonitorTest {
   static constexpr double kSlow = 0.6;  // m/s; the robot drives at 0.5
 
   EvidenceTest() {
-    SafetyParameters chosen = parameters();
-    chosen.heartbeat_timeout = 0;
+    SafetyParameters chosen = without_heartbeat();
     chosen.slow_speed = kSlow;
     chosen.battery_low = {22, 0, Reaction::kSlow};
     chosen.imu_lost.reaction = Reaction::kWarn;
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     sensors_.valid |= kValidBattery;
     sensors_.battery_voltage = 24;
-    new_run();
-    steps(kStart);
+    begin_with(chosen);
     drive();
   }
-  std::vector<std::uint64_t> told() const {
+  std::vector<std::uint64_t> reported() const {
     std::vector<std::uint64_t> causes;
     for (const CauseEvidence& evidence : permit_.evidence) {
       if (evidence.cause != 0) causes.push_back(evidence.cause);
@@ -47,7 +44,7 @@ TEST_F(EvidenceTest, AWarningStaysForASecondAfterItsFactAndSlowsDownAsLong) {
   step();
   EXPECT_EQ(permit_.warnings, 0u);
   EXPECT_EQ(permit_.speed_limit, kNoSpeedLimit);
-  EXPECT_EQ(told(), Causes());
+  EXPECT_EQ(reported(), Causes());
 }
 
 TEST_F(EvidenceTest, AFactThatComesAndGoesIsOneWarning) {
@@ -70,7 +67,7 @@ TEST_F(EvidenceTest, StandsInTheOrderInWhichCausesCameWithWarningsLast) {
   const std::uint64_t stopped = cycle();
   input_.command = nullptr;
   steps(kLoss);
-  EXPECT_EQ(told(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseBatteryLow}));
+  EXPECT_EQ(reported(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseBatteryLow}));
   EXPECT_EQ(permit_.evidence[0].cycle, stopped);
   EXPECT_EQ(permit_.evidence[1].cycle, cycle());
   EXPECT_EQ(permit_.evidence[1].value, static_cast<double>(kLoss));
@@ -103,7 +100,7 @@ TEST_F(EvidenceTest, IsClearedByAnAcceptedReset) {
   step();
   stand();
   ASSERT_EQ(reset(), 0u);
-  EXPECT_EQ(told(), Causes());
+  EXPECT_EQ(reported(), Causes());
 }
 
 TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
@@ -118,7 +115,7 @@ TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
   monitor_.restore(last);
   monitor_.reset({});
   step();
-  EXPECT_EQ(told(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));
+  EXPECT_EQ(reported(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));
   EXPECT_EQ(permit_.evidence[0].cycle, last.evidence[0].cycle);
   EXPECT_EQ(permit_.evidence[1].value, last.evidence[1].value);
 }
@@ -128,7 +125,7 @@ TEST_F(EvidenceTest, OutlivesANewRun) {
   step();
   new_run();
   steps(5);
-  EXPECT_EQ(told(), Causes{kCauseEmergencyStopService});
+  EXPECT_EQ(reported(), Causes{kCauseEmergencyStopService});
 }
 
 }  // namespace

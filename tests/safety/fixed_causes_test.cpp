@@ -1,8 +1,8 @@
-// Every cause whose reaction nobody can change (stop_category.h): latched in its cycle, and what the gate then does.
+// Every cause whose reaction cannot be set (fixed_reactions.h): latched in its cycle, and what the gate then does.
 
 #include <string>
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
@@ -10,7 +10,7 @@ namespace robot_control {
 namespace {
 
 /// Driving at full speed, a heartbeat in the last cycle.
-class FixedCauses : public MonitorTest, public testing::WithParamInterface<StopRule> {
+class FixedCauses : public MonitorTest, public testing::WithParamInterface<FixedCause> {
  protected:
   FixedCauses() {
     drive();
@@ -91,16 +91,16 @@ TEST_P(FixedCauses, LatchInTheirCycleAndReachTheMotors) {
   step();
   ASSERT_EQ(permit_.causes, std::uint64_t{cause()});
 
-  const bool ramp = GetParam().category == StopCategory::kRamp;
-  const bool repair = GetParam().category == StopCategory::kBrakeForRepair;
-  EXPECT_EQ(permit_.state, ramp     ? SupervisorState::kStopping
-                           : repair ? SupervisorState::kFault
-                                    : SupervisorState::kStopped);
+  const bool ramp = GetParam().reaction == FixedReaction::kRamp;
+  const bool fault = GetParam().reaction == FixedReaction::kFault;
+  EXPECT_EQ(permit_.state, ramp    ? SupervisorState::kStopping
+                           : fault ? SupervisorState::kFault
+                                   : SupervisorState::kStopped);
   const std::uint64_t latched = cycle();
   const std::uint64_t deadline = permit_.ramp_until;
   EXPECT_EQ(deadline, ramp ? latched + kRamp : 0);
 
-  gate_obeys_ = true;  // what it tells is another matter than what it does
+  gate_obeys_ = true;  // what it reports and what it does are two things
   const auto acts = [&] { return ramp ? ramps() : braked(); };
   while (!acts() && cycle() < latched + kToMotors) step();
   EXPECT_TRUE(acts());
@@ -115,11 +115,11 @@ TEST_P(FixedCauses, LatchInTheirCycleAndReachTheMotors) {
   }
 }
 
-std::string name_of_rule(const testing::TestParamInfo<StopRule>& info) {
+std::string name_of_rule(const testing::TestParamInfo<FixedCause>& info) {
   return std::string(row_of(kStopCauseNames, info.param.cause)->name);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, FixedCauses, testing::ValuesIn(kStopRules), name_of_rule);
+INSTANTIATE_TEST_SUITE_P(Every, FixedCauses, testing::ValuesIn(kFixedCauses), name_of_rule);
 
 }  // namespace
 }  // namespace robot_control

@@ -11,11 +11,7 @@ namespace {
 class GateConditionsTest : public MonitorTest {
  protected:
   GateConditionsTest() {
-    SafetyParameters patient = parameters();
-    patient.heartbeat_timeout = 0;
-    monitor_ = SafetyMonitor(patient, robot(), kPeriod);
-    new_run();
-    steps(kStart);
+    begin_with(without_heartbeat());
     drive();
     steps(50);
   }

@@ -33,8 +33,8 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
     monitor_.emplace(derived_limits(parameters, robot_, 15), robot_, period);
   }
 
-  /// m/s wished at t.
-  static double wish(double t) {
+  /// m/s requested at t.
+  static double request(double t) {
     t = std::fmod(t, kDrive);
     return t < 0.5 ? 0 : t < 2.5 ? 0.9 : t < 4 ? -0.5 : 0;
   }
@@ -49,7 +49,7 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
     const auto ramp = [&](double& value, double target, double rate) {
       value += std::clamp(target - value, -rate * period, rate * period);
     };
-    ramp(linear_, wish(t), 1);
+    ramp(linear_, request(t), 1);
     ramp(angular_, turn(t), 4);
     const std::array<double, 2> target{(linear_ - 0.25 * angular_) / 0.1, (linear_ + 0.25 * angular_) / 0.1};
     const double gain = 1 - std::exp(-period / kLag);
@@ -88,7 +88,7 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
                      .permit_cycle = newest_ + 1 < cycle_ ? newest_ : older_};
     if (cycle_ < 3) sensors_.gate = {};
     command_.head.cycle = command_.state_cycle = cycle_ == 0 ? 0 : cycle_ - 1;
-    command_.twist_requested.linear[0] = wish(static_cast<double>(cycle_) / GetParam().rate);
+    command_.twist_requested.linear[0] = request(static_cast<double>(cycle_) / GetParam().rate);
     command_.zero_requests = 1;  // the run begins with a zero request
     input_ = {.sensors = &sensors_,
               .command = &command_,
@@ -98,18 +98,7 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
               .operator_input = {}};
   }
 
-  static RobotModel make_robot() {
-    RobotModel robot;
-    robot.joints.assign(2, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
-    robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
-                    {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
-    robot.wheels[1].side = Side::kRight;
-    robot.wheel_base = 0.5;
-    robot.mass = 12;
-    return robot;
-  }
-
-  const RobotModel robot_ = make_robot();
+  const RobotModel robot_ = two_wheels();
   std::optional<SafetyMonitor> monitor_;
   SensorFrame sensors_;
   CommandFrame command_;

@@ -7,18 +7,18 @@
 namespace robot_control {
 namespace {
 
-/// 1 kHz; more than 50 overruns within a second, for a tenth of it, are told.
+/// 1 kHz; more than 50 overruns within a second, for a tenth of it, are reported.
 class MachineConditionsTest : public testing::Test {
  protected:
   bool overruns(std::uint64_t counted, std::uint64_t cycles = 1) {
-    bool told = false;
+    bool reported = false;
     sensors_.overruns = counted;
     for (std::uint64_t i = 0; i < cycles; ++i) {
       active_.clear();
       facts_.step(sensors_, 1, active_);
-      told = told || (active_.with(Reaction::kWarn) & kCauseOverruns) != 0;
+      reported = reported || (active_.with(Reaction::kWarn) & kCauseOverruns) != 0;
     }
-    return told;
+    return reported;
   }
 
   static SafetyParameters parameters() {
@@ -40,13 +40,13 @@ TEST_F(MachineConditionsTest, OverrunsOfTheLastSecondCount) {
   EXPECT_FALSE(overruns(101, 1000));
 }
 
-// A monitor that starts, or is started anew, beside a driver that runs for hours.
+// A monitor that starts, or is restarted, beside a driver that runs for hours.
 TEST_F(MachineConditionsTest, OverrunsOfBeforeTheFirstLookDoNotCount) {
   EXPECT_FALSE(overruns(1000, 2000));
   EXPECT_TRUE(overruns(1051, 200));
 }
 
-TEST_F(MachineConditionsTest, ANewRunCountsAnew) {
+TEST_F(MachineConditionsTest, ANewRunRestartsTheCount) {
   overruns(1000, 2000);
   facts_.enter_run();
   EXPECT_FALSE(overruns(0, 100));

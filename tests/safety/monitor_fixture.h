@@ -19,6 +19,18 @@ namespace robot_control {
 
 inline constexpr std::uint64_t kToMotors = 3;  ///< cycles from a cause to what the gate does about it
 
+/// Two wheels of 0.1 m radius, 0.5 m apart.
+inline RobotModel two_wheels() {
+  RobotModel robot;
+  robot.joints.assign(2, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
+  robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
+                  {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
+  robot.wheels[1].side = Side::kRight;
+  robot.wheel_base = 0.5;
+  robot.mass = 12;
+  return robot;
+}
+
 /// Healthy case: standing in READY at cycle kStart, nothing asked for, encoders of 4096 counts. Heartbeat timeout 0.3
 /// s, ramp at most 0.3 s. Two wheels of 0.1 m radius, 0.5 m apart, of at most 15 rad/s.
 class MonitorTest : public testing::Test {
@@ -29,7 +41,8 @@ class MonitorTest : public testing::Test {
   static constexpr std::uint64_t kHeartbeat = 300;
   static constexpr std::uint64_t kRamp = 300;
   static constexpr std::uint64_t kSilence = 1250;  ///< cycles of cmd_vel_timeout
-  static constexpr std::uint64_t kStands = 102;  ///< cycles until it is believed: kStandingTime, the anchor, the count
+  static constexpr std::uint64_t kStands =
+      102;  ///< cycles until it counts as standing: kStandingTime, the anchor, the count
   static constexpr std::uint64_t kStart = 120;
   static constexpr double kQuantum = 2 * std::numbers::pi / 4096;
   static constexpr double kSpeed = 5;             ///< rad/s, when it drives
@@ -57,15 +70,19 @@ class MonitorTest : public testing::Test {
     return derived_limits(parameters, robot(), 15);
   }
 
-  static RobotModel robot() {
-    RobotModel robot;
-    robot.joints.assign(kWheels, {.name = "wheel", .child_link = "wheel", .effort_limit = 3, .velocity_limit = 20});
-    robot.wheels = {{.joint = 0, .centre_base = {0, 0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005},
-                    {.joint = 1, .centre_base = {0, -0.25, 0}, .radius = 0.1, .width = 0.04, .inertia = 0.005}};
-    robot.wheels[1].side = Side::kRight;
-    robot.wheel_base = 0.5;
-    robot.mass = 12;
-    return robot;
+  static SafetyParameters without_heartbeat() {
+    SafetyParameters chosen = parameters();
+    chosen.heartbeat_timeout = 0;
+    return chosen;
+  }
+
+  static RobotModel robot() { return two_wheels(); }
+
+  /// As the healthy case, with another monitor.
+  void begin_with(const SafetyParameters& chosen) {
+    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
+    new_run();
+    steps(kStart);
   }
 
   /// The next cycle.
@@ -95,7 +112,7 @@ class MonitorTest : public testing::Test {
       next_tick_ = cycle;
     }
     while (next_tick_ < cycle) tick(given);
-    sensors_.gate = told_of(gate_.report());
+    sensors_.gate = reported_by(gate_.report());
     monitor_.step(input_, permit_);
     given_head_ = sensors_.head;
     tick(given);
@@ -112,7 +129,7 @@ class MonitorTest : public testing::Test {
     command_.zero_requests = command_.first_cycle = input_.state_first_cycle = 0;
     monitor_.reset(input_.operator_input);
   }
-  /// `linear` m/s wished, and the wheels' targets; 0: the brake holds.
+  /// `linear` m/s requested, and the wheels' targets; 0: the brake holds.
   void ask_for(double linear) {
     command_.twist_requested.linear[0] = linear;
     target(linear == 0 ? 0 : kSpeed);
@@ -129,7 +146,7 @@ class MonitorTest : public testing::Test {
     steps(5);
     ASSERT_EQ(permit_.state, SupervisorState::kDrive);
   }
-  /// Standing long enough to be believed.
+  /// Standing long enough to count as standing.
   void stand() {
     ask_for(0);
     turn_wheels(0);
@@ -162,8 +179,8 @@ class MonitorTest : public testing::Test {
   bool begun_ = false;
   bool noisy_gyro_ = true;
   bool fresh_state_ = true;              ///< the command descends from the state of its own cycle
-  bool gate_obeys_ = true;               ///< false: it tells that it lets everything pass
-  bool gate_works_ = true;               ///< false: it tells that it brakes always
+  bool gate_obeys_ = true;               ///< false: it reports that it lets everything pass
+  bool gate_works_ = true;               ///< false: it reports that it always brakes
   std::uint64_t refused_frames_ = 0;     ///< which it counts beyond its own
   std::array<double, kWheels> speed_{};  ///< rad/s, true
 
@@ -184,8 +201,8 @@ class MonitorTest : public testing::Test {
     ++next_tick_;
   }
 
-  /// What a gate tells that works and obeys, or does not.
-  GateReport told_of(const GateReport& true_report) const {
+  /// What a gate reports that works and follows the permit, or does not.
+  GateReport reported_by(const GateReport& true_report) const {
     constexpr std::uint64_t kRefusal = kGateNoPermit | kGatePermitExpired | kGatePermitBrake | kGateRampOver;
     GateReport report = true_report;
     report.refused += refused_frames_;

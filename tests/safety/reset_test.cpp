@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
@@ -52,7 +52,7 @@ TEST_F(ResetTest, IsRefusedWhileAWheelTurns) {
   EXPECT_EQ(reset(), std::uint64_t{kRefusalMoving});
 }
 
-TEST_F(ResetTest, IsRefusedWhileNobodyKnowsWhetherAWheelTurns) {
+TEST_F(ResetTest, IsRefusedWhileItIsUnknownWhetherAWheelTurns) {
   sensors_.valid &= ~std::uint64_t{kValidJoints};
   EXPECT_EQ(reset(), std::uint64_t{kRefusalMoving});
 }
@@ -142,7 +142,7 @@ TEST_F(MonitorTest, AResetDuringTheRampCountsAsMoving) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopping);
 }
 
-TEST_F(MonitorTest, AResetInInitIsRefusedNamingWhoIsMissing) {
+TEST_F(MonitorTest, AResetInInitIsRefusedNamingTheMissingNode) {
   new_run();
   input_.command = nullptr;
   EXPECT_EQ(reset(), std::uint64_t{kRefusalInit});
@@ -199,7 +199,7 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
       }
       ASSERT_EQ(permit_.active & ~permit_.causes, 0u) << "seed " << seed << " step " << i;
       if (permit_.action == PermitAction::kRamp) {
-        ASSERT_EQ(permit_.causes & ~causes_of(StopCategory::kRamp), 0u) << "seed " << seed << " step " << i;
+        ASSERT_EQ(permit_.causes & ~causes_of(FixedReaction::kRamp), 0u) << "seed " << seed << " step " << i;
         ASSERT_LT(cycle(), permit_.ramp_until) << "seed " << seed << " step " << i;
       }
       ASSERT_EQ(permit_.expiry, cycle() + kPermitLife);

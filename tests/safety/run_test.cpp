@@ -18,7 +18,7 @@ class RunTest : public MonitorTest {
 
 // INIT.
 
-TEST_F(RunTest, InitBrakesUnlatchedAndNamesWhoIsMissing) {
+TEST_F(RunTest, InitBrakesUnlatchedAndNamesTheMissingNode) {
   new_run();
   input_.command = nullptr;
   input_.state_seen = false;
@@ -108,7 +108,7 @@ TEST_F(RunTest, ANewRunDuringTheRampIsAStop) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseHeartbeatLost});
 }
 
-TEST_F(RunTest, ANewRunBeginsTheCountsAnew) {
+TEST_F(RunTest, ANewRunRestartsTheCounts) {
   input_.command = nullptr;
   steps(kLoss - 1);
   new_run();
@@ -146,7 +146,7 @@ TEST_F(RunTest, ALevelThatIsTrueCountsInANewRun) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-TEST_F(RunTest, AnInboxThatBeganAnewIsNoStop) {
+TEST_F(RunTest, AnInboxThatRestartedIsNoStop) {
   e_stop();
   stand();
   ASSERT_EQ(reset(), 0u);
@@ -164,7 +164,7 @@ TEST_F(RunTest, HeartbeatsOfTheLastRunAreNotAwaited) {
   EXPECT_EQ(permit_.state, SupervisorState::kReady);
 }
 
-// A restart of the driver, which no clock tells.
+// A restart of the driver, which no clock shows.
 
 TEST_F(RunTest, ADriverStartedAgainIsLostHoweverSoonItIsBack) {
   drive();

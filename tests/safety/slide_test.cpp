@@ -11,13 +11,7 @@ constexpr double kSecond = 1000;  // cycles
 
 class SlideTest : public MonitorTest {
  protected:
-  SlideTest() {
-    SafetyParameters patient = parameters();
-    patient.heartbeat_timeout = 0;
-    monitor_ = SafetyMonitor(patient, robot(), kPeriod);
-    new_run();
-    steps(kStart);
-  }
+  SlideTest() { begin_with(without_heartbeat()); }
   /// Long enough for the bound to have grown to the rims' speed.
   void drive_for_long() {
     ask_for(0.5);
@@ -110,7 +104,7 @@ TEST(Slide, GrowsNoFasterThanTyresCarryAndNotBeyondTheLimit) {
     motion.step(sensors);
     slide.step(motion, false, 1);
   }
-  EXPECT_NEAR(slide.speed(), 2.0, 0.05) << "nobody knows, but for two windows";
+  EXPECT_NEAR(slide.speed(), 2.0, 0.05) << "unknown, but for two windows";
   slide.enter_run();
   EXPECT_FALSE(slide.possible());
 }

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -24,7 +24,7 @@ SupervisorState after(SupervisorState state, std::initializer_list<Trigger> trig
 // The specification, written down a second time as a full matrix: '-' stays.
 TEST(SupervisorTable, EveryStateAnswersEveryTriggerAsSpecified) {
   const std::map<SupervisorState, std::array<SupervisorState, kTriggers>> expected{
-      // repair, brake, ramp, ramp ended, unreleased, reset incomplete, reset complete, complete, motion, rest
+      // fault, brake, ramp, ramp ended, unreleased, reset incomplete, reset complete, complete, motion, rest
       {kInit, {kFault, kStopped, kStopped, kInit, kInit, kInit, kInit, kReady, kInit, kInit}},
       {kReady, {kFault, kStopped, kStopping, kReady, kInit, kReady, kReady, kReady, kDrive, kReady}},
       {kDrive, {kFault, kStopped, kStopping, kDrive, kInit, kDrive, kDrive, kDrive, kDrive, kReady}},
@@ -42,7 +42,7 @@ TEST(SupervisorTable, EveryStateAnswersEveryTriggerAsSpecified) {
 }
 
 TEST(SupervisorTable, OfEverySetOfTriggersTheSeverestThatFitsWins) {
-  constexpr std::array kBySeverity{kRepairCause,     kBrakeCause,    kRampCause, kUnreleased, kRampEnded,
+  constexpr std::array kBySeverity{kFaultCause,      kBrakeCause,    kRampCause, kUnreleased, kRampEnded,
                                    kResetIncomplete, kResetComplete, kComplete,  kMotion,     kRest};
   static_assert(kBySeverity.size() == kTriggers);
   for (const SupervisorState state : kStates) {
@@ -68,10 +68,10 @@ TEST(SupervisorTable, NoSetOfTriggersLeavesALatchWithACauseOrWithoutAReset) {
       for (std::size_t i = 0; i < kTriggers; ++i) triggers.add(static_cast<Trigger>(i), (set >> i & 1u) != 0);
       const SupervisorState next = next_state(state, triggers);
       const bool reset = triggers.holds(kResetComplete) || triggers.holds(kResetIncomplete);
-      const bool latched = triggers.holds(kRepairCause) || triggers.holds(kBrakeCause) || triggers.holds(kRampCause);
+      const bool latched = triggers.holds(kFaultCause) || triggers.holds(kBrakeCause) || triggers.holds(kRampCause);
       const bool released = next != kStopped && next != kFault;
       ASSERT_FALSE(released && (latched || !reset)) << name_of(state) << ", triggers " << set;
-      ASSERT_FALSE(triggers.holds(kRepairCause) && next != kFault) << name_of(state) << ", triggers " << set;
+      ASSERT_FALSE(triggers.holds(kFaultCause) && next != kFault) << name_of(state) << ", triggers " << set;
     }
   }
 }
@@ -84,17 +84,17 @@ TEST(SupervisorTable, OnlyReadyAndDrivePermitDriving) {
   EXPECT_EQ(action_in(static_cast<SupervisorState>(99)), PermitAction::kBrake);
 }
 
-TEST(StopCategories, NoCauseHasTwo) {
+TEST(FixedReactions, NoCauseHasTwo) {
   std::uint64_t all = 0;
-  for (const StopRule& rule : kStopRules) {
-    EXPECT_EQ(all & rule.cause, 0u) << row_of(kStopCauseNames, rule.cause)->name;
-    all |= rule.cause;
+  for (const FixedCause& row : kFixedCauses) {
+    EXPECT_EQ(all & row.cause, 0u) << row_of(kStopCauseNames, row.cause)->name;
+    all |= row.cause;
   }
 }
 
-TEST(StopCategories, OnlyTheHeartbeatRampsAlwaysAndOnlyTheDriversFaultsWaitForRepair) {
-  EXPECT_EQ(causes_of(StopCategory::kRamp), std::uint64_t{kCauseHeartbeatLost});
-  EXPECT_EQ(causes_of(StopCategory::kBrakeForRepair), kCauseDriverFault | kCauseGateDisobeys);
+TEST(FixedReactions, OnlyTheHeartbeatRampsAndOnlyTheDriversFaultsLeadToFault) {
+  EXPECT_EQ(causes_of(FixedReaction::kRamp), std::uint64_t{kCauseHeartbeatLost});
+  EXPECT_EQ(causes_of(FixedReaction::kFault), kCauseDriverFault | kCauseGateDisobeys);
 }
 
 TEST(Names, SpeakOfEveryBitThatIsSet) {

@@ -8,12 +8,9 @@ namespace {
 class WheelFollowingTest : public MonitorTest {
  protected:
   WheelFollowingTest() {
-    SafetyParameters chosen = parameters();
-    chosen.heartbeat_timeout = 0;
+    SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = Reaction::kOff;
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
-    new_run();
-    steps(kStart);
+    begin_with(chosen);
     drive();
     steps(100);
   }
@@ -53,7 +50,7 @@ TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown)
 }
 
 // Runaway has 3.75 rad/s and 0.15 s; 95 rad/s too fast are 25 times as much, and do with a 25th of that and the window.
-TEST_F(WheelFollowingTest, TheFasterAWheelRunsAwayTheSoonerItIsTold) {
+TEST_F(WheelFollowingTest, TheFasterAWheelRunsAwayTheSoonerItIsReported) {
   turn_wheels(100);
   steps(20 + 150 / 25 + 1);
   EXPECT_NE(permit_.causes & (kCauseRunaway | kCauseWheelSpeed), 0u);

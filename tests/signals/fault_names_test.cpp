@@ -68,7 +68,7 @@ TEST(FaultCode, GivesEveryComponentAnOctalDigit) {
   EXPECT_EQ(fault_code(faults), 0700000100u);
 }
 
-TEST(FaultCode, TellsAnyTwoFaultsApart) {
+TEST(FaultCode, DistinguishesAnyTwoFaults) {
   std::set<std::uint64_t> codes;
   for (std::size_t component = 0; component < kFaultComponents; ++component) {
     for (std::size_t kind = 1; kind < kFaultKinds; ++kind) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A robot of four processes that somebody drives at full speed, from whom one of them is then taken.
+/// A robot of four processes that is driven at full speed and then loses one of them.
 
 #include <cstdint>
 #include <optional>
@@ -31,7 +31,7 @@ struct MeasuredStop {
 class DrivingRobot {
  public:
   static constexpr double kFullSpeed = 1.0;       ///< m/s: max_linear_speed
-  static constexpr double kPatience = 30.0;       ///< s: what takes longer has not happened
+  static constexpr double kTimeout = 30.0;        ///< s: what takes longer has not happened
   static constexpr std::size_t kRestCycles = 20;  ///< twice what the monitor asks for
 
   explicit DrivingRobot(const Parameters& parameters)
@@ -44,7 +44,7 @@ class DrivingRobot {
   }
 
   /// The users' parameters, but for accelerations that a test has time for: what motors of 2 · 3.5 N·m on wheels of
-  /// 0.1 m give 12 kg is 5.8 m/s²; brakes of 2 · 2.2 N·m, 3.7 m/s². What is believed of brakes on ice would make every
+  /// 0.1 m give 12 kg is 5.8 m/s²; brakes of 2 · 2.2 N·m, 3.7 m/s². What is assumed of brakes on ice would make every
   /// reset wait for 2 s.
   static Parameters quick(const std::string& params) {
     Parameters parameters = read_parameters(params);
@@ -70,7 +70,7 @@ class DrivingRobot {
   }
   std::uint64_t cycle() const { return sensors().head.cycle; }
 
-  /// m/s, by the newest frame; for whoever cannot wait for the trace.
+  /// m/s, by the newest frame; for tests that cannot wait for the trace.
   double speed() const {
     TruthFrame truth;
     return truth_.reader.newest(truth) == Lookup::kFrame ? truth.twist_base.linear[0] : 0;
@@ -127,8 +127,8 @@ class DrivingRobot {
 
   /// Until the condition holds. False: it did not in time.
   template <class Condition>
-  bool await(Condition condition, double patience_s = kPatience) {
-    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+  bool await(Condition condition, double timeout_s = kTimeout) {
+    const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
     for (look(); !condition(); look()) {
       if (monotonic_ns() > end_ns) return false;
       sleep_ns(kLookNs);
@@ -160,7 +160,7 @@ class DrivingRobot {
     ++operator_input_.resets;
     nodes_.desk().operator_input.store(operator_input_);
     if (!await([&] { return permit().resets_handled == operator_input_.resets; })) {
-      throw std::runtime_error("nobody answers a reset");
+      throw std::runtime_error("no node answers a reset");
     }
     return permit().reset_refusal;
   }

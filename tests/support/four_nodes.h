@@ -47,13 +47,13 @@ class FourNodes {
   using Operator = std::function<void(DriverProcess&)>;
 
   /// Real-time factor of the run. It ends after `parameters.plant.cycles`, or when `operate` returns, which runs in a
-  /// thread of its own and may call the services. Throws std::runtime_error when it does not end within `patience_s`.
-  double run(double patience_s, const Operator& operate = {}) {
+  /// thread of its own and may call the services. Throws std::runtime_error when it does not end within `timeout_s`.
+  double run(double timeout_s, const Operator& operate = {}) {
     std::unique_ptr<TelemetryProcess> telemetry;
     if (record_) telemetry = std::make_unique<TelemetryProcess>(parameters_, robot_, bus_.name());
     DriverProcess driver(parameters_, robot_, bus_.name());
     driver.open_driver(std::make_unique<MujocoPlant>(robot_, parameters_.plant, parameters_.loop.period()));
-    const std::int64_t give_up_ns = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
+    const std::int64_t give_up_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
     std::atomic<bool> operated{false};
     std::jthread operator_thread([&] {
       if (operate == nullptr) return;

@@ -42,11 +42,11 @@ inline double closed_loop_speed(const Parameters& parameters, std::uint64_t cycl
 }
 
 inline double four_nodes_speed(Parameters parameters, const RobotModel& robot, std::uint64_t cycles) {
-  constexpr double kPatience = 120;  // s
+  constexpr double kTimeout = 120;  // s
   parameters.loop.clock = ClockMode::kLockstep;
   parameters.loop.wait_for_telemetry = false;
   parameters.plant.cycles = cycles;
-  return FourNodes(parameters, robot, false).run(kPatience);
+  return FourNodes(parameters, robot, false).run(kTimeout);
 }
 
 }  // namespace robot_control

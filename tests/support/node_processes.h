@@ -37,7 +37,7 @@ class NodeProcesses {
   explicit NodeProcesses(const Parameters& parameters)
       : parameters_(parameters), robot_(read_robot(load_description(parameters.urdf), parameters.robot)) {
     new (desk_.get()) ControlDesk();
-    parameters_.loop.wait_for_nodes = true;  // a run begins with everybody there
+    parameters_.loop.wait_for_nodes = true;  // a run begins with all nodes there
   }
 
   void start_loop() {
@@ -51,7 +51,7 @@ class NodeProcesses {
     if (node == LoopNode::kTelemetry) desk_->lost_rows.store(0);
     desk_->missing[index_of(node)].store(0);
     processes_[index_of(node)] = std::make_unique<ChildProcess>([this, node] { return run(node); });
-    // Only cycle 0 of the first run waits for everybody; a plant that is started again finds others braking.
+    // Only cycle 0 of the first run waits for all nodes; a plant that is started again finds others braking.
     if (node == LoopNode::kPlant) parameters_.loop.wait_for_nodes = false;
   }
 
@@ -130,11 +130,11 @@ class NodeProcesses {
     }
   }
 
-  template <class Node, class Hear>
-  [[noreturn]] void run_consumer(LoopNode name, Hear hear) {
+  template <class Node, class Receive>
+  [[noreturn]] void run_consumer(LoopNode name, Receive receive) {
     Node node(parameters_, robot_, bus_.name());
     for (;;) {
-      hear(node);
+      receive(node);
       node.poll();
       desk_->missing[index_of(name)].store(missing_bits(node.missing()));
       sleep_ns(kLookNs);

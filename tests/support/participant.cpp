@@ -3,7 +3,7 @@
 ///   rc_participant NODE --bus NAME --params YAML [--set path=value]… [--seconds S]
 ///
 /// NODE: mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry. Ends on SIGTERM or
-/// SIGINT, after S seconds, or, the plant, after mujoco_plant.cycles. Exit code 1: refused, told on stderr.
+/// SIGINT, after S seconds, or, the plant, after mujoco_plant.cycles. Exit code 1: refused, reason on stderr.
 
 #include <atomic>
 #include <csignal>

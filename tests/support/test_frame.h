@@ -1,5 +1,5 @@
 #pragma once
-/// A frame whose content tells whether it is whole: every value is the cycle.
+/// A frame whose content shows whether it is whole: every value is the cycle.
 
 #include <algorithm>
 #include <array>

@@ -107,7 +107,7 @@ bool all_are(const Values& values, std::uint64_t number) {
   return std::ranges::all_of(values, [&](std::uint64_t value) { return value == number; });
 }
 
-/// One frame after the other, without pause, until told to stop.
+/// One frame after the other, without pause, until stopped.
 inline int write_torture_frames(const TortureMemory<LatestFrames<TortureFrame>>& memory, TortureControl& control) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // a benchmark that is interrupted leaves no writer behind
   const OnCore core(1);

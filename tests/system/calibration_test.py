@@ -26,7 +26,7 @@ class CalibrationTest(RobotTestCase):
         cls.estimator: dict[str, str] = {}
         rospy.set_param(f"{PLANT}/left_radius_error", LEFT)
         rospy.set_param(f"{ESTIMATOR}/calibration_file", str(cls.file))
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.hear_diagnostics)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         super().setUpClass()
 
     @classmethod
@@ -37,19 +37,19 @@ class CalibrationTest(RobotTestCase):
         shutil.rmtree(cls.folder)
 
     @classmethod
-    def hear_diagnostics(cls, message: DiagnosticArray) -> None:
+    def receive_diagnostics(cls, message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name == ESTIMATOR:
                 cls.estimator = {pair.key: pair.value for pair in status.values}
 
-    def told(self, name: str) -> float:
+    def reported(self, name: str) -> float:
         return float(self.estimator.get(name, "nan"))
 
     def kept(self) -> dict[str, float]:
         return dict(yaml.safe_load(self.file.read_text())["calibration"])
 
     def wander(self, known: Callable[[], bool]) -> None:
-        """Straight on and in curves, by turns: one curve alone tells unequal wheels from a wrong base badly."""
+        """Straight on and in curves, by turns: one curve alone hardly separates unequal wheels from a wrong base."""
         for angular in (0.0, 0.8, 0.0, -0.8) * 10:
             end = time.monotonic() + 2.0
             self.robot.drive_until("two seconds", lambda end=end: time.monotonic() > end, angular=angular)
@@ -65,7 +65,7 @@ class CalibrationTest(RobotTestCase):
     def test_what_was_learned_goes_on_after_a_restart_and_a_broken_file_refuses_it(self) -> None:
         self.robot.await_ready()
         self.assertFalse(self.file.exists())
-        self.wander(lambda: self.told("radius_ratio_deviation") < 0.002)
+        self.wander(lambda: self.reported("radius_ratio_deviation") < 0.002)
         self.robot.await_rest()
         self.assertEqual(self.robot.nodes[ESTIMATOR].end(), 0)
         kept = self.kept()
@@ -76,8 +76,8 @@ class CalibrationTest(RobotTestCase):
         self.robot.start()
         self.robot.await_ready()
         self.assertIn("calibration of", self.robot.nodes[ESTIMATOR].output)
-        wait_for("its diagnostics", lambda: abs(self.told("radius_ratio") - kept["radius_ratio"]) < 0.001)
-        self.assertLess(self.told("radius_ratio_deviation"), 0.003)
+        wait_for("its diagnostics", lambda: abs(self.reported("radius_ratio") - kept["radius_ratio"]) < 0.001)
+        self.assertLess(self.reported("radius_ratio_deviation"), 0.003)
 
         self.assertEqual(self.robot.nodes[ESTIMATOR].end(), 0)
         whole = self.file.read_text()

@@ -20,11 +20,11 @@ class CommandsLockstepTest(RobotTestCase):
         super().setUpClass()
         cls.desk = CommandDesk(cls.robot)
         cls.fastest = 0.0
-        rospy.Subscriber("cmd_vel_out", TwistStamped, cls.hear)
+        rospy.Subscriber("cmd_vel_out", TwistStamped, cls.receive)
         rospy.wait_for_service(f"{PLANT}/step", LIMIT)
 
     @classmethod
-    def hear(cls, message: TwistStamped) -> None:
+    def receive(cls, message: TwistStamped) -> None:
         cls.fastest = max(cls.fastest, message.twist.linear.x)
 
     def setUp(self) -> None:
@@ -46,14 +46,16 @@ class CommandsLockstepTest(RobotTestCase):
         answer = rospy.ServiceProxy(f"{PLANT}/step", Step)(cycles)
         self.assertTrue(answer.success, answer.message)
 
-    def send(self, age: float, told: str) -> None:
+    def send(self, age: float, expected: str) -> None:
         """One command, stamped `age` s of simulated time ago; waits for what the log or diagnostics say of it."""
         self.desk.values = {}  # they may hold the sender of what was sent before, and so may the log
         logged = len(self.robot.nodes[CONTROLLER].output)
         stamp = rospy.Time.from_sec(rospy.get_time() - age)
         wait_for(
-            told,
-            lambda: told in self.robot.nodes[CONTROLLER].output[logged:] or told == self.desk.values.get("senders"),
+            expected,
+            lambda: (
+                expected in self.robot.nodes[CONTROLLER].output[logged:] or expected == self.desk.values.get("senders")
+            ),
             every=lambda: self.desk.send(0.5, 0.0, stamp),
         )
 
@@ -70,7 +72,7 @@ class CommandsLockstepTest(RobotTestCase):
         wait_for("the reason", lambda: "stale" in self.desk.reasons)
         self.assertEqual(self.fastest, 0.0)
 
-    def test_a_stamp_of_the_wall_clock_is_told_as_such(self) -> None:
+    def test_a_stamp_of_the_wall_clock_is_reported(self) -> None:
         self.send(rospy.get_time() - time.time(), "is not the robot's /clock")
         self.step(400)
         self.assertEqual(self.fastest, 0.0)

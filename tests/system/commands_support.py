@@ -1,4 +1,4 @@
-"""What the tests of commands send and hear beside system_support."""
+"""What the tests of commands send and receive beside system_support."""
 
 import time
 

@@ -65,13 +65,13 @@ class CommandsTest(RobotTestCase):
         self.drive_stamped()
         wait_for("standstill", lambda: abs(self.robot.speed) < STANDING, every=lambda: self.desk.send_aged(0.5, age))
 
-        def told() -> bool:
+        def reported() -> bool:
             return "stale" in self.desk.reasons and "stale" in self.desk.values.get("reasons", "")
 
-        wait_for("the reason", told, every=lambda: self.desk.send_aged(0.5, age))
+        wait_for("the reason", reported, every=lambda: self.desk.send_aged(0.5, age))
         self.assertIn("the last cmd_vel_stamped was older", self.desk.message)
         self.assertGreater(int(self.desk.values["commands_stale"]), 0)
-        # Of a test before this one it may have been told less than 10 s ago: then it comes when they are over.
+        # Of a test before this one it may have been reported less than 10 s ago: then it comes when they are over.
         wait_for(words, lambda: self.log.count(words) > before, every=lambda: self.desk.send_aged(0.5, age))
         self.assertEqual(self.log.count(words), before + 1, "one warning for a series")
         self.assertLess(abs(self.robot.speed), MOVED)
@@ -87,7 +87,7 @@ class CommandsTest(RobotTestCase):
         self.expect_refusal(2.0, "s old by its stamp, more than cmd_vel_timeout (1.25 s)")
         self.drive_stamped()
 
-    def test_a_clock_an_hour_ahead_is_told_once(self) -> None:
+    def test_a_clock_an_hour_ahead_is_reported_once(self) -> None:
         self.expect_refusal(-HOUR, "is stamped 3600 s in the future")
         self.drive_stamped()
 
@@ -123,7 +123,7 @@ class CommandsTest(RobotTestCase):
 
     def test_no_jump_brings_an_old_command_back(self) -> None:
         self.drive_stamped()
-        wait_for("standstill, nobody sends", lambda: abs(self.robot.speed) < STANDING)
+        wait_for("standstill without a sender", lambda: abs(self.robot.speed) < STANDING)
         for jump in JUMPS:
             self.clock.jump(jump)
             end = time.monotonic() + SPELL

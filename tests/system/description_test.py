@@ -34,7 +34,7 @@ class DescriptionTest(unittest.TestCase):
         self.assertEqual(self.robot.odom.child_frame_id, "base_footprint", "the root link: one parent for every frame")
         self.robot.drive_until("0.5 m/s", self.robot.driving)
 
-    def test_the_plants_urdf_becomes_everybodys_and_goes_with_it(self) -> None:
+    def test_the_plants_urdf_becomes_every_nodes_and_ends_with_it(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             urdf = Path(folder, "other.urdf")
             urdf.write_text(other_robot())

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The loop drives, stops when it is told nothing, too much or nonsense, and says why."""
+"""The loop drives, stops without commands, with too many or with invalid ones, and reports why."""
 
 import itertools
 import math
@@ -148,7 +148,7 @@ class DrivesTest(RobotTestCase):
             tasks = list(Path(f"/proc/{robot.nodes[name].pid}/task").iterdir())
             before.update({task: page_faults_of(task) for task in tasks if schedule_of(task)[0] == os.SCHED_FIFO})
         if not before:
-            self.skipTest("no permission for SCHED_FIFO, by which the loops are told from other threads")
+            self.skipTest("no permission for SCHED_FIFO, by which the loops are distinguished from other threads")
         robot.drive_until("half a metre", lambda start=robot.distance: robot.distance > start + 0.5)
         self.assertEqual({task: page_faults_of(task) for task in before}, before)
 

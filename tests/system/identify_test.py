@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""identify.py beside a running robot: it measures, writes, and stops when it is told to."""
+"""identify.py beside a running robot: it measures, writes, and stops on request."""
 
 import contextlib
 import math

@@ -18,7 +18,7 @@ from robot_control.record.main import TOPICS
 from system_support import LIMIT, MONITOR, refusal, repository, wait_for
 
 SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "clearance", "tf_static", "/clock", "/rosout"}
-"""Topics without messages, certainly or perhaps: nobody commands, no transform is static, /clock is of lockstep alone,
+"""Topics without messages, certainly or perhaps: no node commands, no transform is static, /clock is of lockstep alone,
 and what the nodes log they may have logged before the recorder came."""
 LAUNCH_LIMIT = 3 * LIMIT
 """s; a launch is a dozen programs, and roslaunch gives each 15 s to end."""
@@ -106,22 +106,22 @@ class LaunchTest(unittest.TestCase):
         return next(line for line in lines if line.startswith("run,")).split(",")
 
     def record(self, namespace: str) -> set[str]:
-        """Topics in the bag of a launch that ran until the recorder had heard all that is told."""
+        """Topics in the bag of a launch that ran until the recorder had received all that is published."""
         ns = [f"__ns:={namespace}"] if namespace else []
         launch = self.launch("clock:=wall", "record:=true", *ns)
-        told = {rosgraph.names.ns_join(f"/{namespace}", topic) for topic in set(TOPICS) - SILENT}
+        published = {rosgraph.names.ns_join(f"/{namespace}", topic) for topic in set(TOPICS) - SILENT}
 
-        def heard() -> bool:
+        def received() -> bool:
             self.assertTrue(launch.running, launch.output)
-            return told <= received_by_recorder(f"/{namespace}")
+            return published <= received_by_recorder(f"/{namespace}")
 
-        wait_for("a message of every topic at the recorder", heard, LAUNCH_LIMIT)
+        wait_for("a message of every topic at the recorder", received, LAUNCH_LIMIT)
         launch.end()
         bags = list((self.out / namespace).glob("*.bag"))
         self.assertEqual(len(bags), 1, launch.output)
         with rosbag.Bag(str(bags[0])) as bag:
             topics = set(bag.get_type_and_topic_info().topics)
-        self.assertLessEqual(told, topics)
+        self.assertLessEqual(published, topics)
         return topics
 
     def test_ends_by_itself_with_every_row_and_keeps_an_earlier_log(self) -> None:
@@ -130,7 +130,7 @@ class LaunchTest(unittest.TestCase):
         self.run_lockstep(200)
         self.assertEqual((self.out / "run.1.csv").read_bytes(), first)
 
-        # Both outlive the launch; who repairs one of them is told of the other.
+        # Both outlive the launch; a reader of one of them is pointed to the other.
         self.assertEqual((rospy.get_param("/use_sim_time"), rospy.get_param("/robot/clock")), (True, "lockstep"))
         rospy.set_param("/use_sim_time", False)
         self.assertIn("`rosparam delete /robot/clock`", refusal(MONITOR))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Where the nodes of sim.launch listen: on the loopback, unless told otherwise."""
+"""Where the nodes of sim.launch listen: on the loopback, unless set otherwise."""
 
 import os
 import signal

@@ -18,7 +18,7 @@ FULL_SPEED = 1.0
 FAST = 0.97 * FULL_SPEED
 """m/s; who is faster than that is there."""
 KEPT = 0.9 * FULL_SPEED
-"""m/s; who is never slower than that has not been told to stop: the brake passes it in 30 ms."""
+"""m/s; a robot that is never slower than that was not stopped: the brake passes it in 30 ms."""
 
 
 def free_port(address: str) -> int:

@@ -12,7 +12,7 @@ class NamespaceTest(unittest.TestCase):
         init_test_node("namespace_test")
         with running_robot() as first, running_robot("robot2") as second:
             second.drive_until("0.5 m/s of the second", second.driving)
-            self.assertLess(first.distance, 0.05, "the first was told nothing")
+            self.assertLess(first.distance, 0.05, "the first received no command")
             second.await_rest()
             before = second.distance
             first.drive_until("0.5 m/s of the first", first.driving)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What state_estimator publishes, and where it may be told to be."""
+"""What state_estimator publishes, and setting its pose."""
 
 import math
 
@@ -39,22 +39,22 @@ class OdometryTest(RobotTestCase):
         cls.imu_count = 0
         cls.estimator: dict[str, str] = {}
         cls.estimator_message = ""
-        rospy.Subscriber("wheel_odom", Odometry, cls.hear_wheels)
-        rospy.Subscriber("imu/data", Imu, cls.hear_imu)
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.hear_diagnostics)
+        rospy.Subscriber("wheel_odom", Odometry, cls.receive_wheels)
+        rospy.Subscriber("imu/data", Imu, cls.receive_imu)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         rospy.wait_for_service("set_odometry", LIMIT)
 
     @classmethod
-    def hear_wheels(cls, message: Odometry) -> None:
+    def receive_wheels(cls, message: Odometry) -> None:
         cls.wheels = message
 
     @classmethod
-    def hear_imu(cls, message: Imu) -> None:
+    def receive_imu(cls, message: Imu) -> None:
         cls.imu = message
         cls.imu_count += 1
 
     @classmethod
-    def hear_diagnostics(cls, message: DiagnosticArray) -> None:
+    def receive_diagnostics(cls, message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name == ESTIMATOR:
                 cls.estimator_message = status.message
@@ -84,7 +84,7 @@ class OdometryTest(RobotTestCase):
         self.assertAlmostEqual(message.voltage, 24.0, delta=2.0)
         self.assertTrue(math.isnan(message.percentage))
 
-    def test_the_pose_is_what_it_is_told_to_be(self) -> None:
+    def test_the_pose_is_what_it_is_set_to(self) -> None:
         answer = self.set_odometry(1.5, -2.5, 0.5 + 4 * math.pi)
         self.assertTrue(answer.success, answer.message)
         self.assertIn("1.5 m, -2.5 m, 0.5", answer.message)
@@ -140,7 +140,7 @@ class OdometryTest(RobotTestCase):
         np.testing.assert_allclose(felt, [0, 0, 9.81], atol=0.8)
         orientation = np.diag(np.reshape(self.imu.orientation_covariance, (3, 3)))
         self.assertTrue((orientation[:2] > 0).all(), orientation)
-        self.assertLess(orientation[2], 1e-6, "the heading was told")
+        self.assertLess(orientation[2], 1e-6, "the heading was set")
         for covariance in (self.imu.angular_velocity_covariance, self.imu.linear_acceleration_covariance):
             self.assertTrue((np.diag(np.reshape(covariance, (3, 3))) > 0).all(), covariance)
 

@@ -52,16 +52,16 @@ class RestartTest(RobotTestCase):
     def test_blames_the_estimator_alone_for_its_loss(self) -> None:
         # A machine that stands still at this very moment latches something else first: another try.
         robot = self.robot
-        told = []
+        reported = []
         for _ in range(3):
             robot.nodes[ESTIMATOR].kill()
             wait_for("estimator_lost", lambda: "estimator_lost" in robot.causes)
-            told.append(robot.status.first_cause)
+            reported.append(robot.status.first_cause)
             robot.start(ESTIMATOR)
             self.expect_latched("estimator_lost")
-            if told[-1] == "estimator_lost":
+            if reported[-1] == "estimator_lost":
                 return
-        self.fail(f"first causes: {told}")
+        self.fail(f"first causes: {reported}")
 
     def test_monitor(self) -> None:
         self.robot.nodes[MONITOR].kill()

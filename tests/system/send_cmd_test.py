@@ -20,7 +20,7 @@ STATES = {"INIT": SafetyStatus.INIT, "READY": SafetyStatus.READY, "STOPPED": Saf
 class SendCmdTest(unittest.TestCase):
     def setUp(self) -> None:
         self.received: list[tuple[float, float, float]] = []
-        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.hear, tcp_nodelay=True)
+        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.receive, tcp_nodelay=True)
         self.monitor = self.monitor_that_says("READY")
 
     def tearDown(self) -> None:
@@ -46,7 +46,7 @@ class SendCmdTest(unittest.TestCase):
         """Received, in their order, without the zeros."""
         return [twist for _, *twist in self.received if twist != [0.0, 0.0]]
 
-    def hear(self, message: Twist) -> None:
+    def receive(self, message: Twist) -> None:
         self.received.append((time.monotonic(), message.linear.x, message.angular.z))
 
     def started(self, *arguments: str) -> Program:
@@ -85,7 +85,7 @@ class SendCmdTest(unittest.TestCase):
         sender.wait()
         wait_for("the zero", self.zero_came)
 
-    def test_sends_what_it_is_told_and_ends(self) -> None:
+    def test_sends_what_the_arguments_say_and_ends(self) -> None:
         sender = self.started("--linear", "-0.3", "--angular", "0", "--period", "0.1", "--count", "4")
         self.assertEqual(sender.wait(), 0, sender.output)
         wait_for("the zero", self.zero_came)
@@ -95,12 +95,12 @@ class SendCmdTest(unittest.TestCase):
         self.assertIn("cmd_vel 4:", sender.output)
         self.assertNotIn("cmd_vel 5:", sender.output)
 
-    def test_waits_for_somebody_who_listens(self) -> None:
+    def test_waits_for_a_subscriber(self) -> None:
         self.subscriber.unregister()
         sender = self.started("--period=0.1", "--count=1")
         wait_for("the missing subscriber", lambda: "no node subscribes to /cmd_vel" in sender.output)
         self.assertNotIn("cmd_vel 1:", sender.output)
-        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.hear, tcp_nodelay=True)
+        self.subscriber = rospy.Subscriber("cmd_vel", Twist, self.receive, tcp_nodelay=True)
         self.assertEqual(sender.wait(), 0, sender.output)
         wait_for("the zero", self.zero_came)
         self.assertEqual(self.commands(), [[0.5, 0.2]])

@@ -23,17 +23,17 @@ class ServicesTest(RobotTestCase):
         cls.truth: Odometry | None = None
         cls.plant: dict[str, str] = {}
         cls.plant_message = ""
-        rospy.Subscriber("ground_truth/odom", Odometry, cls.hear_truth)
-        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.hear_diagnostics)
+        rospy.Subscriber("ground_truth/odom", Odometry, cls.receive_truth)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         for name in ("set_pause", "step", "reset", "inject_fault"):
             rospy.wait_for_service(f"{PLANT}/{name}", LIMIT)
 
     @classmethod
-    def hear_truth(cls, message: Odometry) -> None:
+    def receive_truth(cls, message: Odometry) -> None:
         cls.truth = message
 
     @classmethod
-    def hear_diagnostics(cls, message: DiagnosticArray) -> None:
+    def receive_diagnostics(cls, message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name == PLANT:
                 cls.plant_message = status.message
@@ -64,7 +64,7 @@ class ServicesTest(RobotTestCase):
         return answer.success, answer.message
 
     def cycle(self) -> int:
-        """Which the plant says it is in, once it has said so anew."""
+        """Which the plant says it is in, once it has said so again."""
         self.plant.clear()
         wait_for("diagnostics of the plant", lambda: "cycle" in self.plant)
         return int(self.plant["cycle"])

@@ -66,10 +66,10 @@ class SetParametersTest(RobotTestCase):
         self.robot.drive_until("0.3 m/s", lambda: 0.2 < self.robot.speed < 0.32)
         self.assertEqual(rospy.get_param(f"{CONTROLLER}/max_linear_speed"), 0.3)
         self.assertEqual(rospy.get_param(f"{CONTROLLER}/feed_forward/mass"), 12.5)
-        told = f"set_parameters: set {number}: max_linear_speed from 1 to 0.3, pid_kp from"
-        wait_for("a line of it", lambda: told in self.robot.nodes[CONTROLLER].output)
+        reported = f"set_parameters: set {number}: max_linear_speed from 1 to 0.3, pid_kp from"
+        wait_for("a line of it", lambda: reported in self.robot.nodes[CONTROLLER].output)
 
-    def test_the_log_tells_which_rows_belong_to_which_set(self) -> None:
+    def test_the_log_shows_which_rows_belong_to_which_set(self) -> None:
         first = self.accept("{max_linear_jerk: 8.5}")
         wait_for("rows of it", lambda: len(self.rows(first)) > 0)
         second = self.accept("{max_linear_jerk: 10, pid_kd: 0.0005}")

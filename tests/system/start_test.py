@@ -57,7 +57,7 @@ def parameter(name: str, value: object) -> Iterator[None]:
 
 
 def free_port() -> int:
-    """A loopback port where nobody listens."""
+    """A loopback port where no process listens."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
@@ -109,7 +109,7 @@ class StartTest(unittest.TestCase):
         self.forget(PLANT)
 
     def test_refuses_without_the_real_time_that_is_required(self) -> None:
-        # At once: nobody else runs.
+        # At once: no other node runs.
         prefix = unprivileged()
         with parameter("robot/realtime", "required"), tempfile.TemporaryDirectory() as home:
             Path(home).chmod(0o777)
@@ -168,7 +168,7 @@ class StartTest(unittest.TestCase):
             for node in robot.nodes.values():
                 self.assertEqual(node.end(), 0, node.output)
 
-    def test_waiting_node_names_whom_it_waits_for(self) -> None:
+    def test_waiting_node_names_the_nodes_it_waits_for(self) -> None:
         program = Program(CONTROLLER)
         try:
             wait_for("the names", lambda: "waiting for mujoco_plant, state_estimator, safety_monitor" in program.output)
@@ -229,7 +229,7 @@ class StartTest(unittest.TestCase):
             code = program.end()
         self.assertEqual(code, 0, program.output)
 
-    def test_tells_nothing_of_an_earlier_session_as_fresh(self) -> None:
+    def test_publishes_nothing_of_an_earlier_session_as_fresh(self) -> None:
         # The controller ends first, so its last command drives; then the monitor latches its loss.
         with running_robot() as robot:
             robot.drive_until("0.5 m/s", robot.driving)
@@ -242,18 +242,18 @@ class StartTest(unittest.TestCase):
 
             wheels: list[float] = []
             limited: list[float] = []
-            told: list[SafetyStatus] = []
+            reported: list[SafetyStatus] = []
             subscribers = [
                 rospy.Subscriber("joint_commands", Float64MultiArray, lambda m: wheels.extend(m.data)),
                 rospy.Subscriber("cmd_vel_out", TwistStamped, lambda m: limited.append(m.twist.linear.x)),
-                rospy.Subscriber("safety_status", SafetyStatus, told.append),
+                rospy.Subscriber("safety_status", SafetyStatus, reported.append),
             ]
             robot.start(MONITOR)
             absent = {PLANT, ESTIMATOR, CONTROLLER}
-            wait_for("the names of who is missing", lambda: told and set(told[-1].missing) == absent)
+            wait_for("the names of the missing nodes", lambda: reported and set(reported[-1].missing) == absent)
             robot.start(CONTROLLER)
             wait_for("the controller's wait", lambda: "waiting for mujoco_plant" in robot.nodes[CONTROLLER].output)
-            for status in told:  # the latch outlives its processes
+            for status in reported:  # the latch outlives its processes
                 self.assertEqual((status.state, status.causes), (SafetyStatus.STOPPED, ["controller_lost"]), status)
             self.assertIn("latched since before this start: controller_lost", robot.nodes[MONITOR].output)
             self.assertEqual((wheels, limited), ([], []), "nothing has been commanded")

@@ -98,7 +98,7 @@ class WhyTest(RobotTestCase):
         wait_for("the new one's word", lambda: "monitor_restarted" in self.robot.causes)
         self.robot.release()
 
-    def test_a_paused_simulation_is_told_with_the_way_out(self) -> None:
+    def test_a_paused_simulation_is_reported_with_its_remedy(self) -> None:
         pause = rospy.ServiceProxy(f"{PLANT}/set_pause", SetBool)
         pause(True)
         try:

@@ -6,7 +6,7 @@ import numpy as np
 
 RADIUS, WHEEL_BASE = 0.1, 0.5  # m
 IMU = np.array([0.05, 0.02, 0.06])  # m, in base_link
-GRAVITY = 9.80665  # m/s²
+GRAVITY = 9.81  # m/s²
 STEP = 1e-4  # s; the trapezoids below err by less than 1e-6 m
 
 

@@ -40,7 +40,7 @@ def plan(straight=True, turns=True):
 def drive(wanted=None, delay=0, echo=False, counts=0):
     """The log of wheels that follow `wanted` exactly, `delay` rows later than the bus.
 
-    `echo`: the drive tells at once what it was told, and does it `delay` rows later. `counts`: of the encoders per
+    `echo`: the drive reports at once what was commanded, and does it `delay` rows later. `counts`: of the encoders per
     turn; 0: exact.
     """
     wanted = plan() if wanted is None else wanted

@@ -1,4 +1,4 @@
-"""A recording made of formulas: a robot on level ground that does exactly what it is told, without any noise."""
+"""A recording made of formulas: a robot on level ground that does exactly what is commanded, without any noise."""
 
 import numpy as np
 from lab.odometry.errors import Errors

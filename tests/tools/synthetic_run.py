@@ -66,7 +66,7 @@ def healthy_run():
 
 
 def brake_at(log, cycle, reasons=1 << 5):
-    """A gate that braked in `cycle`, for want of a command unless told otherwise."""
+    """A gate that braked in `cycle`, for want of a command unless set otherwise."""
     log["gate_verdict"][cycle] = 0
     log["gate_reasons"][cycle] = reasons
     log["missed"][cycle:] += 1

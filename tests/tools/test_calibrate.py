@@ -99,7 +99,7 @@ def test_warns_of_a_square_that_slipped(robot):
     assert any("200 mm from the mean" in sentence for sentence in outcome.warnings)
 
 
-def test_believes_no_answer_in_other_units():
+def test_accepts_no_answer_in_other_units():
     assert implausible_distance(3.02, 3.0) == ""
     assert "metres" in implausible_distance(302.0, 3.0)
     assert implausible_return((0.3, -0.4), 4.0) == ""

@@ -133,8 +133,8 @@ def test_deviations_are_those_of_many_readings_of_a_tape():
         found.append(fit(straights, squares, WHEELS))
     for name in ("scale", "ratio", "base"):
         spread = np.std([getattr(one, name) for one in found])
-        told = np.mean([getattr(one, f"{name}_deviation") for one in found])
-        assert told == pytest.approx(spread, rel=0.22), name
+        reported = np.mean([getattr(one, f"{name}_deviation") for one in found])
+        assert reported == pytest.approx(spread, rel=0.22), name
         assert np.mean([getattr(one, name) for one in found]) == pytest.approx(getattr(TRUE, name), abs=spread * 0.4)
 
 

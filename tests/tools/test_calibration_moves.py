@@ -1,4 +1,4 @@
-"""calibrate.py's pilot on a robot that does exactly what it is told, late."""
+"""calibrate.py's pilot on a robot that does exactly what is commanded, late."""
 
 import math
 

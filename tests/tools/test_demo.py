@@ -87,7 +87,7 @@ def test_the_folder_is_made_and_left_empty(tmp_path):
     assert list((tmp_path / "new" / "out").iterdir()) == []
 
 
-def test_a_disk_that_fails_on_the_way_is_told_without_a_traceback(tmp_path, monkeypatch, capsys):
+def test_a_disk_that_fails_during_the_run_is_reported_without_a_traceback(tmp_path, monkeypatch, capsys):
     def fail(seconds, out):
         raise OSError(28, "No space left on device", str(out / "run.png"))
 

@@ -188,7 +188,7 @@ def write_log(path, log, run_id):
         file.writelines(",".join([str(run_id), *map(repr, row)]) + "\n" for row in zip(*cells, strict=True))
 
 
-def test_a_log_of_the_node_is_estimated_anew_bit_for_bit(run):
+def test_a_log_of_the_node_is_estimated_again_bit_for_bit(run):
     log = ClosedLoop(seed=2).run(4.0, lambda t: (0.4, 0.3 if t > 1 else 0.0))
     write_log("run.csv", log, 17)
     _, message = run("run.csv", "--csv", "out.csv")
@@ -254,7 +254,7 @@ def test_a_csv_that_is_wrong_is_refused_by_its_line_and_nothing_is_written(run, 
     assert [path.name for path in tmp_path.iterdir()] == ["in.csv"]
 
 
-def test_a_last_line_that_was_cut_short_is_left_out_and_told(run, columns):
+def test_a_last_line_that_was_cut_short_is_left_out_and_reported(run, columns):
     write_csv("in.csv", columns)
     text = Path("in.csv").read_text()
     Path("in.csv").write_text(text[:-60])
@@ -263,7 +263,7 @@ def test_a_last_line_that_was_cut_short_is_left_out_and_told(run, columns):
     assert "line 2401, the last one, was cut short and is left out" in report
 
 
-def test_a_gap_is_told(run, columns):
+def test_a_gap_is_reported(run, columns):
     write_csv("in.csv", {name: np.delete(values, slice(1000, 1300)) for name, values in columns.items()})
     report, message = run("in.csv", *ROBOT)
     assert message == ""
@@ -473,7 +473,7 @@ def test_wheel_odometry_is_read_where_there_are_no_joint_states(rosbag, run, exa
     assert_at(read_csv("out.csv"), exact)
 
 
-def test_messages_out_of_order_are_sorted_and_told(rosbag, run, exact):
+def test_messages_out_of_order_are_sorted_and_reported(rosbag, run, exact):
     messages = list(messages_of(exact))
     write_bag(rosbag, messages)
     run("in.bag", *ROBOT, "--csv", "even.csv")
@@ -503,7 +503,7 @@ def test_a_message_per_wheel_is_understood(rosbag, run, exact):
     assert Path("out.csv").read_text() == Path("even.csv").read_text()
 
 
-def test_an_imu_that_says_it_has_no_accelerometer_is_believed(rosbag, run, exact):
+def test_an_imu_that_says_it_has_no_accelerometer_has_none(rosbag, run, exact):
     def deaf():
         for topic, message, stamp in messages_of(exact):
             if topic == "/imu/data_raw":

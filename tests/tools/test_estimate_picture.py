@@ -37,7 +37,7 @@ def labels(axes):
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-def test_wheels_and_estimate_can_be_told_apart_where_they_agree(panels):
+def test_wheels_and_estimate_can_be_distinguished_where_they_agree(panels):
     for axes in panels(imu=True)[:2]:
         width = {line.get_label(): line.get_linewidth() for line in axes.lines}
         assert width["wheels alone"] > 2 * width["estimate"]

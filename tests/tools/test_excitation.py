@@ -20,8 +20,8 @@ def driven(excitation, limits, axis):
     speed = way = 0.0
     ways = []
     for k in range(round(excitation.seconds / PERIOD)):
-        wish = excitation.command(k * PERIOD)[axis]
-        speed += max(-limits.deceleration * PERIOD, min(limits.acceleration * PERIOD, wish - speed))
+        request = excitation.command(k * PERIOD)[axis]
+        speed += max(-limits.deceleration * PERIOD, min(limits.acceleration * PERIOD, request - speed))
         way += speed * PERIOD
         ways.append(way)
     return ways
@@ -61,7 +61,7 @@ def test_no_speed_beyond_what_is_allowed():
     assert planned(space=100, max_speed=9).angular == ANGULAR.speed
 
 
-def test_a_wish_after_the_end_is_zero():
+def test_the_request_after_the_end_is_zero():
     assert planned().command(1e6) == (0.0, 0.0)
 
 
@@ -73,7 +73,7 @@ def test_refuses_a_space_that_is_too_small_and_says_which_is_enough():
     assert enough >= SLOWEST * CRUISE
 
 
-def test_refuses_a_speed_that_tells_nothing():
+def test_refuses_a_speed_that_excites_nothing():
     with pytest.raises(NoRoomError, match="--max-speed"):
         planned(max_speed=0.01)
 

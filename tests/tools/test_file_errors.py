@@ -48,7 +48,7 @@ def test_sources_that_are_not_built_say_what_to_do():
     assert "source install/setup.bash" in message
 
 
-def test_another_python_is_told_which_one_to_call(tmp_path):
+def test_for_another_python_the_message_names_the_right_one(tmp_path):
     for source in (SCRIPTS / "robot_control").glob("*.py"):
         (tmp_path / "robot_control").mkdir(exist_ok=True)
         (tmp_path / "robot_control" / source.name).write_text(source.read_text())

@@ -24,7 +24,7 @@ def log():
     return drive.drive()
 
 
-def test_finds_the_law_that_a_drive_obeys(log):
+def test_finds_the_law_that_a_drive_follows(log):
     found = identify(log, drive.BASE)
     # Within a cycle the torque is constant and the plan is not: of second order in the period.
     assert values(found) == pytest.approx(TRUTH, rel=1e-4)

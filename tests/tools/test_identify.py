@@ -115,7 +115,7 @@ def test_refuses_parameters_that_are_wrong(run_csv, tmp_path, monkeypatch):
 
 
 def test_without_a_master_it_names_both_ways_out(monkeypatch):
-    monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")  # reserved; nobody listens
+    monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")  # reserved; no process listens
     message = refusal(monkeypatch)
     assert "no ROS master at http://127.0.0.1:1" in message
     assert "--log" in message

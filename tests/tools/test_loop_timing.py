@@ -33,7 +33,7 @@ def test_a_tick_that_slips_is_late_and_ends_a_long_period(run):
     assert timing.slipped == pytest.approx(0.005)
 
 
-def test_what_is_missed_while_the_nodes_end_is_nobodys_deadline(run):
+def test_what_is_missed_while_the_nodes_end_is_no_missed_deadline(run):
     run["command_published_ns"][-20:] = np.nan
     run["missed"][-16:] = np.arange(1, 17)
     timing = loop_timing(run)

@@ -87,7 +87,7 @@ def test_a_wheel_that_climbs_and_one_whose_body_pitches_do_not_slip():
 # Errors.
 
 
-def test_a_pose_is_told_in_the_frame_of_another():
+def test_a_pose_is_expressed_in_the_frame_of_another():
     track = Track(np.array([1.0, 1.0]), np.array([2.0, 5.0]), np.array([np.pi / 2, np.pi]))
     assert relative(track, 0, 1) == pytest.approx([3.0, 0.0, np.pi / 2])
 
@@ -104,7 +104,7 @@ def test_a_return_error_is_that_of_its_own_square():
     assert return_errors(recording, shifted, still)[:, 0] == pytest.approx([8.0, 8.0])
 
 
-def test_a_reset_truth_begins_anew_in_its_own_axes():
+def test_a_reset_truth_restarts_in_its_own_axes():
     track = Track(
         np.array([0.0, 1.0, 1.0, 1.0]), np.array([0.0, 0.0, 2.0, 5.0]), np.array([0.0, 0.0, np.pi / 2, np.pi])
     )
@@ -114,7 +114,7 @@ def test_a_reset_truth_begins_anew_in_its_own_axes():
     assert reset.yaw == pytest.approx([0.0, 0.0, 0.0, np.pi / 2])
 
 
-def test_who_stands_does_not_count_for_consistency():
+def test_a_standing_robot_does_not_count_for_consistency():
     runs = [
         run_of("random", pose_nees=np.array([3.0, np.nan, np.nan]), seed=seed, killed={OURS: 0, RAW: 1})
         for seed in (0, 1)
@@ -221,7 +221,7 @@ def test_runs_in_which_wheels_do_well_do_not_count_as_missed():
         ({"ours": 0.12}, "slip, position over simple part's"),
     ],
 )
-def test_each_broken_promise_is_told(broken, name):
+def test_each_broken_promise_is_reported(broken, name):
     promises = all_promises([run_of(**broken)])
     assert not kept(promises)[name]
 

@@ -33,7 +33,7 @@ def test_a_robot_without_any_error_is_where_each_says(method):
     assert np.hypot(path.x - true.x, path.y - true.y).max() <= JUMPS * 9  # m, of way
 
 
-def test_raw_wheels_turn_by_the_base_they_believe():
+def test_raw_wheels_turn_by_the_nominal_base():
     recording = drive(ARC, errors=Errors(0.0, 0.0, 0.02, 0.0))
     assert raw_wheels(recording).yaw[-1] == pytest.approx(1.02 * 4.0, abs=ROUNDING)
     assert calibrated_wheels(recording).yaw[-1] == pytest.approx(4.0, abs=ROUNDING)
@@ -68,9 +68,9 @@ def test_the_simple_part_keeps_what_its_filter_could_not_learn():
 def test_a_second_standstill_teaches_what_has_changed():
     recording = drive(STAND, LINE, STAND, LINE)
     recording.gyro[10_000:, 2] += 0.001
-    believed = bias(recording, standing(recording))
-    assert abs(believed[12_000]) < 1e-12
-    assert 0.0001 < believed[-1] < 0.001
+    estimated = bias(recording, standing(recording))
+    assert abs(estimated[12_000]) < 1e-12
+    assert 0.0001 < estimated[-1] < 0.001
 
 
 def test_it_stands_only_while_wheels_and_gyro_are_quiet():

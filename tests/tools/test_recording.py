@@ -52,7 +52,7 @@ def test_bag_lies_in_the_folder_of_the_namespace(arguments: list[str], prefix: s
 
 
 @pytest.mark.parametrize("arguments", [[], ["__name:=record"], ["/out", "/other"]])
-def test_without_one_folder_the_usage_is_told(arguments: list[str]) -> None:
+def test_without_one_folder_the_usage_is_printed(arguments: list[str]) -> None:
     with pytest.raises(SystemExit, match=r"usage: record\.py FOLDER"):
         record_command(arguments, {})
 

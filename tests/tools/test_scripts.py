@@ -183,7 +183,7 @@ def test_the_nightly_cases_are_left_out_unless_they_are_asked_for():
 
 @pytest.mark.parametrize(("arguments", "testing"), [([], "ON"), (["without_tests"], "OFF")])
 def test_a_build_without_tests_switches_them_off_in_catkin(arguments, testing, tmp_path):
-    """The demo's; always said, for CMake remembers what an earlier build was told."""
+    """The demo's; always given, for CMake remembers the options of an earlier build."""
     script = 'source "$0"; cd "$1"; colcon() { echo "$@"; }; build_workspace "${@:2}"; cat build/colcon.log'
     done = shell("bash", "-euc", script, str(SCRIPTS / "environment.sh"), str(tmp_path), *arguments)
     assert f"-DCATKIN_ENABLE_TESTING={testing}" in done.stdout.split()

@@ -37,7 +37,7 @@ class Connection:
 
 
 class FakePublisher:
-    """`impl` is itself, and tells of the connections as rospy's does."""
+    """`impl` is itself, and reports the connections as rospy's does."""
 
     def __init__(self, *connections: Connection) -> None:
         self.connections = connections
@@ -87,7 +87,7 @@ def test_does_not_wait_for_a_connection_that_is_closed() -> None:
     assert time.monotonic() - begin >= 0.1
 
 
-def test_does_not_wait_where_nobody_listens() -> None:
+def test_does_not_wait_without_a_subscriber() -> None:
     begin = time.monotonic()
     assert publish_last(FakePublisher(), "zero") == 0
     assert time.monotonic() - begin < topic_sender.LIMIT

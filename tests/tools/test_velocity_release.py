@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from robot_control.drive.release import GONE, NO_MONITOR, PATIENCE, Phase, Release, Status
+from robot_control.drive.release import GONE, NO_MONITOR, TIMEOUT, Phase, Release, Status
 
 READY, DRIVE, INIT = Status("READY"), Status("DRIVE"), Status("INIT", missing=("state_estimator",))
 STOPPED = Status(
@@ -88,13 +88,13 @@ def test_a_wait_for_a_zero_of_another_sender_is_said_once_in_one_line(release) -
 
 def test_a_start_that_takes_a_moment_needs_no_words(release) -> None:
     assert release.look(0.1, Status("INIT", awaiting_zero=True)) == []
-    assert release.look(PATIENCE, INIT) == []
-    assert release.look(PATIENCE + 0.1, READY) == []
+    assert release.look(TIMEOUT, INIT) == []
+    assert release.look(TIMEOUT + 0.1, READY) == []
 
 
 def test_a_missing_node_is_named_when_the_wait_lasts(release) -> None:
     release.look(0.1, INIT)
-    assert "waits for state_estimator" in texts(release.look(0.2 + PATIENCE, INIT))
+    assert "waits for state_estimator" in texts(release.look(0.2 + TIMEOUT, INIT))
 
 
 def test_without_a_monitor_the_command_is_sent_and_that_is_said_once(release) -> None:

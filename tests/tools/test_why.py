@@ -151,7 +151,7 @@ def test_what_the_monitor_said_long_ago_does_not_count(driving):
     assert "safety_monitor" in judge(late).headline
 
 
-def test_before_everybody_was_seen_it_names_who_is_missing(driving):
+def test_before_every_node_was_seen_it_names_the_missing_ones(driving):
     waiting = without(driving, PLANT)
     waiting = replace(waiting, safety=replace(waiting.safety, state="INIT", permit="brake"))
     answer = judge(waiting)
@@ -160,7 +160,7 @@ def test_before_everybody_was_seen_it_names_who_is_missing(driving):
     assert "mujoco_plant MISSING" in text(waiting)
 
 
-def test_a_stop_is_told_by_its_first_cause_with_value_and_limit(driving):
+def test_a_stop_is_reported_by_its_first_cause_with_value_and_limit(driving):
     facts = stopped(driving, E_STOP, replace(FAST, first=True), state="STOPPED")
     facts = replace(
         facts, safety=replace(facts.safety, causes=(replace(E_STOP, first=False), replace(FAST, first=True)))
@@ -174,7 +174,7 @@ def test_a_stop_is_told_by_its_first_cause_with_value_and_limit(driving):
     assert "[still true]" in lines
 
 
-def test_who_has_to_act_stands_before_what(driving):
+def test_the_actor_stands_before_the_action(driving):
     answer = judge(stopped(saying(driving, CONTROLLER, requested_m_s="0", requested_rad_s="0"), E_STOP, FAST))
     assert answer.actions == (
         ("operator", "publish false on e_stop"),
@@ -184,13 +184,13 @@ def test_who_has_to_act_stands_before_what(driving):
     assert answer.commands == ("rostopic pub -1 /e_stop std_msgs/Bool false", "rosservice call /e_stop_reset")
 
 
-def test_who_still_asks_for_motion_is_named_before_the_reset(driving):
+def test_a_node_that_still_requests_motion_is_named_before_the_reset(driving):
     actions = judge(stopped(driving, E_STOP)).actions
     assert actions[-2] == ("operator", "stop /send_cmd: while a motion is asked for, a reset is refused")
     assert actions[-1] == ("operator", "then call e_stop_reset")
 
 
-def test_a_ramp_is_told_as_going_on(driving):
+def test_a_ramp_is_reported_as_stopping(driving):
     assert judge(stopped(driving, FAST, state="STOPPING")).headline.startswith("Stopping: ")
 
 
@@ -206,7 +206,7 @@ def test_commands_are_for_the_robots_own_namespace(driving):
     assert "rosservice call /robot2/e_stop_reset" in judge(facts).commands
 
 
-def test_a_paused_simulation_is_told_before_a_stop(driving):
+def test_a_paused_simulation_is_reported_before_a_stop(driving):
     facts = saying(stopped(driving, E_STOP), PLANT, **PAUSED)
     answer = judge(facts)
     assert answer.headline == "The simulation is paused."
@@ -214,7 +214,7 @@ def test_a_paused_simulation_is_told_before_a_stop(driving):
     assert "e_stop_topic" in text(facts)
 
 
-def test_nobody_who_commands_is_no_fault(driving):
+def test_no_sender_is_no_fault(driving):
     facts = saying(
         driving, CONTROLLER, command__no_command=("nothing was received on cmd_vel in this run", "publish on cmd_vel")
     )
@@ -252,12 +252,12 @@ def test_many_senders_are_named_where_one_sender_forbids_them(driving):
     assert "(2 senders: all are refused)" in text(facts)
 
 
-def test_who_is_heard_counts_and_not_who_merely_registered(driving):
+def test_received_senders_count_and_registered_ones_do_not(driving):
     facts = saying(replace(driving, senders=("/idle", "/send_cmd")), CONTROLLER, senders="/send_cmd")
     assert "published by /send_cmd\n" in text(facts)
 
 
-def test_a_sender_with_a_wrong_clock_is_told_as_such(driving):
+def test_a_sender_with_a_wrong_clock_is_reported(driving):
     facts = saying(
         driving,
         CONTROLLER,
@@ -276,7 +276,7 @@ def test_one_stale_message_does_not_hide_that_it_moves(driving):
     assert "the last cmd_vel_stamped was older" in text(facts)
 
 
-def test_zero_on_cmd_vel_is_told_as_such(driving):
+def test_zero_on_cmd_vel_is_reported(driving):
     facts = saying(driving, CONTROLLER, command__holding="standing with zero command: the brake holds the position")
     answer = judge(replace(facts, limited=(0.0, 0.0), measured=(0.0, 0.0)))
     assert answer.headline == "It may move, but the command is to stand: cmd_vel is zero."
@@ -299,19 +299,19 @@ def test_a_gate_that_brakes_by_itself_is_reported(driving):
     assert answer.actions == (("integrator", "look whether diff_drive_controller runs"),)
 
 
-def test_a_gate_that_obeys_a_permit_of_a_second_ago_is_no_answer(driving):
+def test_a_gate_that_applied_a_permit_of_a_second_ago_is_no_answer(driving):
     facts = saying(driving, PLANT, gate_verdict="brake", gate__permit_brake="the permit orders the brake")
     assert judge(facts).verdict is Verdict.MOVING
 
 
-def test_a_controller_without_state_is_told(driving):
+def test_a_controller_without_state_is_reported(driving):
     facts = saying(
         driving, CONTROLLER, command__no_state=("the state of this cycle is missing", "start state_estimator")
     )
     assert judge(facts).headline == "The controller brakes: the state of this cycle is missing."
 
 
-def test_told_to_move_and_standing_is_not_called_moving(driving):
+def test_commanded_to_move_and_standing_is_not_called_moving(driving):
     assert "has not begun to" in judge(replace(driving, measured=(0.0, 0.0))).headline
 
 
@@ -323,7 +323,7 @@ def test_warnings_and_the_speed_limit_they_bring_are_shown(driving):
     assert "no rim faster than 0.3 m/s" in text(facts)
 
 
-def test_where_no_way_is_free_clearance_is_told_and_not_a_zero_on_cmd_vel(driving):
+def test_without_a_free_path_clearance_is_reported_and_not_a_zero_on_cmd_vel(driving):
     facts = saying(driving, CONTROLLER, command__holding="standing with zero command")
     facts = replace(facts, safety=replace(facts.safety, speed_limit=0.0), limited=(0.0, 0.0), measured=(0.0, 0.0))
     assert judge(facts).verdict is Verdict.STOPPED
@@ -345,7 +345,7 @@ def test_a_refused_reset_says_why(driving):
     assert "refused: a motion is still being asked for" in text(facts)
 
 
-def test_a_master_that_died_is_told_while_the_robot_drives_on(driving):
+def test_a_master_that_died_is_reported_while_the_robot_drives_on(driving):
     facts = replace(driving, master_answers=False)
     assert judge(facts).verdict is Verdict.MOVING
     assert "does not answer" in text(facts)

@@ -7,8 +7,10 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 BANNED = re.compile(r"\b(told|tells|believed|believes|anew|nobody|whoever|wish|wished)\b", re.IGNORECASE)
-MOST = {"src": 0, "config": 0, "msg": 0, "srv": 0, "scripts": 0}
+FOLDERS = ("src", "config", "msg", "srv", "scripts", "tests")
 SUFFIXES = {".h", ".cpp", ".py", ".sh", ".txt", ".yaml", ".msg", ".srv", ""}
+LEFT_OUT = ("tests/estimation", "tests/control", "tests/telemetry", "tests/tools/test_words.py")
+"""Three to be rewritten with their laws, and this list of words."""
 
 
 def hits(folder):
@@ -16,15 +18,16 @@ def hits(folder):
     for path in sorted((ROOT / folder).rglob("*")):
         if not path.is_file() or path.suffix not in SUFFIXES:
             continue
+        if path.relative_to(ROOT).as_posix().startswith(LEFT_OUT):
+            continue
         for number, line in enumerate(path.read_text().splitlines(), 1):
             found += [f"{path.relative_to(ROOT)}:{number}: {word}" for word in BANNED.findall(line)]
     return found
 
 
-@pytest.mark.parametrize("folder", MOST)
+@pytest.mark.parametrize("folder", FOLDERS)
 def test_banned_words_stay_out(folder):
-    found = hits(folder)
-    assert len(found) <= MOST[folder], "\n".join(found)
+    assert hits(folder) == []
 
 
 def test_the_words_are_found(tmp_path, monkeypatch):

@@ -11,13 +11,13 @@ from pathlib import Path
 import rosgraph
 import rospy
 
-from robot_control.closed_loop import leaves
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
 from robot_control.common.settings import Settings
 from robot_control.common.topic_sender import Signals
 from robot_control.installed_files import share_file
+from robot_control.parameter_layers import DEFAULTS, leaves
 
-PATIENCE = 5.0
+TIMEOUT = 5.0
 """s to receive a report of every node; each reports once per second"""
 
 State = Sequence[Sequence[tuple[str, Sequence[str]]]]
@@ -45,7 +45,7 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
         raise RefusedError(
             "the robot runs in simulated time, where a wall-clock second is many: use clock wall, " + in_simulated_time
         )
-    path = rospy.get_param(f"{node}/config", share_file("config/robot_params.yaml"))
+    path = rospy.get_param(f"{node}/config", share_file(DEFAULTS))
     own = {key: value for key, value in rospy.get_param(node, {}).items() if key not in ("config", "urdf")}
     values = [*leaves({"robot": rospy.get_param("robot", {})}), *leaves({node: own})]
     described = rospy.get_param("robot_description", "")
@@ -57,8 +57,8 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
 
 
 def await_all(condition: Callable[[], bool], signals: Signals) -> None:
-    """Until it holds, at most PATIENCE."""
-    end = time.monotonic() + PATIENCE
+    """Until it holds, at most TIMEOUT."""
+    end = time.monotonic() + TIMEOUT
     while not condition() and time.monotonic() < end and signals.going_on():
         time.sleep(0.02)
 

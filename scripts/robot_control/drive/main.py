@@ -13,7 +13,7 @@ from robot_control.drive.release import Line, Phase, Release, Status
 from robot_control.drive.send_plan import SendPlan, parse_plan
 from robot_control.msg import SafetyStatus
 
-PATIENCE = 10.0
+TIMEOUT = 10.0
 """s to wait for a subscriber; then it is sent all the same"""
 SILENT_WAIT = 2.0
 """s of these in which nothing is said about it"""
@@ -32,10 +32,10 @@ def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
     """So that the first send is not lost."""
     begin = time.monotonic()
     warned = False
-    while publisher.get_num_connections() == 0 and signals.going_on() and time.monotonic() < begin + PATIENCE:
+    while publisher.get_num_connections() == 0 and signals.going_on() and time.monotonic() < begin + TIMEOUT:
         if not warned and time.monotonic() > begin + SILENT_WAIT:
             warned = True
-            rospy.logwarn(f"no node subscribes to {publisher.resolved_name} yet: waiting for {PATIENCE:g} s at most")
+            rospy.logwarn(f"no node subscribes to {publisher.resolved_name} yet: waiting for {TIMEOUT:g} s at most")
         time.sleep(LOOK)
 
 
@@ -48,15 +48,15 @@ class SafetyWatch:
     """What safety_status says, every message of it: a stop that was followed by a release at once is none the less."""
 
     def __init__(self) -> None:
-        self._heard: deque[tuple[Status, float]] = deque()
+        self._received: deque[tuple[Status, float]] = deque()
         self._last: tuple[Status, float] | None = None
-        self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._hear, tcp_nodelay=True)
+        self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
 
     def look(self, release: Release) -> list[Line]:
         """Gives `release` what has come since the last look, or how long nothing has."""
         lines = []
-        while self._heard:
-            self._last = self._heard.popleft()
+        while self._received:
+            self._last = self._received.popleft()
             lines += release.look(self._last[1], self._last[0])
         now = time.monotonic()
         if self._last is None:
@@ -64,8 +64,8 @@ class SafetyWatch:
         connected = self._subscriber.get_num_connections() > 0
         return lines + release.look(now, self._last[0], now - self._last[1], connected=connected)
 
-    def _hear(self, message: SafetyStatus) -> None:
-        self._heard.append((status_of(message), time.monotonic()))
+    def _receive(self, message: SafetyStatus) -> None:
+        self._received.append((status_of(message), time.monotonic()))
 
 
 def status_of(message: SafetyStatus) -> Status:

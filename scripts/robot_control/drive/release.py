@@ -17,7 +17,7 @@ NO_MONITOR = 3.0
 """s without any safety_status, which comes once per second at least"""
 GONE = 0.5
 """s without a publisher of safety_status after there was one"""
-PATIENCE = 2.0
+TIMEOUT = 2.0
 """s in which a start needs no explanation; a silent cmd_vel ends the wait for a zero sooner"""
 STANDING = 0.01
 """m/s; a speed limit below it is none to drive with"""
@@ -132,7 +132,7 @@ class Release:
             return
         text = self._obstacle(status, gone=gone)
         if text != self._waiting_for:
-            patience = PATIENCE if status.state == "INIT" or gone else 0.0
+            patience = TIMEOUT if status.state == "INIT" or gone else 0.0
             self._waiting_for, self._say_at = text, now + patience
         if now >= self._say_at:
             self._say_at = math.inf

@@ -1,4 +1,4 @@
-"""Samples out of a CSV file: anybody's, by the names of its columns, or the run.csv of this package's telemetry."""
+"""Samples out of a CSV file: any, by the names of its columns, or the run.csv of this package's telemetry."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from robot_control.identify.recorded_log import RecordingError, recording
 from robot_control.identify.robot import RunningRobot
 from robot_control.identify.rows import UnfitError
 from robot_control.identify.tuning_proposal import NoGainsError
-from robot_control.installed_files import share_file
+from robot_control.parameter_layers import layered
 from robot_control.why.facts import nodes_of
 
 PERIOD = 0.05
@@ -73,8 +73,8 @@ def _fit(log: dict[str, FloatArray], settings: Settings, options: Options, sourc
 
 
 def _settings_of_files(options: Options) -> Settings:
-    path = str(options.params or share_file("config/robot_params.yaml"))
-    return Settings(path, () if options.urdf is None else (("robot.urdf", str(options.urdf.absolute())),))
+    path, values = layered(options.params, None if options.urdf is None else options.urdf.absolute())
+    return Settings(path, tuple(values))
 
 
 def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, FloatArray]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from robot_control import _robot_control
-from robot_control.installed_files import share_file
+from robot_control.parameter_layers import layered
 
 Description = dict[str, Any]  # keys: src/python/describe.h
 
@@ -47,5 +47,4 @@ def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) 
 
 
 def _arguments(urdf: str | PathLike[str], params: str | PathLike[str] | None) -> tuple[str, list[tuple[str, str]]]:
-    path = share_file("config/robot_params.yaml") if params is None else fspath(params)
-    return path, [("robot.urdf", str(Path(urdf).absolute()))]
+    return layered(params, Path(urdf).absolute())

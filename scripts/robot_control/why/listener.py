@@ -31,7 +31,7 @@ class Listener:
         self._reports: dict[str, tuple[float, Report]] = {}  # by absolute name
         self._limited: tuple[float, float, float] | None = None  # m/s, rad/s, when
         self._measured: tuple[float, float, float] | None = None
-        self.strangers = 0  # how often in a row the master did not know this program
+        self.unknown_to_master = 0  # how often in a row the master did not know this program
         rospy.Subscriber("safety_status", SafetyStatus, self._receive_status)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
         rospy.Subscriber("cmd_vel_out", TwistStamped, self._receive_limited, queue_size=1)
@@ -59,7 +59,7 @@ class Listener:
         self._asked = now
         self._state = self.master.state()
         known = self._state is None or rospy.get_name() in nodes_of(self._state)
-        self.strangers = 0 if known else self.strangers + 1
+        self.unknown_to_master = 0 if known else self.unknown_to_master + 1
 
     def complete(self) -> bool:
         """Every node of the loop has reported."""

@@ -17,7 +17,7 @@ from robot_control.why.screen import Look, render
 
 FRAME = 0.25
 """s between two drawings"""
-PATIENCE = 2.5
+TIMEOUT = 2.5
 """s to wait for a report of every node before the first answer; each node reports once per second"""
 
 
@@ -71,7 +71,7 @@ def _master_is_there(screen: Screen | None) -> bool:
 def _listen() -> Listener:
     rospy.init_node("why", anonymous=True)
     listener = Listener()
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + TIMEOUT
     while time.monotonic() < end and not rospy.is_shutdown():
         listener.ask_master()
         if listener.complete():
@@ -93,7 +93,7 @@ def answer_live() -> int:
     while not rospy.is_shutdown():
         listener.ask_master()
         screen.show(listener.facts())
-        if listener.strangers > 1:  # another master: this program is no part of its graph
+        if listener.unknown_to_master > 1:  # another master: this program is no part of its graph
             os.execv(sys.executable, [sys.executable, *sys.argv])
         time.sleep(FRAME)
     return 0

@@ -14,7 +14,6 @@
 #include <nav_msgs/Odometry.h>
 #include <robot_control/DriveState.h>
 #include <robot_control/SafetyStatus.h>
-#include <ros/service_traits.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/BatteryState.h>
 #include <sensor_msgs/Imu.h>
@@ -30,6 +29,8 @@
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
+
+#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 
@@ -83,30 +84,12 @@ using TwistStamped = geometry_msgs::TwistStamped_<Allocator>;
 using Vector3 = geometry_msgs::Vector3_<Allocator>;
 
 }  // namespace msg
-}  // namespace robot_control
 
-namespace ros::service_traits {
-// std_srvs/Trigger.h itself cannot be included; this is what it says (`rossrv md5 std_srvs/Trigger`).
-struct TriggerMD5Sum {
-  static const char* value() { return "937c9679a518e3a18d831e57125ea522"; }
-  template <class Message>
-  static const char* value(const Message&) {
-    return value();
-  }
-};
-struct TriggerDataType {
-  static const char* value() { return "std_srvs/Trigger"; }
-  template <class Message>
-  static const char* value(const Message&) {
-    return value();
-  }
-};
+// std_srvs/Trigger.h itself cannot be included.
+inline constexpr Service kTriggerService{"std_srvs/Trigger", "937c9679a518e3a18d831e57125ea522"};
 template <>
-struct MD5Sum<robot_control::msg::TriggerRequest> : TriggerMD5Sum {};
+inline constexpr Service kServiceOf<msg::TriggerRequest> = kTriggerService;
 template <>
-struct MD5Sum<robot_control::msg::TriggerResponse> : TriggerMD5Sum {};
-template <>
-struct DataType<robot_control::msg::TriggerRequest> : TriggerDataType {};
-template <>
-struct DataType<robot_control::msg::TriggerResponse> : TriggerDataType {};
-}  // namespace ros::service_traits
+inline constexpr Service kServiceOf<msg::TriggerResponse> = kTriggerService;
+
+}  // namespace robot_control

@@ -7,7 +7,6 @@
 #include <dynamic_reconfigure/ReconfigureResponse.h>
 
 #include "bridge/messages/messages.h"
-#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 namespace msg {
@@ -24,25 +23,10 @@ using ReconfigureResponse = dynamic_reconfigure::ReconfigureResponse_<Allocator>
 
 }  // namespace msg
 
-struct ReconfigureHash {
-  static constexpr const char* kText = "bb125d226a21982a4a98760418dc2672";
-};
-struct ReconfigureName {
-  static constexpr const char* kText = "dynamic_reconfigure/Reconfigure";
-};
+inline constexpr Service kReconfigureService{"dynamic_reconfigure/Reconfigure", "bb125d226a21982a4a98760418dc2672"};
+template <>
+inline constexpr Service kServiceOf<msg::ReconfigureRequest> = kReconfigureService;
+template <>
+inline constexpr Service kServiceOf<msg::ReconfigureResponse> = kReconfigureService;
 
 }  // namespace robot_control
-
-namespace ros::service_traits {
-
-template <>
-struct MD5Sum<robot_control::msg::ReconfigureRequest> : robot_control::ServiceText<robot_control::ReconfigureHash> {};
-template <>
-struct MD5Sum<robot_control::msg::ReconfigureResponse> : robot_control::ServiceText<robot_control::ReconfigureHash> {};
-template <>
-struct DataType<robot_control::msg::ReconfigureRequest> : robot_control::ServiceText<robot_control::ReconfigureName> {};
-template <>
-struct DataType<robot_control::msg::ReconfigureResponse> : robot_control::ServiceText<robot_control::ReconfigureName> {
-};
-
-}  // namespace ros::service_traits

@@ -1,17 +1,39 @@
 #pragma once
-/// One word for a request and its response, in the two forms in which roscpp asks for it. The generated service headers
-/// that would say it cannot be included in C++20, see messages.h.
+/// Hash and type of a service, in the two forms in which roscpp asks its request and its response for them. The
+/// generated service headers that would say them cannot be included in C++20, see messages.h.
+
+#include <ros/service_traits.h>
 
 namespace robot_control {
 
-/// `Word::kText` is a hash (`rossrv md5 SERVICE`, of what stands in the .srv file, comments aside) or a type.
-template <class Word>
-struct ServiceText {
-  static const char* value() { return Word::kText; }
-  template <class Message>
-  static const char* value(const Message&) {
-    return Word::kText;
-  }
+/// `hash`: `rossrv md5 SERVICE`, of what stands in the .srv file, comments aside.
+struct Service {
+  const char* type = nullptr;
+  const char* hash = nullptr;
 };
 
+/// The service of which `Message` is request or response. Specialised beside the messages.
+template <class Message>
+inline constexpr Service kServiceOf{};
+
+template <class Message>
+concept ServiceMessage = kServiceOf<Message>
+.type != nullptr;
+
 }  // namespace robot_control
+
+namespace ros::service_traits {
+
+template <robot_control::ServiceMessage Message>
+struct MD5Sum<Message> {
+  static const char* value() { return robot_control::kServiceOf<Message>.hash; }
+  static const char* value(const Message&) { return value(); }
+};
+
+template <robot_control::ServiceMessage Message>
+struct DataType<Message> {
+  static const char* value() { return robot_control::kServiceOf<Message>.type; }
+  static const char* value(const Message&) { return value(); }
+};
+
+}  // namespace ros::service_traits

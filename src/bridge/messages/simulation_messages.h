@@ -10,7 +10,6 @@
 #include <std_srvs/SetBoolResponse.h>
 
 #include "bridge/messages/messages.h"
-#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 namespace msg {
@@ -24,55 +23,22 @@ using StepResponse = robot_control::StepResponse_<Allocator>;
 
 }  // namespace msg
 
-struct SetBoolHash {
-  static constexpr const char* kText = "09fb03525b03e7ea1fd3992bafd87e16";
-};
-struct SetBoolName {
-  static constexpr const char* kText = "std_srvs/SetBool";
-};
-struct StepHash {
-  static constexpr const char* kText = "3090d83495cd3fc8bac35f7f11c9c6e6";
-};
-struct StepName {
-  static constexpr const char* kText = "robot_control/Step";
-};
-struct InjectFaultHash {
-  static constexpr const char* kText = "78a16974459488140ef4bf90a6dea782";
-};
-struct InjectFaultName {
-  static constexpr const char* kText = "robot_control/InjectFault";
-};
+inline constexpr Service kSetBoolService{"std_srvs/SetBool", "09fb03525b03e7ea1fd3992bafd87e16"};
+template <>
+inline constexpr Service kServiceOf<msg::SetBoolRequest> = kSetBoolService;
+template <>
+inline constexpr Service kServiceOf<msg::SetBoolResponse> = kSetBoolService;
+
+inline constexpr Service kStepService{"robot_control/Step", "3090d83495cd3fc8bac35f7f11c9c6e6"};
+template <>
+inline constexpr Service kServiceOf<msg::StepRequest> = kStepService;
+template <>
+inline constexpr Service kServiceOf<msg::StepResponse> = kStepService;
+
+inline constexpr Service kInjectFaultService{"robot_control/InjectFault", "78a16974459488140ef4bf90a6dea782"};
+template <>
+inline constexpr Service kServiceOf<msg::InjectFaultRequest> = kInjectFaultService;
+template <>
+inline constexpr Service kServiceOf<msg::InjectFaultResponse> = kInjectFaultService;
 
 }  // namespace robot_control
-
-namespace ros::service_traits {
-
-template <>
-struct MD5Sum<robot_control::msg::SetBoolRequest> : robot_control::ServiceText<robot_control::SetBoolHash> {};
-template <>
-struct MD5Sum<robot_control::msg::SetBoolResponse> : robot_control::ServiceText<robot_control::SetBoolHash> {};
-template <>
-struct DataType<robot_control::msg::SetBoolRequest> : robot_control::ServiceText<robot_control::SetBoolName> {};
-template <>
-struct DataType<robot_control::msg::SetBoolResponse> : robot_control::ServiceText<robot_control::SetBoolName> {};
-
-template <>
-struct MD5Sum<robot_control::msg::StepRequest> : robot_control::ServiceText<robot_control::StepHash> {};
-template <>
-struct MD5Sum<robot_control::msg::StepResponse> : robot_control::ServiceText<robot_control::StepHash> {};
-template <>
-struct DataType<robot_control::msg::StepRequest> : robot_control::ServiceText<robot_control::StepName> {};
-template <>
-struct DataType<robot_control::msg::StepResponse> : robot_control::ServiceText<robot_control::StepName> {};
-
-template <>
-struct MD5Sum<robot_control::msg::InjectFaultRequest> : robot_control::ServiceText<robot_control::InjectFaultHash> {};
-template <>
-struct MD5Sum<robot_control::msg::InjectFaultResponse> : robot_control::ServiceText<robot_control::InjectFaultHash> {};
-template <>
-struct DataType<robot_control::msg::InjectFaultRequest> : robot_control::ServiceText<robot_control::InjectFaultName> {};
-template <>
-struct DataType<robot_control::msg::InjectFaultResponse> : robot_control::ServiceText<robot_control::InjectFaultName> {
-};
-
-}  // namespace ros::service_traits

@@ -5,7 +5,6 @@
 #include <robot_control/SetParametersResponse.h>
 
 #include "bridge/messages/messages.h"
-#include "bridge/messages/service_text.h"
 
 namespace robot_control {
 namespace msg {
@@ -15,28 +14,10 @@ using SetParametersResponse = robot_control::SetParametersResponse_<Allocator>;
 
 }  // namespace msg
 
-struct SetParametersHash {
-  static constexpr const char* kText = "fb20f4f9579bda4dedf6d9fa157aa8fd";
-};
-struct SetParametersName {
-  static constexpr const char* kText = "robot_control/SetParameters";
-};
+inline constexpr Service kSetParametersService{"robot_control/SetParameters", "fb20f4f9579bda4dedf6d9fa157aa8fd"};
+template <>
+inline constexpr Service kServiceOf<msg::SetParametersRequest> = kSetParametersService;
+template <>
+inline constexpr Service kServiceOf<msg::SetParametersResponse> = kSetParametersService;
 
 }  // namespace robot_control
-
-namespace ros::service_traits {
-
-template <>
-struct MD5Sum<robot_control::msg::SetParametersRequest> : robot_control::ServiceText<robot_control::SetParametersHash> {
-};
-template <>
-struct MD5Sum<robot_control::msg::SetParametersResponse>
-    : robot_control::ServiceText<robot_control::SetParametersHash> {};
-template <>
-struct DataType<robot_control::msg::SetParametersRequest>
-    : robot_control::ServiceText<robot_control::SetParametersName> {};
-template <>
-struct DataType<robot_control::msg::SetParametersResponse>
-    : robot_control::ServiceText<robot_control::SetParametersName> {};
-
-}  // namespace ros::service_traits

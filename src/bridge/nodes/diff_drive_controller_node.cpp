@@ -103,7 +103,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   /// Two topics, two threads, one inbox.
   void receive(const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
-    tell_dropped(arrived.sender);
+    log_dropped(arrived.sender);
     input_.receive(arrived, arrival_time());
     process().cycle().inbox().store(input_.value());
   }
@@ -111,7 +111,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   /// Likewise, of the source with this index.
   void receive_from(std::size_t source, const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
-    tell_dropped(arrived.sender);
+    log_dropped(arrived.sender);
     mux_->receive(source, arrived, arrival_time());
     process().cycle().inbox().store(mux_->value());
   }
@@ -158,7 +158,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   }
 
   /// A command that arrives before the loop runs moves nothing later: said once, until the loop has run.
-  void tell_dropped(const std::string& sender) {
+  void log_dropped(const std::string& sender) {
     SensorFrame sensors;
     CommandFrame command;
     const bool runs = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head) &&

@@ -30,7 +30,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
   }
 
   void connect(ros::NodeHandle& handle) override {
-    tell_robot();
+    log_robot();
     imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
     truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
     if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
@@ -58,7 +58,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
 
   void stop() override {
     ProcessNode::stop();
-    if (finished()) tell_end();
+    if (finished()) log_end();
   }
 
   void diagnose(DiagnosticReport& report) override {
@@ -72,7 +72,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
   }
 
  private:
-  void tell_robot() {
+  void log_robot() {
     ROS_INFO("%s", summary(robot()).c_str());
     for (const RobotNote& note : robot().notes) {
       const std::string text = sentence(note);
@@ -85,7 +85,7 @@ class MujocoPlantNode final : public ProcessNode<DriverProcess> {
     if (!plant_->unloaded().empty()) ROS_WARN("suspicious: %s", plant_->unloaded().c_str());
   }
 
-  void tell_end() {
+  void log_end() {
     TruthFrame truth;
     if (process().truth().newest(truth) != Lookup::kFrame) return;
     const auto cycles = static_cast<double>(truth.head.cycle + 1);

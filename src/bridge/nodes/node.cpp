@@ -143,11 +143,11 @@ class NodeLoop {
     node_.poll();
     waiting_.look(node_.missing(), now_ns);
     connections_.look(now_ns);
-    tell_refusals(node_.realtime_messages());
+    log_refusals(node_.realtime_messages());
   }
 
   /// In one line: every node says it.
-  void tell_refusals(const std::vector<std::string>& refusals) {
+  void log_refusals(const std::vector<std::string>& refusals) {
     if (refusals_told_ || refusals.empty()) return;
     refusals_told_ = true;
     std::string text;

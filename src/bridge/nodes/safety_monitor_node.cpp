@@ -35,9 +35,10 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
     // A malformed message stops the robot, too: its sender may have meant a stop.
     e_stop_.connect(
-        handle, [this](const msg::Bool& message) { hear_e_stop(message.data != 0); }, [this] { hear_e_stop(true); });
+        handle, [this](const msg::Bool& message) { receive_e_stop(message.data != 0); },
+        [this] { receive_e_stop(true); });
     heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
-    clearance_.connect(handle, [this](const msg::Float64& message) { hear_clearance(message.data); });
+    clearance_.connect(handle, [this](const msg::Float64& message) { receive_clearance(message.data); });
     trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
     reset_ = handle.advertiseService("e_stop_reset", &SafetyMonitorNode::reset, this);
     if (!process().restored().empty()) ROS_WARN("%s", process().restored().c_str());
@@ -94,7 +95,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     process().cycle().inbox().store(input_);
   }
 
-  void hear_e_stop(bool stop) {
+  void receive_e_stop(bool stop) {
     const std::lock_guard lock(input_mutex_);
     input_.e_stop_level = stop ? 1 : 0;
     ++input_.e_stop_messages;
@@ -102,7 +103,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     process().cycle().inbox().store(input_);
   }
 
-  void hear_clearance(double clearance) {
+  void receive_clearance(double clearance) {
     const std::lock_guard lock(input_mutex_);
     input_.clearance = clearance;
     ++input_.clearances;

@@ -49,7 +49,7 @@ ModelPointer load(const std::string& path, const mjVFS* files, const std::string
   ModelPointer model(mj_loadXML(path.c_str(), files, error.data(), static_cast<int>(error.size())));
   if (!model) {
     throw DriverError(blamed + ": MuJoCo does not compile it: " + fit_for_message(on_one_line(error.data())) +
-                      ". Mend the scene, or set another one (mujoco_plant/scene).");
+                      ". Repair the scene, or set another one (mujoco_plant/scene).");
   }
   return model;
 }

@@ -58,6 +58,8 @@
 #include <optional>
 #include <span>
 
+#include "robot/gravity.h"
+
 namespace robot_control {
 
 /// Lever arms from the IMU, base axes.
@@ -116,7 +118,7 @@ class ErrorStateFilter {
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Column = Eigen::Matrix<double, kSize, 1>;
 
-  static constexpr double kGravity = 9.80665;   ///< m/s², standard gravity
+  static constexpr double kGravity = robot_control::kGravity;
   static constexpr double kCautious = 15;       ///< times: 0.75 mm/√m, the creep of a wheel about to slide
   static constexpr double kSliding = 0.03;      ///< m/s²/√Hz more, while no wheel holds the velocity: it shakes
   static constexpr double kSmoothing = 0.05;    ///< s

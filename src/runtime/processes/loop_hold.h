@@ -1,11 +1,11 @@
 #pragma once
-/// May the loop of a simulated machine tick? Pause, step and park, between the real-time thread, which asks before
-/// each tick, and ordinary threads.
+/// Pause, step and park the loop of a simulated machine: ordinary threads request it, the real-time thread checks the
+/// request before each tick.
 ///
-/// What is asked is a state, not an event, so that a latest-value inbox loses nothing:
-///   may tick k  ⇔  ¬parked ∧ (¬paused ∨ k < step_until)
-/// Every asking has a number; the loop answers with the newest number under which it stands. While it stands it
-/// sleeps on a futex; no lock, no allocation. A parked loop touches neither machine nor cycle: they belong to the
+/// A request is a state, not an event, so a latest-value inbox loses nothing:
+///   tick k is allowed  ⇔  ¬parked ∧ (¬paused ∨ k < step_until)
+/// Every request has a number. The loop acknowledges the number of the newest request under which it stands still; then
+/// it sleeps on a futex, without lock or allocation. A parked loop uses neither machine nor cycle: they belong to the
 /// thread that parked it.
 
 #include <atomic>
@@ -28,19 +28,19 @@ class LoopHold {
 
   // Ordinary threads; `ask` one at a time.
 
-  /// Returns the number of this asking.
+  /// Returns the number of this request.
   std::uint64_t ask(Asked asked) noexcept;
 
-  /// The loop stands, under this asking or a later one.
+  /// The loop stands still, under this request or a later one.
   bool stands(std::uint64_t number) const noexcept { return answered_.load(std::memory_order_acquire) >= number; }
 
-  /// `stands`, waited for. False after `patience_ns`, or when no loop runs.
-  bool await_stand(std::uint64_t number, std::int64_t patience_ns) const noexcept;
+  /// `stands`, waited for. False after `timeout_ns`, or when no loop runs.
+  bool await_stand(std::uint64_t number, std::int64_t timeout_ns) const noexcept;
 
-  /// The cycle that the loop asked for last.
+  /// The cycle for which the loop checked last.
   std::uint64_t next_cycle() const noexcept { return next_cycle_.load(std::memory_order_acquire); }
 
-  /// Is there a loop that would answer?
+  /// There is a loop that acknowledges.
   bool looping() const noexcept { return looping_.load(std::memory_order_acquire); }
 
   // The real-time thread.

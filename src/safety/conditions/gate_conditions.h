@@ -7,7 +7,7 @@
 ///               half of the ticks of the last second. Reasons are a slow or intermittent controller, or permits that
 ///               do not arrive. A robot that stops and continues by itself is not predictable
 ///   disobeys    a command passed although the permit ordered the brake, its ramp had ended, it had expired, or it was
-///               never issued: software can no longer stop this machine, so it needs repair (FAULT)
+///               never issued: software can no longer stop this machine, so it leads to FAULT
 ///
 /// A permit from before the first step (of an earlier monitor) is judged by its age only. Ticks that the monitor
 /// skipped count as the next tick that it evaluated.

@@ -1,7 +1,7 @@
 #pragma once
 /// What the driver reports about the machine.
 ///
-///   driver fault   driver_state kFault or faults ≠ 0; category 0, needs repair (FAULT)
+///   driver fault   driver_state kFault or faults ≠ 0; leads to FAULT
 ///   overruns       growth of SensorFrame::overruns over the last second, in steps of a tenth; overruns before the
 ///                  first step do not count
 ///   battery        voltage below its limit, if a battery is reported

@@ -1,6 +1,6 @@
 #include "safety/latch/supervisor.h"
 
-#include "safety/latch/stop_category.h"
+#include "safety/latch/fixed_reactions.h"
 
 namespace robot_control {
 
@@ -12,11 +12,11 @@ void Supervisor::step(const SupervisorInput& input) noexcept {
   if (input.reset_requested) {
     reset_refusal_ = refusal(input);
     if (reset_refusal_ == 0 && causes() != 0) {
-      repair_ = brake_ = ramp_ = first_cause_ = 0;
+      fault_ = brake_ = ramp_ = first_cause_ = 0;
       triggers.add(complete ? Trigger::kResetComplete : Trigger::kResetIncomplete);
     }
   }
-  triggers.add(Trigger::kRepairCause, repair_ != 0);
+  triggers.add(Trigger::kFaultCause, fault_ != 0);
   triggers.add(Trigger::kBrakeCause, brake_ != 0);
   triggers.add(Trigger::kRampCause, ramp_ != 0);
   triggers.add(Trigger::kRampEnded, input.standing || input.cycle >= ramp_until_);
@@ -41,14 +41,14 @@ void Supervisor::enter_run() noexcept {
 void Supervisor::restore(std::uint64_t causes, std::uint64_t first_cause) noexcept {
   if (first_cause_ == 0) first_cause_ = first_cause;
   causes &= kAllCauses;
-  latch({.repair = for_repair(causes), .brake = causes & ~for_repair(causes)});
+  latch({.fault = leading_to_fault(causes), .brake = causes & ~leading_to_fault(causes)});
   state_ = latched_state();
 }
 
 void Supervisor::latch(const SupervisorInput& input) noexcept {
-  const std::uint64_t active = input.repair | input.brake | input.ramp;
+  const std::uint64_t active = input.fault | input.brake | input.ramp;
   if (first_cause_ == 0) first_cause_ = active & (~active + 1);  // the lowest bit names one of several
-  repair_ |= input.repair;
+  fault_ |= input.fault;
   brake_ |= input.brake;
   ramp_ |= input.ramp;
 }
@@ -59,7 +59,7 @@ std::uint64_t Supervisor::refusal(const SupervisorInput& input) const noexcept {
     if (state_ == SupervisorState::kInit && input.missing != 0) refusal |= kRefusalInit;
     return refusal;
   }
-  if ((input.repair | input.brake | input.ramp) != 0) refusal |= kRefusalCauseActive;
+  if ((input.fault | input.brake | input.ramp) != 0) refusal |= kRefusalCauseActive;
   if (!input.no_motion_requested) refusal |= kRefusalCommand;
   if (!input.standing || state_ == SupervisorState::kStopping) refusal |= kRefusalMoving;
   if (input.sliding) refusal |= kRefusalSliding;
@@ -67,7 +67,7 @@ std::uint64_t Supervisor::refusal(const SupervisorInput& input) const noexcept {
 }
 
 SupervisorState Supervisor::latched_state() const noexcept {
-  if (repair_ != 0) return SupervisorState::kFault;
+  if (fault_ != 0) return SupervisorState::kFault;
   return causes() != 0 ? SupervisorState::kStopped : SupervisorState::kInit;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, the category of each, the first
+/// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, the reaction to each, the first
 /// cause.
 ///
 /// A latched cause stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused while a
@@ -21,9 +21,9 @@ namespace robot_control {
 
 struct SupervisorInput {
   std::uint64_t cycle = 0;
-  std::uint64_t repair = 0;          ///< StopCause bits active in this cycle: category 0, needs repair
-  std::uint64_t brake = 0;           ///< … category 0
-  std::uint64_t ramp = 0;            ///< … category 1
+  std::uint64_t fault = 0;           ///< StopCause bits active in this cycle, with FixedReaction::kFault
+  std::uint64_t brake = 0;           ///< … that brake at once
+  std::uint64_t ramp = 0;            ///< … that ramp
   std::uint64_t missing = 0;         ///< MissingNode bits of this run
   bool released = false;             ///< zero first is satisfied
   bool requested = false;            ///< the controller requests motion
@@ -36,7 +36,7 @@ struct SupervisorInput {
 
 class Supervisor {
  public:
-  /// `ramp_cycles`: length of the longest category-1 ramp.
+  /// `ramp_cycles`: length of the longest ramp.
   explicit Supervisor(std::uint64_t ramp_cycles) noexcept : ramp_cycles_(ramp_cycles) {}
 
   void step(const SupervisorInput& input) noexcept;
@@ -44,11 +44,11 @@ class Supervisor {
   /// A new run: INIT, or where a cause is latched STOPPED or FAULT.
   void enter_run() noexcept;
 
-  /// Takes over the latched causes of an earlier monitor: STOPPED, or FAULT. All of them count as category 0.
+  /// Takes over the latched causes of an earlier monitor: STOPPED, or FAULT. All of them brake at once.
   void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept;
 
   SupervisorState state() const noexcept { return state_; }
-  std::uint64_t causes() const noexcept { return repair_ | brake_ | ramp_; }
+  std::uint64_t causes() const noexcept { return fault_ | brake_ | ramp_; }
   std::uint64_t first_cause() const noexcept { return first_cause_; }
   std::uint64_t since_cycle() const noexcept { return since_cycle_; }
   std::uint64_t ramp_until() const noexcept { return ramp_until_; }
@@ -61,9 +61,9 @@ class Supervisor {
 
   std::uint64_t ramp_cycles_;
   SupervisorState state_ = SupervisorState::kInit;
-  std::uint64_t repair_ = 0;  ///< latched
-  std::uint64_t brake_ = 0;   ///< latched
-  std::uint64_t ramp_ = 0;    ///< latched
+  std::uint64_t fault_ = 0;  ///< latched
+  std::uint64_t brake_ = 0;  ///< latched
+  std::uint64_t ramp_ = 0;   ///< latched
   std::uint64_t first_cause_ = 0;
   std::uint64_t since_cycle_ = 0;
   std::uint64_t ramp_until_ = 0;

@@ -5,7 +5,7 @@
 ///
 ///                 complete          motion
 ///         INIT ◄───────────► READY ◄──────► DRIVE          any brake cause ─► STOPPED
-///          ▲    unreleased     │     rest     │            any repair cause ─► FAULT
+///          ▲    unreleased     │     rest     │            any fault cause ─► FAULT
 ///          │ reset, incomplete └──── ramp ────┘
 ///          │                          ▼
 ///       STOPPED, FAULT ◄── ended ── STOPPING
@@ -20,9 +20,9 @@
 namespace robot_control {
 
 enum class Trigger : std::uint8_t {
-  kRepairCause,      ///< a latched cause that needs repair
-  kBrakeCause,       ///< a latched cause of stop category 0
-  kRampCause,        ///< a latched cause of stop category 1
+  kFaultCause,       ///< a latched cause with FixedReaction::kFault
+  kBrakeCause,       ///< a latched cause that brakes at once
+  kRampCause,        ///< a latched cause that ramps
   kRampEnded,        ///< standing, or the ramp's last cycle is reached
   kUnreleased,       ///< a node was started, and no zero velocity was requested since then (motion_release.h)
   kResetIncomplete,  ///< a reset was accepted, but a node is still missing or motion is not released
@@ -40,35 +40,35 @@ struct Transition {
 };
 
 inline constexpr auto kTransitions = std::to_array<Transition>({
-    {SupervisorState::kInit, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kInit, Trigger::kFaultCause, SupervisorState::kFault},
     {SupervisorState::kInit, Trigger::kBrakeCause, SupervisorState::kStopped},
     {SupervisorState::kInit, Trigger::kRampCause, SupervisorState::kStopped},
     {SupervisorState::kInit, Trigger::kComplete, SupervisorState::kReady},
 
-    {SupervisorState::kReady, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kReady, Trigger::kFaultCause, SupervisorState::kFault},
     {SupervisorState::kReady, Trigger::kBrakeCause, SupervisorState::kStopped},
     {SupervisorState::kReady, Trigger::kRampCause, SupervisorState::kStopping},
     {SupervisorState::kReady, Trigger::kUnreleased, SupervisorState::kInit},
     {SupervisorState::kReady, Trigger::kMotion, SupervisorState::kDrive},
 
-    {SupervisorState::kDrive, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kDrive, Trigger::kFaultCause, SupervisorState::kFault},
     {SupervisorState::kDrive, Trigger::kBrakeCause, SupervisorState::kStopped},
     {SupervisorState::kDrive, Trigger::kRampCause, SupervisorState::kStopping},
     {SupervisorState::kDrive, Trigger::kUnreleased, SupervisorState::kInit},
     {SupervisorState::kDrive, Trigger::kRest, SupervisorState::kReady},
 
-    {SupervisorState::kStopping, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kStopping, Trigger::kFaultCause, SupervisorState::kFault},
     {SupervisorState::kStopping, Trigger::kBrakeCause, SupervisorState::kStopped},
     {SupervisorState::kStopping, Trigger::kUnreleased, SupervisorState::kStopped},
     {SupervisorState::kStopping, Trigger::kRampEnded, SupervisorState::kStopped},
 
-    {SupervisorState::kStopped, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kStopped, Trigger::kFaultCause, SupervisorState::kFault},
     {SupervisorState::kStopped, Trigger::kBrakeCause, SupervisorState::kStopped},
     {SupervisorState::kStopped, Trigger::kRampCause, SupervisorState::kStopped},
     {SupervisorState::kStopped, Trigger::kResetIncomplete, SupervisorState::kInit},
     {SupervisorState::kStopped, Trigger::kResetComplete, SupervisorState::kReady},
 
-    {SupervisorState::kFault, Trigger::kRepairCause, SupervisorState::kFault},
+    {SupervisorState::kFault, Trigger::kFaultCause, SupervisorState::kFault},
     {SupervisorState::kFault, Trigger::kBrakeCause, SupervisorState::kFault},
     {SupervisorState::kFault, Trigger::kRampCause, SupervisorState::kFault},
     {SupervisorState::kFault, Trigger::kResetIncomplete, SupervisorState::kInit},

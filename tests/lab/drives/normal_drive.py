@@ -13,7 +13,7 @@ from robot_control.closed_loop import ClosedLoop, Log
 STEP = 0.1  # s, between two commands
 LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default parameters
 ARRIVED = 0.15  # m
-PATIENCE = 15.0  # s, then another waypoint
+TIMEOUT = 15.0  # s, then another waypoint
 COLUMNS = ("permit_causes", "permit_warnings", "gate_verdict", "supervisor_state", "truth_x", "truth_y", "truth_yaw")
 
 
@@ -80,7 +80,7 @@ class NormalDrive:
             reverse=bool(random.random() < 0.25),
             pause=random.choice([0.0, random.uniform(0.1, 3.0)]),
             quiet=bool(random.random() < 0.3),
-            until=self._loop.time + PATIENCE,
+            until=self._loop.time + TIMEOUT,
         )
 
     def _command(self, log: Log) -> None:

@@ -197,7 +197,7 @@ std::string MemoryModel::to_string(const Mutant& mutant) const {
            earlier <= site;
   };
   const char* const operations[] = {"load", "store", "add"};
-  const char* const defects[] = {"without order", "not done", "not made anew"};
+  const char* const defects[] = {"without order", "not done", "not recreated"};
   const std::string order = acquires(site.order) ? "-acquire " : releases(site.order) ? "-release " : "-relaxed ";
   return operations[static_cast<int>(site.operation)] + order + names_[site.name] + " #" +
          std::to_string(std::count_if(sites_.begin(), sites_.end(), alike)) + " " +

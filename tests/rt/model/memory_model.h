@@ -11,7 +11,7 @@
 /// later store cannot be missed here. Words have one writing thread; fences and seq_cst are refused.
 ///
 /// Scheduling. With Schedules::kAll every access is a point where the other thread may go on instead.
-/// Schedules::kDistinct leaves out what cannot be told apart: only which store a load reads from matters, and a
+/// Schedules::kDistinct leaves out what cannot be distinguished: only which store a load reads from matters, and a
 /// thread may read old stores anyway. So thread 0 runs ahead until it loads a word that thread 1 writes; there
 /// it reads a store that is there, or lets thread 1 run up to its next store to that word. Thread 1 runs
 /// when thread 0 waits or has ended. Where thread 1 writes nothing that thread 0 reads, this needs no switch at

@@ -8,7 +8,7 @@ from robot_control.common.terminal_dialog import NoAnswerError, Questions
 
 @pytest.fixture
 def asked():
-    """A function: Questions that will hear this text, then the end."""
+    """A function: Questions that will receive this text, then the end."""
     descriptors = []
 
     def make(text, going_on=lambda: True):
@@ -42,11 +42,11 @@ def test_a_value_is_asked_for_until_it_is_taken(asked, capsys):
     assert "too far" in said
 
 
-def test_who_says_it_twice_means_it(asked):
+def test_an_answer_given_twice_is_accepted(asked):
     assert asked("9\n9\n").value("m?", float, lambda x: "too far" if x > 5 else "") == 9
 
 
-def test_the_end_of_the_input_is_told(asked):
+def test_the_end_of_the_input_is_reported(asked):
     with pytest.raises(NoAnswerError, match="no terminal"):
         asked("half").line("how far?")
 
