@@ -210,7 +210,7 @@ PYBIND11_MODULE(_robot_control, module) {
           [](const ClosedLoop& loop, double speed, bool emergency) {
             const Parameters& parameters = loop.parameters();
             const MotionLimits limits = speed_limits(parameters.controller).linear;
-            const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
+            const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
             return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();
           },
           py::arg("speed"), py::arg("emergency"))
