@@ -77,6 +77,8 @@ constexpr auto kRobot = std::to_array<Key>({
      kOptional,
      "wheel_base_multiplier"},
     {"wheel_radius", in<&P::robot, &Robot::wheel_radius>, "m", 0.005, 2, kOptional},
+    {"left_wheel_radius_multiplier", in<&P::robot, &Robot::left_wheel_radius_multiplier>, {}, 0.5, 2, kOptional},
+    {"right_wheel_radius_multiplier", in<&P::robot, &Robot::right_wheel_radius_multiplier>, {}, 0.5, 2, kOptional},
     {"wheel_effort_limit", in<&P::robot, &Robot::wheel_effort_limit>, "N·m", 0.001, 10000, kOptional},
     {"wheel_velocity_limit", in<&P::robot, &Robot::wheel_velocity_limit>, "rad/s", 0.01, 1000, kOptional},
     {"wheel_effort_rate", in<&P::robot, &Robot::wheel_effort_rate>, "N·m/s", 0.01, 1.0e9, kOptional},
