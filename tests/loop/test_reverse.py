@@ -10,6 +10,7 @@ REVERSE = {
     "max_linear_acceleration_reverse": 0.4,
     "max_linear_deceleration_reverse": 0.5,
 }
+DATA_SHEET = {"sensor_errors": "data_sheet"}  # speeds are compared to some per cent
 
 
 def reversed_from_rest(loop):
@@ -18,7 +19,7 @@ def reversed_from_rest(loop):
 
 
 def test_reverses_with_its_own_speed_and_acceleration_and_forwards_as_before():
-    loop = ClosedLoop({"diff_drive_controller": REVERSE})
+    loop = ClosedLoop({"diff_drive_controller": REVERSE, "mujoco_plant": DATA_SHEET})
     back = reversed_from_rest(loop)
     assert back["limited_linear"].min() == -0.2
     assert np.abs(np.diff(back["limited_linear"])).max() / loop.period == pytest.approx(0.4, rel=1e-6)
@@ -28,7 +29,7 @@ def test_reverses_with_its_own_speed_and_acceleration_and_forwards_as_before():
 
 @pytest.mark.parametrize("silence", [False, True])
 def test_stops_in_reverse_where_its_limits_predict(silence):
-    loop = ClosedLoop({"diff_drive_controller": REVERSE})
+    loop = ClosedLoop({"diff_drive_controller": REVERSE, "mujoco_plant": DATA_SHEET})
     reversed_from_rest(loop)
     log = loop.run(3.0, None if silence else (0.0, 0.0))
     start = int(np.flatnonzero(log["limited_linear"] != -0.2)[0])
@@ -39,7 +40,7 @@ def test_stops_in_reverse_where_its_limits_predict(silence):
 
 
 def test_reverse_is_set_while_driving():
-    loop = ClosedLoop()
+    loop = ClosedLoop({"mujoco_plant": DATA_SHEET})
     reversed_from_rest(loop)
     loop.set_parameters(REVERSE)
     log = loop.run(3.0, (-1.0, 0.0))
@@ -49,6 +50,6 @@ def test_reverse_is_set_while_driving():
 
 
 def test_an_emergency_is_never_weaker_than_a_stop_in_reverse():
-    loop = ClosedLoop()
+    loop = ClosedLoop({"mujoco_plant": DATA_SHEET})
     with pytest.raises(ParameterError, match="max_linear_deceleration_reverse"):
         loop.set_parameters({"max_linear_deceleration_reverse": 3.0, "max_linear_emergency_deceleration": 2.0})
