@@ -16,7 +16,10 @@ AxisTuning axis_tuning(const MotionLimits& limits) noexcept {
           .acceleration = limits.acceleration,
           .deceleration = limits.deceleration,
           .emergency_deceleration = limits.emergency_deceleration,
-          .jerk = std::isinf(limits.jerk) ? 0 : limits.jerk};
+          .jerk = std::isinf(limits.jerk) ? 0 : limits.jerk,
+          .reverse_speed = limits.speed_towards(-1),
+          .reverse_acceleration = limits.acceleration_towards(-1),
+          .reverse_deceleration = limits.deceleration_from(-1)};
 }
 
 MotionLimits motion_limits(const AxisTuning& tuning) noexcept {
@@ -24,7 +27,10 @@ MotionLimits motion_limits(const AxisTuning& tuning) noexcept {
           .acceleration = tuning.acceleration,
           .deceleration = tuning.deceleration,
           .emergency_deceleration = tuning.emergency_deceleration,
-          .jerk = jerk_limit(tuning.jerk)};
+          .jerk = jerk_limit(tuning.jerk),
+          .reverse_speed = tuning.reverse_speed,
+          .reverse_acceleration = tuning.reverse_acceleration,
+          .reverse_deceleration = tuning.reverse_deceleration};
 }
 
 }  // namespace

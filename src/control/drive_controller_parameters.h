@@ -16,10 +16,13 @@ struct FeedForwardParameters {
 
 /// Gains that are left out are derived from the robot, wheel by wheel: wheel_loop_gains.h.
 struct DriveControllerParameters {
-  double max_linear_speed = 1.0;                             ///< m/s
-  double max_angular_speed = 2.0;                            ///< rad/s
-  double max_linear_acceleration = 1.0;                      ///< m/s²
-  double max_angular_acceleration = 4.0;                     ///< rad/s²
+  double max_linear_speed = 1.0;           ///< m/s
+  double max_angular_speed = 2.0;          ///< rad/s
+  double max_linear_acceleration = 1.0;    ///< m/s²
+  double max_angular_acceleration = 4.0;   ///< rad/s²
+  std::optional<double> min_linear_speed;  ///< m/s ≤ 0, fastest in reverse; absent: −max_linear_speed
+  std::optional<double> max_linear_acceleration_reverse;     ///< m/s²; absent: as forwards
+  std::optional<double> max_linear_deceleration_reverse;     ///< m/s²; absent: as forwards
   std::optional<double> max_linear_deceleration;             ///< m/s²; absent: as the acceleration
   std::optional<double> max_angular_deceleration;            ///< rad/s²
   std::optional<double> max_linear_emergency_deceleration;   ///< m/s², ≥ the deceleration; absent: drive_limits.h

@@ -8,6 +8,7 @@
 #include "control/drive_controller.h"
 #include "control/kinematics.h"
 #include "control/limits/drive_limits.h"
+#include "control/wheel_loops/feed_forward.h"
 #include "robot/gravity.h"
 
 namespace robot_control {
@@ -22,7 +23,7 @@ constexpr double kStretch = 5;              // the longest that a ramp is stretc
 /// The robot of the header.
 class RigidRobot {
  public:
-  explicit RigidRobot(const RobotModel& robot) : robot_(robot), kinematics_(robot) {
+  explicit RigidRobot(const RobotModel& robot) : robot_(robot), kinematics_(robot), scrub_(robot) {
     double middle = 0;
     double count = 0;
     for (const WheelModel& wheel : robot.wheels) {
@@ -59,6 +60,10 @@ class RigidRobot {
       damping += joint.damping + joint.friction * std::tanh(turning / kRehearsedFriction) / turning;
     }
     damping /= static_cast<double>(robot_.wheels.size());
+    const double turning = std::copysign(std::max(std::abs(twist_.angular), 1e-9), twist_.angular);
+    double scrubbing = 0;  // N·m·s/rad, of a wheel's torque by ω
+    for (const double effort : scrub_.efforts(twist_.linear, turning)) scrubbing += std::abs(effort / turning);
+    scrubbing *= kGroundFriction / static_cast<double>(robot_.wheels.size());
     const double base = robot_.wheel_base;
     const double rim = 0.5 * robot_.effective_wheel_base();
     const double lever = radius_ / beside_;
@@ -68,10 +73,11 @@ class RigidRobot {
                         lever * robot_.mass * centre_ahead_ * twist_.linear * twist_.angular / base;
     const double linear_inertia = 0.5 * lever * robot_.mass + inertia_ / radius_;
     const double angular_inertia = lever * robot_.yaw_inertia / base + inertia_ * rim / radius_;
-    // The joints' damping implicitly: it may be stiff against the period.
+    // Losses implicitly: they may be stiff against the period.
     const PlanarTwist next{
         (twist_.linear + dt * pull / linear_inertia) / (1 + dt * damping / (radius_ * linear_inertia)),
-        (twist_.angular + dt * turn / angular_inertia) / (1 + dt * damping * rim / (radius_ * angular_inertia))};
+        (twist_.angular + dt * turn / angular_inertia) /
+            (1 + dt * (damping * rim / radius_ + scrubbing) / angular_inertia)};
     const WheelValues turned =
         kinematics_.joint_speeds({0.5 * (twist_.linear + next.linear), 0.5 * (twist_.angular + next.angular)});
     for (std::size_t i = 0; i < robot_.wheels.size(); ++i) angle_[i] += turned[i] * dt;
@@ -88,6 +94,7 @@ class RigidRobot {
  private:
   const RobotModel& robot_;
   DriveKinematics kinematics_;
+  Scrub scrub_;
   double inertia_ = 0;  // kg·m², mean of the wheels'
   double radius_ = 0;   // m
   double beside_ = 1;   // h

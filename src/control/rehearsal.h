@@ -6,7 +6,9 @@
 /// side, with τ' the mean torque of its wheels in driving direction less d·q̇ + f·tanh(q̇/ε),
 ///
 ///   (τ'_right + τ'_left)/2 = (r·m/2h + J/r)·v̇ − r·m·x_c·ω²/2h
-///   (τ'_right − τ'_left)/2 = (r·I/(h·b) + J·b_eff/2r)·ω̇ + r·m·x_c·v·ω/(h·b)
+///   (τ'_right − τ'_left)/2 = (r·I/(h·b) + J·b_eff/2r)·ω̇ + r·m·x_c·v·ω/(h·b) + scrub
+///
+/// scrub: the mean torque of scrub.h, at kGroundFriction (feed_forward.h).
 ///
 /// Motions: straight at full speed and at kSlowPart of it, turning on the spot likewise, and both axes at half speed;
 /// each from rest until it is steady, then back to rest. At steady full speed 1 % of the weight pushes the wheels of

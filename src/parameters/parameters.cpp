@@ -148,6 +148,12 @@ class TreeReader {
         const Entry& entry = tree_.entries.at(usual);
         refuse(emergency, "must not be below " + usual + " = " + as_written(entry) + " [" + entry.origin + "]");
       }
+      const std::string reverse = block + "_deceleration_reverse";
+      if (sound_.contains(emergency) && sound_.contains(reverse) &&
+          of.emergency_deceleration < of.deceleration_from(-1)) {
+        const Entry& entry = tree_.entries.at(reverse);
+        refuse(emergency, "must not be below " + reverse + " = " + as_written(entry) + " [" + entry.origin + "]");
+      }
       // The jerk limit must let the brake of an emergency come.
       constexpr double kBuildUp = 1.0;  // s
       if (!sound_.contains(block + "_jerk") || jerk.value_or(0) == 0) return;

@@ -144,7 +144,7 @@ py::list derived_wheel_loops(Parameters parameters) {
 double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
   const Parameters& parameters = loop.parameters();
   const MotionLimits limits = speed_limits(parameters.controller).linear;
-  const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
+  const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
   return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();
 }
 

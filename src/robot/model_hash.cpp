@@ -46,6 +46,8 @@ std::uint64_t model_hash(const std::string& urdf, const RobotParameters& paramet
   hash.add(parameters.wheel_base);
   hash.add(parameters.wheel_base_multiplier);
   hash.add(parameters.wheel_radius);
+  hash.add(parameters.left_wheel_radius_multiplier);
+  hash.add(parameters.right_wheel_radius_multiplier);
   hash.add(parameters.wheel_effort_limit);
   hash.add(parameters.wheel_velocity_limit);
   hash.add(parameters.wheel_effort_rate);

@@ -32,6 +32,11 @@ void read_geometry(const RigidBodies& robot, const RobotParameters& parameters, 
   for (RollingBody& wheel : train.wheels) {
     wheel.wheel.radius =
         overridden("wheel_radius", "m", parameters.wheel_radius, wheel.wheel.radius, robot, model.notes);
+    const bool left = wheel.wheel.side == Side::kLeft;
+    wheel.wheel.radius *=
+        overridden(left ? "left_wheel_radius_multiplier" : "right_wheel_radius_multiplier", "",
+                   left ? parameters.left_wheel_radius_multiplier : parameters.right_wheel_radius_multiplier, 1, robot,
+                   model.notes);
   }
   model.wheel_base =
       overridden("wheel_base", "m", parameters.wheel_base, wheel_base_of(train.wheels), robot, model.notes);

@@ -18,18 +18,20 @@ namespace robot_control {
 /// What a user may say about the robot beside its URDF (the `robot:` block). It is what estimator and controller
 /// use; a simulated plant stays as the URDF says. Where both speak and differ by more than 1 %, a note reports it.
 struct RobotParameters {
-  std::vector<std::string> left_wheel_joints;   ///< both empty: found, see drive_wheels.h
-  std::vector<std::string> right_wheel_joints;  ///< as many as left ones
-  std::optional<double> wheel_base;             ///< m, between left and right wheel centres
-  std::optional<double> wheel_base_multiplier;  ///< effective over geometric wheel base; see RobotModel
-  std::optional<double> wheel_radius;           ///< m, every wheel
-  std::optional<double> wheel_effort_limit;     ///< N·m, every wheel; holds for the simulated drive, too
-  std::optional<double> wheel_velocity_limit;   ///< rad/s, every wheel
-  std::optional<double> wheel_effort_rate;      ///< N·m/s, every wheel; empty: kEffortRise
-  std::optional<double> mass;                   ///< kg
-  std::optional<Vector3> centre_of_gravity;     ///< m, base axes
-  std::string imu_link;                         ///< empty: found by its name, else the IMU is in the base (imu_place.h)
-  std::optional<Vector3> imu_position;          ///< m, base axes
+  std::vector<std::string> left_wheel_joints;           ///< both empty: found, see drive_wheels.h
+  std::vector<std::string> right_wheel_joints;          ///< as many as left ones
+  std::optional<double> wheel_base;                     ///< m, between left and right wheel centres
+  std::optional<double> wheel_base_multiplier;          ///< effective over geometric wheel base; see RobotModel
+  std::optional<double> wheel_radius;                   ///< m, every wheel
+  std::optional<double> left_wheel_radius_multiplier;   ///< of the left wheels' radius, given or the URDF's
+  std::optional<double> right_wheel_radius_multiplier;  ///< of the right wheels'
+  std::optional<double> wheel_effort_limit;             ///< N·m, every wheel; holds for the simulated drive, too
+  std::optional<double> wheel_velocity_limit;           ///< rad/s, every wheel
+  std::optional<double> wheel_effort_rate;              ///< N·m/s, every wheel; empty: kEffortRise
+  std::optional<double> mass;                           ///< kg
+  std::optional<Vector3> centre_of_gravity;             ///< m, base axes
+  std::string imu_link;                    ///< empty: found by its name, else the IMU is in the base (imu_place.h)
+  std::optional<Vector3> imu_position;     ///< m, base axes
   std::optional<Vector3> imu_orientation;  ///< rad, roll, pitch, yaw of the IMU's axes in the base's, as URDF's rpy
 };
 

@@ -28,6 +28,9 @@ DriveControllerParameters spelled_out(DriveControllerParameters given, const Dri
   const auto fill = [](std::optional<double>& value, double derived) { value = value.value_or(derived); };
   const WheelTuning& wheel = tuning.wheels.front();
   fill(given.max_linear_deceleration, tuning.linear.deceleration);
+  fill(given.min_linear_speed, -tuning.linear.reverse_speed);
+  fill(given.max_linear_acceleration_reverse, tuning.linear.reverse_acceleration);
+  fill(given.max_linear_deceleration_reverse, tuning.linear.reverse_deceleration);
   fill(given.max_angular_deceleration, tuning.angular.deceleration);
   fill(given.pid_kp, wheel.kp);
   fill(given.pid_ki, wheel.ki);

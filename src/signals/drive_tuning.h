@@ -18,6 +18,9 @@ struct AxisTuning {
   double deceleration = 0;
   double emergency_deceleration = 0;
   double jerk = 0;  ///< 0: no limit
+  double reverse_speed = 0;
+  double reverse_acceleration = 0;
+  double reverse_deceleration = 0;
 };
 
 /// Of one wheel: the parameters of its loop, and those of feed-forward.

@@ -202,6 +202,11 @@ void add_tuning(Columns& to) {
                          [](const C& c, J) { return c.tuning.angular.emergency_deceleration; }));
   to.push_back(column<C>("max_linear_jerk", "m/s³", [](const C& c, J) { return c.tuning.linear.jerk; }));
   to.push_back(column<C>("max_angular_jerk", "rad/s³", [](const C& c, J) { return c.tuning.angular.jerk; }));
+  to.push_back(column<C>("min_linear_speed", "m/s", [](const C& c, J) { return -c.tuning.linear.reverse_speed; }));
+  to.push_back(column<C>("max_linear_acceleration_reverse", "m/s²",
+                         [](const C& c, J) { return c.tuning.linear.reverse_acceleration; }));
+  to.push_back(column<C>("max_linear_deceleration_reverse", "m/s²",
+                         [](const C& c, J) { return c.tuning.linear.reverse_deceleration; }));
   to.push_back(column<C>("keep_curvature", "", [](const C& c, J) { return c.tuning.keep_curvature; }));
   to.push_back(column<C>("cmd_vel_timeout", "s", [](const C& c, J) { return c.tuning.cmd_vel_timeout; }));
   to.push_back(column<C>("tracking_bandwidth", "Hz", [](const C& c, J) { return c.tuning.tracking_bandwidth; }));

@@ -66,7 +66,7 @@ TEST(DrivePerformance, StaysWithinTwoMillimetresPerSecondWithEncoderAndFriction)
     EXPECT_LT(figures.rms, 2e-3);        // measured 0.9 mm/s
     EXPECT_LT(figures.overshoot, 0.01);  // the article's loop shall stay within 1 %; measured 0.05 %
     EXPECT_LT(figures.undershoot, 0.01);
-    // kp times the tracking loop's jump of one count (0.060 rad/s, its header): a tenth of differencing's 3 N·m.
+    // kp times 0.060 rad/s, by which one count may move the tracked speed at most: a tenth of differencing's 3 N·m.
     EXPECT_LT(figures.torque_step, 2 * 0.060);
   }
 }

@@ -32,7 +32,25 @@ MotionLimits draw_limits(Draw& draw) {
   limits.deceleration = draw.of_scale(0.1, 20);
   limits.emergency_deceleration = limits.deceleration * draw.of_scale(1, 5);
   if (draw.happens(0.8)) limits.jerk = draw.of_scale(0.5, 500);
+  if (draw.happens(0.3)) limits.reverse_speed = draw.happens(0.2) ? 0 : limits.speed * draw.of_scale(0.02, 1);
+  if (draw.happens(0.3)) limits.reverse_acceleration = draw.of_scale(0.1, 20);
+  if (draw.happens(0.3)) {
+    limits.reverse_deceleration = draw.of_scale(0.1, 20);
+    limits.emergency_deceleration = std::max(limits.emergency_deceleration, *limits.reverse_deceleration);
+  }
   return limits;
+}
+
+/// Forward and reverse exchanged.
+MotionLimits mirrored(const MotionLimits& limits) {
+  MotionLimits other = limits;
+  other.speed = limits.speed_towards(-1);
+  other.acceleration = limits.acceleration_towards(-1);
+  other.deceleration = limits.deceleration_from(-1);
+  other.reverse_speed = limits.speed;
+  other.reverse_acceleration = limits.acceleration;
+  other.reverse_deceleration = limits.deceleration;
+  return other;
 }
 
 double draw_wish(Draw& draw, double limit) {
@@ -65,11 +83,11 @@ struct Axis {
     const double step = (next - speed) / dt;
     const double grain = 1e-12 * limits.speed / dt;  // of a difference of two speeds
     const double tolerance = kLimitRounding * (1 + std::abs(step)) + grain;
-    const double slows = emergency ? limits.emergency_deceleration : limits.deceleration;
+    const double slows = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
     const auto side = [](double of) { return (of > 0) - (of < 0); };
     const bool crosses = side(speed) * side(next) < 0 && std::abs(next) > grain * dt;
     const bool slower = !crosses && std::abs(next) <= std::abs(speed);
-    double bound = slower ? slows : limits.acceleration;
+    double bound = slower ? slows : limits.acceleration_towards(next - speed);
     if (emergency_fades && !std::isinf(limits.jerk)) {
       bound = std::max(bound, std::abs(acceleration) - limits.jerk * dt);
     }
@@ -77,13 +95,14 @@ struct Axis {
     const bool jerks = change > limits.jerk * (1 + kLimitRounding) + 2 * grain / dt;
 
     const char* violated = std::isfinite(next) ? nullptr : "finite";
-    if (std::abs(next) > limits.speed * (1 + 1e-12)) violated = "speed";
+    if (std::abs(next) > limits.speed_towards(next) * (1 + 1e-12)) violated = "speed";
     if (std::abs(step) > bound + tolerance) violated = "acceleration";
     if (jerks && !(yielded && next == 0)) violated = "jerk";
     if (side(next) != 0 && side(next) != side(goal) && side(next) != side(speed)) violated = "zero";
     if (next < low - kLimitRounding - grain * dt || next > high + kLimitRounding + grain * dt) violated = "overshoot";
 
-    emergency_fades = emergency || (emergency_fades && std::abs(step) > limits.deceleration * (1 + kLimitRounding));
+    emergency_fades =
+        emergency || (emergency_fades && std::abs(step) > limits.deceleration_from(speed) * (1 + kLimitRounding));
     acceleration = step;
     yielded_before = yielded && next == 0;  // this axis, or the other while this one passed zero
     speed = next;
@@ -92,9 +111,12 @@ struct Axis {
 
   /// Cycles in which it must have arrived from anywhere: let everything fade, slow down, speed up.
   double patience() const {
-    const double strongest = std::max({limits.acceleration, limits.emergency_deceleration});
+    const double gentlest = std::min(limits.acceleration, limits.acceleration_towards(-1));
+    const double slowest = std::min(limits.deceleration, limits.deceleration_from(-1));
+    const double strongest =
+        std::max({limits.acceleration, limits.acceleration_towards(-1), limits.emergency_deceleration});
     const double fading = std::isinf(limits.jerk) ? 0 : strongest / limits.jerk;
-    return (limits.speed / limits.acceleration + limits.speed / limits.deceleration + 8 * fading) / dt + 10;
+    return (limits.speed / gentlest + limits.speed / slowest + 8 * fading) / dt + 10;
   }
 };
 
@@ -186,7 +208,9 @@ class Trial {
   double dt_;
   std::array<Axis, 2> axes_;
   SpeedLimiter limiter_{limits_};
-  SpeedLimiter mirror_{limits_};
+  SpeedLimiter mirror_{{.linear = mirrored(limits_.linear),
+                        .angular = mirrored(limits_.angular),
+                        .keep_curvature = limits_.keep_curvature}};
   PlanarTwist target_;
   std::optional<PlanarTwist> line_;  ///< the twist that it comes from, or goes to, straight from or to standstill
   bool emergency_ = false;

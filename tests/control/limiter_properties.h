@@ -9,7 +9,9 @@
 ///   overshoot     a target is passed by no more than a²/(2·jerk) of the acceleration at the time it was given
 ///   arrival       a target that stays is reached exactly, within the time of its S-curve, and kept
 ///   curvature     from standstill, and from a steady motion to it, the commanded one where it is to be kept
-///   reverse       the mirrored commands give the mirrored motion, bit for bit
+///   reverse       the mirrored commands under mirrored limits give the mirrored motion, bit for bit
+///
+/// Limits may differ between forward and reverse.
 
 #include <cstdint>
 #include <optional>

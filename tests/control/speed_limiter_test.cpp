@@ -311,5 +311,62 @@ TEST(SpeedLimiter, TooLittleTorqueForATurnDoesNotHoldUpWhoSlowsDown) {
   EXPECT_LE(weak, whole + 1);
 }
 
+/// 1 m/s at 1 m/s² and 2 m/s² forwards, 0.2 m/s at 0.4 m/s² and 0.5 m/s² in reverse, without a jerk limit.
+SpeedLimits with_a_reverse_gear() {
+  SpeedLimits limits;
+  limits.linear = {.speed = 1, .acceleration = 1, .deceleration = 2, .emergency_deceleration = 4};
+  limits.linear.reverse_speed = 0.2;
+  limits.linear.reverse_acceleration = 0.4;
+  limits.linear.reverse_deceleration = 0.5;
+  return limits;
+}
+
+/// Largest change of speed, m/s², of the steps in which |v| grows and shrinks, from `start` to `target` and there.
+struct Steepest {
+  double grows = 0, shrinks = 0, end = 0;
+};
+Steepest drive_to(SpeedLimiter& limiter, double target) {
+  Steepest steepest;
+  for (int k = 0; k < 3000; ++k) {
+    const double before = limiter.value().linear;
+    const double after = limiter.step({target, 0}, 1e-3).linear;
+    double& most = std::abs(after) > std::abs(before) ? steepest.grows : steepest.shrinks;
+    most = std::max(most, std::abs(after - before) / 1e-3);
+    steepest.end = after;
+  }
+  return steepest;
+}
+
+TEST(SpeedLimiter, HasLimitsOfItsOwnInReverse) {
+  SpeedLimiter limiter(with_a_reverse_gear());
+  const Steepest forth = drive_to(limiter, 1);
+  const Steepest back = drive_to(limiter, -1);
+  const Steepest stop = drive_to(limiter, 0);
+  EXPECT_EQ(forth.end, 1);
+  EXPECT_NEAR(forth.grows, 1, 1e-9);
+  EXPECT_EQ(back.end, -0.2);
+  EXPECT_NEAR(back.shrinks, 2, 1e-9) << "forwards until it stands";
+  EXPECT_NEAR(back.grows, 0.4, 1e-9);
+  EXPECT_EQ(stop.end, 0);
+  EXPECT_NEAR(stop.shrinks, 0.5, 1e-9);
+}
+
+TEST(SpeedLimiter, KeepsTheCurvatureOfASlowReverse) {
+  SpeedLimiter limiter(with_a_reverse_gear());
+  for (int k = 0; k < 3000; ++k) {
+    const PlanarTwist twist = limiter.step({-0.8, 0.4}, 1e-3);
+    ASSERT_NEAR(twist.angular, -0.5 * twist.linear, 1e-12) << k;
+  }
+  EXPECT_EQ(limiter.value().linear, -0.2);
+}
+
+TEST(SpeedLimiter, StandsWhereReverseIsForbidden) {
+  SpeedLimits limits = with_a_reverse_gear();
+  limits.linear.reverse_speed = 0;
+  SpeedLimiter limiter(limits);
+  drive_to(limiter, 0.5);
+  EXPECT_EQ(drive_to(limiter, -0.5).end, 0);
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -267,7 +267,7 @@ def test_derived_gains_hold_the_commanded_motion_at_every_rate(rate):
     assert moved(drive(loop, 5.0, (0.0, 0.0))) < 1e-3
 
 
-@pytest.mark.parametrize(("gains", "cycles"), [({}, 2), ({"pid_kp": 1.0, "pid_ki": 5.0}, 10)])
+@pytest.mark.parametrize(("gains", "cycles"), [({}, 2), ({"pid_kp": 1.0, "pid_ki": 5.0}, 7)])
 @pytest.mark.parametrize("where", ["actuator_delay", "sensor_delay"])
 def test_gains_bear_delays(gains, cycles, where):
     """A limit cycle takes all of the 3.5 N·m."""

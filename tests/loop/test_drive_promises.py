@@ -2,7 +2,7 @@
 
 import pytest
 from lab.drives import drive_figures, drive_promises
-from lab.drives.drive_promises import ROBOTS, curves, rest, stops, straight
+from lab.drives.drive_promises import ROBOTS, coarse_encoders, curves, peer, rest, stops, straight
 from lab.robot_corpus import DIFFBOT, robot_names
 from robot_control import ClosedLoop
 
@@ -40,6 +40,14 @@ def test_stops_where_its_limits_predict(robot):
 
 def test_is_quiet_at_rest_holds_on_a_slope_and_does_not_jump():
     expect(rest(DIFFBOT))
+
+
+def test_turns_no_counts_into_torque_and_drives_with_few_of_them():
+    expect(coarse_encoders(DIFFBOT))
+
+
+def test_drives_what_the_test_of_diff_drive_controller_drives():
+    expect(peer(DIFFBOT))
 
 
 @pytest.mark.parametrize(("deceleration", "jerk"), [(0.5, 10.0), (2.0, 0.0), (2.0, 3.0)])

@@ -169,7 +169,7 @@ TEST_F(Layers, AKeyOfThePeerIsAnsweredByTheOneOfOurs) {
   const auto said = [&](const std::string& key) { return refusal("diff_drive_controller:\n  " + key + ": 1\n"); };
   EXPECT_THAT(said("wheel_radius_multiplier"), AllOf(HasSubstr("here robot.wheel_radius"),
                                                      HasSubstr("docs/migration.md"), Not(HasSubstr("wheel_base"))));
-  EXPECT_THAT(said("left_wheel_radius_multiplier"), HasSubstr("state_estimator.radius_ratio"));
+  EXPECT_THAT(said("left_wheel_radius_multiplier"), HasSubstr("robot.left_wheel_radius_multiplier"));
   EXPECT_THAT(said("odom_frame_id"), HasSubstr("here state_estimator.odom_frame;"));
   EXPECT_THAT(said("velocity_rolling_window_size"), HasSubstr("speed_bandwidth"));
   EXPECT_THAT(said("use_stamped_vel"), HasSubstr("needs no key here"));

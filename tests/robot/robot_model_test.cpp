@@ -151,6 +151,17 @@ TEST(RobotModel, OverridesBeyondOnePercentAreNotedOnce) {
   EXPECT_EQ(noted, (std::vector<std::string>{"robot/wheel_radius", "robot/mass"}));
 }
 
+TEST(RobotModel, RadiusMultipliersApplyToTheWheelsOfTheirSide) {
+  RobotParameters parameters;
+  parameters.wheel_radius = 0.11;
+  parameters.left_wheel_radius_multiplier = 1.02;
+  parameters.right_wheel_radius_multiplier = 0.97;
+  const RobotModel robot = read_robot(diffbot_urdf(), parameters);
+  EXPECT_NEAR(robot.wheels[0].radius, 0.11 * 1.02, kRounding);
+  EXPECT_NEAR(robot.wheels[1].radius, 0.11 * 0.97, kRounding);
+  EXPECT_NE(robot.hash, read_robot(diffbot_urdf(), {}).hash);
+}
+
 TEST(RobotModel, TheBodiesAreThoseOfTheFile) {
   const RobotModel robot = read_robot(diffbot_urdf(), {});
   ASSERT_NE(robot.bodies, nullptr);

@@ -138,5 +138,61 @@ TEST_F(WheelFollowingTest, ACommandIsNotStaleForWantOfAState) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEstimatorLost});
 }
 
+/// Axles behind each other, of which the fixture has one wheel each: in a turn on the spot either scrubs with `kScrub`.
+class ScrubbingTest : public WheelFollowingTest {
+ protected:
+  static constexpr double kScrub = 0.1 * 6 * 9.81 * 0.6247;  ///< N·m: 12 kg, friction 1 (scrub_test.cpp)
+
+  ScrubbingTest() {
+    RobotModel scrubbing = robot();
+    scrubbing.wheels[0].centre_base[0] = 0.2;
+    scrubbing.wheels[1].centre_base[0] = -0.2;
+    scrubbing.wheel_base_multiplier = 1.64;
+    for (JointModel& joint : scrubbing.joints) joint.effort_limit = 30;
+    SafetyParameters chosen = derived_limits(parameters(), scrubbing, 15);
+    chosen.yaw_rate.reaction = Reaction::kOff;
+    chosen.heartbeat_timeout = 0;
+    monitor_ = SafetyMonitor(chosen, scrubbing, kPeriod);
+    ask_for(0);
+    turn_wheels(0);
+    new_run();
+    steps(kStart);
+    drive();
+    steps(100);
+  }
+
+  /// On the spot with kSpeed; the wheels turn with `speed` and have `torque`, both towards their targets.
+  void turn(double speed, double torque) {
+    target(kSpeed);
+    command_.joints[0].velocity = -kSpeed;
+    speed_ = {-speed, speed};
+    sensors_.joints[0].effort = -torque;
+    sensors_.joints[1].effort = torque;
+  }
+};
+
+TEST_F(ScrubbingTest, WheelsWhoseTorqueIsBelowTheirFrictionAndGrowsAreNotStalledYet) {
+  for (int k = 0; k < 1500; ++k) {
+    turn(0, (-1 + 3.9 * k / 1500) * kScrub);  // the reversal of a weak loop
+    step();
+    ASSERT_EQ(permit_.causes, 0u) << k;
+  }
+  steps(400);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall}) << "it grows no more";
+}
+
+TEST_F(ScrubbingTest, WheelsThatStandUnderMoreTorqueThanFrictionAre) {
+  turn(0, 3.5 * kScrub);
+  steps(400);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
+}
+
+TEST_F(ScrubbingTest, WheelsThatStandWhileDrivingStraightAreStalledAsAnyOther) {
+  turn_wheels(0);
+  for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = 0.5;
+  steps(400);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -2,9 +2,11 @@
 /// The user's limits → the limits of the limiter. Limits that are left out are derived from the others.
 ///
 ///   deceleration            = acceleration
-///   emergency deceleration  linear: f·deceleration with f = 2, less if that exceeds kHalfGrip, but at least 1;
-///                           angular: the same factor f on its own deceleration, which keeps the curvature
-///   jerk                    = max(acceleration, emergency deceleration / 2) / 0.1 s
+///   in reverse              = forwards; its speed −min_linear_speed, but at most max_linear_speed
+///   emergency deceleration  linear: f·deceleration, the larger of both directions, with f = 2, less if that exceeds
+///                           kHalfGrip, but at least 1; angular: the same factor f on its own deceleration, which keeps
+///                           the curvature
+///   jerk                    = max(accelerations, emergency deceleration / 2) / 0.1 s
 
 #include "control/drive_controller_parameters.h"
 #include "control/limits/speed_limiter.h"

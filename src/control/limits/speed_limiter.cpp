@@ -15,9 +15,11 @@ double scale_within(double requested, double limit) noexcept {
   return size > limit ? limit / size : 1.0;
 }
 
-AxisLimits in_force(const MotionLimits& limits, bool emergency, double acceleration_scale) noexcept {
-  const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration;
-  return {acceleration_scale * limits.acceleration, deceleration, limits.jerk};
+/// On the way from `speed` to `goal`.
+AxisLimits in_force(const MotionLimits& limits, double speed, double goal, bool emergency,
+                    double acceleration_scale) noexcept {
+  const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
+  return {acceleration_scale * limits.acceleration_towards(goal - speed), deceleration, limits.jerk};
 }
 
 /// The motion of one axis towards its target.
@@ -57,8 +59,8 @@ bool scaled(const AxisLimits& planned, const AxisLimits& own) noexcept {
 }  // namespace
 
 PlanarTwist within_speed(const PlanarTwist& target, const SpeedLimits& limits) noexcept {
-  const double linear = limits.linear.speed;
-  const double angular = limits.angular.speed;
+  const double linear = limits.linear.speed_towards(target.linear);
+  const double angular = limits.angular.speed_towards(target.angular);
   const double scale = std::min(scale_within(target.linear, linear), scale_within(target.angular, angular));
   if (scale == 1.0) return target;
   // The clamp removes what rounding may have added to the limiting axis.
@@ -98,10 +100,10 @@ PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emerge
     reasons_ |= kReasonSpeedLimited;
     if (target.linear != 0 && target.angular != 0) reasons_ |= kReasonCurvatureKept;
   }
-  const Approach linear_approach =
-      approach(linear_, goal.linear, in_force(limits_.linear, emergency, acceleration_scale));
-  const Approach angular_approach =
-      approach(angular_, goal.angular, in_force(limits_.angular, emergency, acceleration_scale));
+  const Approach linear_approach = approach(
+      linear_, goal.linear, in_force(limits_.linear, linear_.speed, goal.linear, emergency, acceleration_scale));
+  const Approach angular_approach = approach(
+      angular_, goal.angular, in_force(limits_.angular, angular_.speed, goal.angular, emergency, acceleration_scale));
   const bool coupled = limits_.keep_curvature && linear_approach.distance > 0 && angular_approach.distance > 0;
   // An axis that slows down waits neither for a turn in an emergency nor for an axis that lacks torque.
   const bool linear_waits =
@@ -122,8 +124,8 @@ PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emerge
   linear_ = linear.state;
   angular_ = angular.state;
   acceleration_ = {linear.acceleration, angular.acceleration};
-  bound_ = {linear_approach.slows_down ? linear_approach.own.deceleration : limits_.linear.acceleration,
-            angular_approach.slows_down ? angular_approach.own.deceleration : limits_.angular.acceleration};
+  bound_ = {linear_approach.bound() / (linear_approach.slows_down ? 1 : acceleration_scale),
+            angular_approach.bound() / (angular_approach.slows_down ? 1 : acceleration_scale)};
   return value();
 }
 

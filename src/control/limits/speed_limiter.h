@@ -1,7 +1,8 @@
 #pragma once
-/// Speed, acceleration, deceleration and jerk limits of the linear and the angular axis, equal in both directions.
+/// Speed, acceleration, deceleration and jerk limits of the linear and the angular axis. Speed, acceleration and
+/// deceleration may differ backwards (below 0) from forwards.
 ///
-/// Speed: target* = s·target with the largest s ≤ 1 for which |v| ≤ linear.speed and |ω| ≤ angular.speed.
+/// Speed: target* = s·target with the largest s ≤ 1 for which v and ω are within the speeds of their directions.
 /// Ramps: axis_limiter.h, for each axis alone, or with `keep_curvature` for both together. Then, with e = target* − x
 /// the remaining distance of each axis, their limits are scaled down to
 ///
@@ -14,12 +15,16 @@
 /// A target that changes during a ramp begins a new line, which the output reaches as soon as the earlier acceleration
 /// has ended; no limit of an axis is exceeded for it.
 ///
-/// In an emergency the emergency deceleration applies, and the linear axis does not wait for the angular one. No limit
-/// depends on the direction of travel: step(−x, −target) = −step(x, target). The output is outside the speed limits
-/// only after restart_from (a measured speed) and after limits were lowered; it returns at `deceleration`.
+/// The acceleration that applies is that of the direction into which the speed grows, the deceleration that of the
+/// direction in which the axis still moves; beyond zero, on the way to a target on the other side, the other
+/// direction's acceleration. In an emergency the emergency deceleration applies in both directions, and the linear axis
+/// does not wait for the angular one. With limits mirrored in forward and reverse, step(−x, −target) = −step(x,
+/// target). The output is outside the speed limits only after restart_from (a measured speed) and after limits were
+/// lowered; it returns at `deceleration`.
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "control/limits/axis_limiter.h"
 #include "control/planar_twist.h"
@@ -33,6 +38,20 @@ struct MotionLimits {
   double deceleration = 1.0;
   double emergency_deceleration = 1.0;                    ///< ≥ deceleration
   double jerk = std::numeric_limits<double>::infinity();  ///< infinity: none
+  std::optional<double> reverse_speed = {};               ///< ≥ 0, of speeds below 0; absent: as forwards
+  std::optional<double> reverse_acceleration = {};
+  std::optional<double> reverse_deceleration = {};
+
+  /// Those of `direction`; 0 counts as forwards.
+  double speed_towards(double direction) const noexcept {
+    return direction < 0 ? reverse_speed.value_or(speed) : speed;
+  }
+  double acceleration_towards(double direction) const noexcept {
+    return direction < 0 ? reverse_acceleration.value_or(acceleration) : acceleration;
+  }
+  double deceleration_from(double direction) const noexcept {
+    return direction < 0 ? reverse_deceleration.value_or(deceleration) : deceleration;
+  }
 };
 
 struct SpeedLimits {

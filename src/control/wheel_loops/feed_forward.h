@@ -19,14 +19,19 @@
 /// So the inertia of a wheel, per rad/s² of its joint, is
 ///   straight: J + m·r²/(2·h)      turning: J + 2·I·r²/(h·b·b_eff)      lifted: J
 /// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m, h = 1: 0.065, 0.045 and 0.005 kg·m².
-/// Slopes, and the scrubbing of wheels behind each other, are compensated by the integrator: RobotModel does not
-/// describe them.
+///
+/// Wheels behind each other need the torque of scrub.h in a turn, at the friction kGroundFriction. What the real ground
+/// differs from it, and slopes, are compensated by the integrator.
 
 #include "control/planar_twist.h"
 #include "robot/robot_model.h"
+#include "robot/wheels/scrub.h"
 #include "signals/drive_tuning.h"
 
 namespace robot_control {
+
+/// Between smooth wet floors, 0.5, and rubber on dry concrete, 1: the integrator has to take at most a third.
+inline constexpr double kGroundFriction = 0.7;
 
 /// kg·m² about the axle of one wheel.
 double straight_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept;
@@ -42,7 +47,11 @@ class FeedForward {
   /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²), that of the joint included.
   WheelValues efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;
 
+  /// N·m ≥ 0, the dry friction of joint and scrubbing treads, at ground friction 1.
+  double friction(std::size_t wheel) const noexcept { return friction_[wheel] + scrub_.most(wheel); }
+
  private:
+  Scrub scrub_;
   double mass_;
   double yaw_inertia_;
   double centre_ahead_;  ///< m, x_c

@@ -1,5 +1,6 @@
 #include "control/wheel_loops/tracking_loop.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -7,16 +8,50 @@ namespace robot_control {
 
 namespace {
 
+constexpr double kInside = 0.2;                         // of the bandwidth: largest f_in
+constexpr double kCounts = 40;                          // counts in 1/f_in
+constexpr double kLeast = 0.1;                          // of the bandwidth: smallest f
+constexpr double kQuick = 1.5;                          // rad/s
+constexpr double kDoubt = 0.25;                         // of q'
+constexpr double kCoarse = 2 * std::numbers::pi / 512;  // rad, of a count
+
 double pole(double bandwidth, double dt) noexcept {
   return std::exp(-2 * std::numbers::pi * bandwidth * dt);
 }
 
+/// The same to (2π·bandwidth·dt)³/6, without a call.
+double cheap_pole(double bandwidth, double dt) noexcept {
+  const double x = 2 * std::numbers::pi * bandwidth * dt;
+  return 1 / (1 + x + 0.5 * x * x);
+}
+
 }  // namespace
 
-TrackingLoop::TrackingLoop(double bandwidth, double period)
-    : bandwidth_(bandwidth), period_(period), nominal_pole_(pole(bandwidth, period)) {}
+TrackingLoop::Gains TrackingLoop::gains(double pole, double dt) noexcept {
+  const double q = 1 - pole;
+  return {
+      .position = 1 - pole * pole * pole, .velocity = 1.5 * q * q * (1 + pole) / dt, .residual = q * q * q / (dt * dt)};
+}
+
+TrackingLoop::TrackingLoop(double bandwidth, double period) : bandwidth_(bandwidth), period_(period) {
+  derive();
+}
+
+void TrackingLoop::derive() noexcept {
+  nominal_ = gains(pole(bandwidth_, period_), period_);
+  const double quantum = quantum_.value();
+  doubt_ = quantum * std::min(1.0, quantum / kCoarse);
+  slowest_ = kCounts * quantum * kInside * bandwidth_;
+}
+
+void TrackingLoop::reset() noexcept {
+  quantum_ = {};
+  derive();
+}
 
 void TrackingLoop::restart_from(double position, double velocity) noexcept {
+  measured_ = position;
+  travelled_ = 0;
   position_ = position;
   velocity_ = velocity;
   residual_ = 0;
@@ -25,21 +60,51 @@ void TrackingLoop::restart_from(double position, double velocity) noexcept {
 
 void TrackingLoop::tune(double bandwidth, double known_decrease) noexcept {
   bandwidth_ = bandwidth;
-  nominal_pole_ = pole(bandwidth, period_);
+  derive();
   residual_ += known_decrease;
+}
+
+double TrackingLoop::part_of_bandwidth(double pace, double beyond) const noexcept {
+  const double quantum = quantum_.value();
+  const double quick = std::max(kQuick, std::abs(velocity_));       // rad/s
+  const double loud = 2 * std::numbers::pi * bandwidth_ * quantum;  // rad/s
+  const double most = loud > quick ? quick / loud : 1;              // m of the header
+  const double evidence = beyond < doubt_ ? beyond / doubt_ : 1;
+  const double silent = std::clamp(std::abs(travelled_) / quantum - 1, 0.0, 1.0);
+  return std::max({pace, most * evidence, silent, kLeast});
 }
 
 void TrackingLoop::step(double position_measured, double known_acceleration, double periods) noexcept {
   const double dt = periods * period_;
-  const double p = periods == 1 ? nominal_pole_ : pole(bandwidth_, dt);
-  const double q = 1 - p;
   known_ = known_acceleration;
   const double predicted_velocity = velocity_ + acceleration() * dt;
-  const double predicted_position = position_ + 0.5 * (velocity_ + predicted_velocity) * dt;
-  const double innovation = position_measured - predicted_position;
-  position_ = predicted_position + (1 - p * p * p) * innovation;
-  velocity_ = predicted_velocity + 1.5 * q * q * (1 + p) * innovation / dt;
-  residual_ += q * q * q * innovation / (dt * dt);
+  position_ += 0.5 * (velocity_ + predicted_velocity) * dt;
+  velocity_ = predicted_velocity;
+
+  const double turned = position_measured - measured_;
+  if (quantum_.refine(turned)) derive();
+  travelled_ = turned == 0 ? travelled_ + velocity_ * dt : 0;
+  const double half = 0.5 * quantum_.value();
+  // The last cell, moved on, may miss this one where the velocity is wrong: then its nearer edge is all that is known.
+  const double least = position_measured - half, most = position_measured + half;
+  const double came_from = measured_ + velocity_ * dt;
+  const double low = std::clamp(came_from - half, least, most);
+  const double high = std::clamp(came_from + half, least, most);
+  measured_ = position_measured;
+  const double inside = std::clamp(position_, low, high);
+  const double beyond = inside - position_;
+  const double centre = 0.5 * (low + high) - inside;
+
+  const double pace =
+      std::abs(velocity_) < slowest_ ? std::abs(velocity_) / slowest_ : 1;  // f_in, of its largest value
+  const double part = pace < 1 ? part_of_bandwidth(pace, std::abs(beyond)) : 1;
+  const double ratio = pace < 1 ? kInside * pace / part : kInside;  // κ
+  const Gains gain = part == 1 && periods == 1 ? nominal_ : gains(cheap_pole(part * bandwidth_, dt), dt);
+  const double innovation = beyond + ratio * ratio * centre;
+  position_ += gain.position * innovation;
+  velocity_ += gain.velocity * innovation;
+  const double trust = doubt_ > 0 ? std::abs(beyond) / (std::abs(beyond) + kDoubt * doubt_) : 1;
+  residual_ += gain.residual * trust * beyond;
 }
 
 }  // namespace robot_control

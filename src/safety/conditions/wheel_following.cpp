@@ -19,10 +19,14 @@ WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const RobotMo
       not_stopping_(kCauseNotStopping, parameters.not_stopping, period),
       runaway_(robot.wheels.size(), {.watch = ConditionWatch(kCauseRunaway, parameters.runaway, period)}),
       wrong_direction_(robot.wheels.size(),
-                       {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}) {
+                       {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}),
+      scrub_(robot),
+      scrubs_(!robot.wheels.empty() && scrub_.most(0) > 0) {
   for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
     const JointModel& joint = robot.joints[robot.wheels[i].joint];
-    pushes_[i] = kPushedPart * joint.effort_limit;
+    const double friction = kFrictions * (joint.friction + scrub_.most(i));
+    pushed_[i] = std::max(kPushedPart * joint.effort_limit, std::min(kLargePart * joint.effort_limit, friction));
+    friction_[i] = joint.friction;
     if (joint.velocity_limit > 0) fastest_[i] = joint.velocity_limit;
   }
 }
@@ -90,18 +94,40 @@ void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMot
   excess.step(beyond(wheel, speed, excess.watch.limit() + tolerance), speed, kProgress + tolerance, elapsed, out);
 }
 
+bool WheelFollowing::Stall::builds_up(double torque, double held, double dt) noexcept {
+  if (torque > held) return false;
+  if (torque > peak + kRise * std::abs(held)) {
+    peak = torque;
+    level = 0;
+  }
+  level += dt;
+  return level <= kBuildUp;
+}
+
+double WheelFollowing::held(std::size_t wheel, double scrubbing) const noexcept {
+  if (scrubbing == 0) return -std::numeric_limits<double>::infinity();
+  return std::min(pushed_[wheel], friction_[wheel] + kGrounds * std::abs(scrubbing));
+}
+
 ConditionMeasurement WheelFollowing::stalled(const SensorFrame& sensors, const WheelTargets& targets,
                                              const WheelMotion& motion, double dt) noexcept {
   ConditionMeasurement measurement = kNothingMeasured;
+  std::array<double, kMaxWheels> scrubbing{};
+  if (scrubs_) {
+    std::array<double, kMaxWheels> wanted{};
+    for (std::size_t i = 0; i < motion.wheels(); ++i) wanted[i] = targets.has(i) ? targets[i] : 0;
+    scrubbing = scrub_.efforts(wanted);
+  }
   for (std::size_t i = 0; i < motion.wheels(); ++i) {
     Stall& stall = stalls_[i];
     const double wanted = targets.has(i) ? std::min(std::abs(targets[i]), fastest_[i]) : 0;
     const double speed = along(targets[i], motion.speed(i));
     const bool turns = std::abs(speed) >= kTurns * wanted;
+    const double torque = sensors.joints[i].effort;
     if (turns || speed > stall.mark + kProgress + motion.speed_tolerance(i)) {
       stall = {.missed = 0, .mark = speed};
-    } else {
-      const double pushed = std::abs(sensors.joints[i].effort) > pushes_[i] ? kPushed : 0;
+    } else if (!stall.builds_up(along(targets[i], torque), held(i, scrubbing[i]), dt)) {
+      const double pushed = std::abs(torque) > pushed_[i] ? kPushed : 0;
       stall.missed += std::max(wanted, pushed) * dt;
     }
     measurement = worse(measurement, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));

@@ -7,8 +7,14 @@
 ///   stall            the angle ∫max(|q̇*|, w)dt that the wheel should have turned since it last turned, that is, since
 ///                    |ω| ≥ kTurns·|q̇*|, or since it gained kProgress + δ towards its target. Limit: rad + 1 quantum,
 ///                    because a slowly turning wheel shows a count per quantum. w = kPushed while the motor torque is
-///                    above kPushedPart of its effort limit, else 0: a loop with a stuck encoder increases its torque
-///                    however slow the target is. A target above the wheel's velocity limit counts as that limit
+///                    above `pushed`, else 0: a loop with a stuck encoder increases its torque however slow the target
+///                    is. A target above the wheel's velocity limit counts as that limit. In a turn nothing counts
+///                    while s·τ ≤ `held` and still grows, by kRise of it within kBuildUp: the loop is about to overcome
+///                    the friction of treads that scrub, for instance after a reversal.
+///                      pushed = max(kPushedPart·τ_max, min(kLargePart·τ_max, kFrictions·(f + S)))
+///                      held   = min(pushed, f + kGrounds·S*)
+///                    τ_max, f: effort limit and dry friction of the joint; S*: torque of scrub.h at the targets, at
+///                    ground friction 1, S: its largest. 0 for one wheel a side: then `held` is −∞
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| if the target is 0
 ///   wrong_direction  −s·ω > limit + δ
 ///
@@ -28,6 +34,7 @@
 #include <vector>
 
 #include "robot/robot_model.h"
+#include "robot/wheels/scrub.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/joint_standstill.h"
 #include "safety/measurements/wheel_motion.h"
@@ -43,6 +50,11 @@ class WheelFollowing {
   static constexpr double kRest = 0.5;        ///< s
   static constexpr double kPushed = 2.0;      ///< rad/s
   static constexpr double kPushedPart = 0.5;  ///< docs/derivations.md
+  static constexpr double kLargePart = 0.9;
+  static constexpr double kFrictions = 1.2;
+  static constexpr double kGrounds = 3.0;  ///< times friction 1: the best grip
+  static constexpr double kRise = 0.01;
+  static constexpr double kBuildUp = 0.03;  ///< s
 
   /// `period` s.
   WheelFollowing(const SafetyParameters& parameters, const RobotModel& robot, double period);
@@ -54,8 +66,12 @@ class WheelFollowing {
  private:
   /// Of one wheel.
   struct Stall {
-    double missed = 0;  ///< rad
-    double mark = 0;    ///< rad/s towards the target, when `missed` began
+    double missed = 0;                                       ///< rad
+    double mark = 0;                                         ///< rad/s towards the target, when `missed` began
+    double peak = -std::numeric_limits<double>::infinity();  ///< N·m towards the target, since then
+    double level = 0;                                        ///< s since the torque grew
+
+    bool builds_up(double torque, double held, double dt) noexcept;
   };
 
   /// A speed of one wheel beyond its limit, as long as the wheel does not slow down.
@@ -75,6 +91,7 @@ class WheelFollowing {
                        ActiveCauses& out) noexcept;
   ConditionMeasurement stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
                                double dt) noexcept;
+  double held(std::size_t wheel, double scrubbing) const noexcept;
   ConditionMeasurement not_stopped(const WheelTargets& targets, const JointStandstill& standstill,
                                    std::uint64_t elapsed) noexcept;
 
@@ -91,7 +108,10 @@ class WheelFollowing {
   std::vector<Excess> runaway_;          ///< by wheel
   std::vector<Excess> wrong_direction_;  ///< by wheel
   std::array<Stall, kMaxWheels> stalls_{};
-  std::array<double, kMaxWheels> pushes_{};  ///< N·m, kPushedPart of the effort limit
+  std::array<double, kMaxWheels> pushed_{};    ///< N·m
+  std::array<double, kMaxWheels> friction_{};  ///< N·m, f
+  Scrub scrub_;
+  bool scrubs_;
   std::array<double, kMaxWheels> fastest_ = without_limit();
   std::uint64_t moved_ = 0;   ///< cycles of motion since standstill was commanded
   std::uint64_t rested_ = 0;  ///< cycles of rest in a row

@@ -5,16 +5,18 @@ Each function drives robots of robot_corpus.py and gives `Figure`s: a value and 
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import radians
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from robot_control.closed_loop import ClosedLoop, Log
 
-from lab.robot_corpus import urdf_of
+from lab.robot_corpus import DIFFBOT, urdf_of
 
 Array = NDArray[np.float64]
 
@@ -23,6 +25,7 @@ BAND = 0.01  # of the speed: who stays within has settled
 SLOPES = (0.0, radians(5), -radians(5))  # uphill positive
 GRAVITY = 9.81  # m/s²
 CASTER = -0.25  # m, of diffbot's caster ahead of its axle
+RIPPLE_START, RIPPLE_TIME, RIPPLE_TURN = 2.0, 4.0, 0.2  # s, s, rad/s
 WEAK_SPEED, WEAK_TORQUE = 0.8, 0.6  # of what a drive would take of its wheels: what saturated ones have
 
 
@@ -223,3 +226,55 @@ def lifted(robot: str) -> float:
         raise RuntimeError(f"{robot}: it was not lifted")
     error = wheel_column(loop, log, "velocity_measured") - wheel_column(loop, log, "velocity_command")
     return float(np.max(np.abs(error)))
+
+
+def coarse(counts: int) -> dict[str, Any]:
+    """Parameters of an encoder of `counts` a turn, which the estimator knows."""
+    return {
+        "mujoco_plant": {"encoder_resolution": counts},
+        "state_estimator": {"encoder_noise": 2 * np.pi / counts / 12**0.5},
+    }
+
+
+@dataclass(frozen=True)
+class Steady:
+    """Of `RIPPLE_TIME` in a steady curve."""
+
+    ripple: float  # RMS of the wheels' torque about its mean, part of its limit, the worst wheel's
+    off: float  # mean linear speed, part of the commanded
+
+
+def steady_curve(robot: str, counts: int, linear: float) -> Steady:
+    """`linear` [m/s] with `RIPPLE_TURN`, after `RIPPLE_START`."""
+    loop = make(robot, coarse(counts))
+    loop.run(RIPPLE_START, (linear, RIPPLE_TURN))
+    log = loop.run(RIPPLE_TIME, (linear, RIPPLE_TURN))
+    limits = {joint["name"]: joint["effort_limit"] for joint in loop.robot["joints"]}
+    shares = [float(np.std(log[f"{wheel['joint']}_effort"])) / limits[wheel["joint"]] for wheel in loop.robot["wheels"]]
+    return Steady(max(shares), float(np.mean(log["truth_linear"])) / linear - 1)
+
+
+def of_the_peer() -> tuple[float, float]:
+    """The two drives of diff_drive_controller's own test, with its robot's radius and separation: 10 s at 0.1 m/s, and
+    10 s at π/10 rad/s; then a stop.
+
+    Returns:
+        Way less 1 m [m], turn less half a turn [rad].
+    """
+    text = Path(urdf_of(DIFFBOT)).read_text()
+    for own, of_peer in (('radius="0.1"', 'radius="0.11"'), ('<sphere radius="0.04"/>', '<sphere radius="0.05"/>')):
+        text = text.replace(own, of_peer)  # the caster's centre stays, so it reaches as far down as the wheels
+    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+        file.write(text)
+        file.flush()
+        ahead, around = (
+            ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet"}}, urdf=file.name) for _ in range(2)
+        )
+    around.run(REST, (0.0, 0.0))
+    start = ahead.run(REST, (0.0, 0.0))
+    ahead.run(10.0, (0.1, 0.0))
+    end = ahead.run(2.0, (0.0, 0.0))
+    way = float(np.hypot(end["truth_x"][-1] - start["truth_x"][-1], end["truth_y"][-1] - start["truth_y"][-1]))
+    logs = [around.run(10.0, (0.0, np.pi / 10)), around.run(2.0, (0.0, 0.0))]
+    yaw = np.unwrap(np.concatenate([log["truth_yaw"] for log in logs]))
+    return way - 1.0, float(yaw[-1] - yaw[0]) - np.pi

@@ -17,6 +17,9 @@ from lab.robot_corpus import DIFFBOT, robot_names
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal")  # 12 kg; 2 kg; 450 kg; a skid steer of 18 kg
 FULL = 1.0  # m/s, the default limit
 SPEEDS = (0.05, 0.1, 0.2, 0.5, FULL)  # m/s, on either side of d²/j = 0.1
+FINE = 4096
+RIPPLES = {FINE: 1.0, 512: 2.0, 90: 4.0}  # counts → % of the torque limit
+LOADED_RMS = {200: 7.0, 100: 15.0}  # Hz → %
 CURVES = ((0.7, 1.0), (-0.7, 1.0), (0.4, 1.8))  # m/s, rad/s
 
 
@@ -72,10 +75,34 @@ def rest(robot: str) -> list[Figure]:
     ]
 
 
+def coarse_encoders(robot: str) -> list[Figure]:
+    """The ripple of the torque, and the drive of coarse encoders; payload at low rates."""
+    figures = []
+    for counts, bound in RIPPLES.items():
+        curves = {speed: measured.steady_curve(robot, counts, speed) for speed in (0.5, 0.1)}
+        for speed, curve in curves.items():
+            figures.append(Figure(f"ripple at {speed} m/s, {counts} counts", 100 * curve.ripple, bound, "% of torque"))
+        figures.append(Figure(f"mean speed, {counts} counts", 100 * curves[0.5].off, 1, "%"))
+        if counts == FINE:
+            continue
+        run = measured.straight(robot, FULL, params=measured.coarse(counts))
+        figures.append(Figure(f"overshoot, {counts} counts", 100 * run.overshoot, 5, "%"))
+    for rate, bound in LOADED_RMS.items():
+        run = measured.straight(robot, FULL, measured.mass_of(robot), {"robot": {"rate": rate}})
+        figures.append(Figure(f"RMS, mass doubled, {rate} Hz", 100 * run.rms, bound, "%"))
+    return figures
+
+
+def peer(_robot: str) -> list[Figure]:
+    """The drives of diff_drive_controller's own test, and its tolerances."""
+    way, turn = measured.of_the_peer()
+    return [Figure("10 s at 0.1 m/s", 1e3 * way, 10, "mm"), Figure("10 s at π/10 rad/s", 1e3 * turn, 30, "mrad")]
+
+
 def promises(robot: str) -> Iterator[Figure]:
     """All of `robot`; standing and hand-over of the own one, whose brakes are known."""
     parts: list[Callable[[str], list[Figure]]] = [straight, curves, stops]
-    for part in [*parts, rest] if robot == DIFFBOT else parts:
+    for part in [*parts, rest, coarse_encoders, peer] if robot == DIFFBOT else parts:
         yield from part(robot)
 
 

@@ -1,5 +1,6 @@
 """Hours of normal driving, over all scenes, robots and rates: the safety monitor has nothing to say, but that wheels
-slip where they do: on ice, and of robots that turn astride a bump; and that who got stuck there is stalled.
+slip where they do: on ice, and of robots that turn astride a bump; and that who got stuck there is stalled. Beside
+them the turns of turning_drive.py, of every robot.
 
 python3 -m lab.drives.normal_driving --share 0.1     # a tenth of the two hours
 """
@@ -17,6 +18,7 @@ import numpy as np
 from robot_control.closed_loop import ClosedLoop, Log
 from robot_control.common.cause_names import causes_in
 
+from lab.drives import turning_drive
 from lab.drives.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
 from lab.drives.sensor_errors import LEVELS, plant_parameters
 from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
@@ -27,6 +29,7 @@ SLOW = 500  # Hz; below, the loops are too weak for bumps: wheels stand before t
 SKID_ICE_SPEED = 0.4  # m/s
 OTHERS_SECONDS = 15.0  # in each scene, of each real robot
 TRUE_WARNINGS = {"low_friction_patch": {"yaw_rate"}, "bumps": {"yaw_rate"}}
+TURNS = 40  # seeds of turning_drive.py, of each robot
 LONGEST = 300.0  # s, of one drive: so that all processors have something to do to the end
 
 
@@ -108,6 +111,10 @@ def carry_out(drive: Drive) -> Driven:
     return Driven(drive, causes, sorted(warnings), float(log["distance"][0]))
 
 
+def _turn(job: tuple[str, int, str]) -> turning_drive.Turning:
+    return turning_drive.carry_out(*job)
+
+
 def bench(
     share: float, say: Callable[[str], None], runner: Runner | None = None, errors: str = "data_sheet"
 ) -> tuple[dict[str, Any], bool]:
@@ -120,12 +127,22 @@ def bench(
         driven.append(outcome)
         if outcome.causes or outcome.warnings:
             say(str(outcome))
-    simulated = sum(drive.seconds for drive in drives)
+    seeds = range(max(1, round(share * TURNS)))
+    turns = [(robot, seed, errors) for robot in robot_names() for seed in seeds]
+    turned = []
+    for turning in runner.outcomes(_turn, turns, say):
+        turned.append(turning)
+        if turning.causes or turning.warnings:
+            say(str(turning))
+    simulated = sum(drive.seconds for drive in drives) + sum(turning.seconds for turning in turned)
     figures = [
         ("simulated", simulated / 3600, "h"),
         ("distance", sum(outcome.distance for outcome in driven) / 1000, "km"),
         ("drives with a stop", sum(bool(outcome.causes) for outcome in driven), ""),
         ("drives with a warning", sum(bool(outcome.warnings) for outcome in driven), ""),
+        ("sequences of turns", len(turned), ""),
+        ("of them with a stop", sum(bool(turning.causes) for turning in turned), ""),
+        ("of them with a warning", sum(bool(turning.warnings) for turning in turned), ""),
         ("speed", simulated / (time.monotonic() - began), "simulated s per s"),
     ]
     rows = [
@@ -133,6 +150,7 @@ def bench(
         for name, value, unit in figures
     ]
     amiss = [str(outcome) for outcome in driven if outcome.causes or outcome.warnings]
+    amiss += [str(turning) for turning in turned if turning.causes or turning.warnings]
     return {"bench": "driving", "rows": rows, "amiss": amiss}, not amiss
 
 

@@ -1,0 +1,20 @@
+#include "control/wheel_loops/encoder_quantum.h"
+
+#include <cmath>
+#include <initializer_list>
+
+namespace robot_control {
+
+bool EncoderQuantum::refine(double turned) noexcept {
+  constexpr double kExact = 1e-4;  // rad
+  constexpr double kLeast = 1e-9;  // rad: below, a difference is rounding
+  const double before = value_;
+  for (const double step : {turned, turned - last_}) {
+    const double size = std::abs(step);
+    if (size > kLeast && size < value_) value_ = size < kExact ? 0 : size;
+  }
+  last_ = turned;
+  return value_ != before;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,119 @@
+"""Turns that ask most of wheels behind each other: on the spot and back, and around a wheel that nearly stands.
+
+On floors between slippery and sticky, with coarse and fine encoders. A pure function of robot and seed.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from robot_control.closed_loop import ClosedLoop
+from robot_control.common.cause_names import causes_in
+
+from lab.drives.sensor_errors import plant_parameters
+from lab.robot_corpus import urdf_of
+
+GRAVITY = 9.81  # m/s²
+GROUND = (0.3, 3.0)  # times friction 1, that of the scenes
+COUNTS = (64, 90, 128, 256, 512, 1024, 2048, 4096)
+SPARE = 0.8  # of the torque limit: what a turn may take, else no loop turns the robot
+REST, PHASE, PHASES = 1.0, 2.0, 5  # s
+LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default parameters
+
+
+@dataclass(frozen=True)
+class Turning:
+    """What came of one seed. `causes`, `warnings`: names; empty where nothing was amiss."""
+
+    robot: str
+    seed: int
+    friction: float
+    counts: int
+    commands: tuple[tuple[float, float], ...]
+    causes: tuple[str, ...]
+    warnings: tuple[str, ...]
+    worst: float  # rad/s between commanded and true yaw rate at the end of a phase; 0 where the ground is slippery
+
+    @property
+    def seconds(self) -> float:
+        """Simulated."""
+        return REST + PHASE * len(self.commands)
+
+    def __str__(self) -> str:
+        what = f"{self.robot}, turns of seed {self.seed}, ground friction {self.friction:.2f}, {self.counts} counts"
+        asked = ", ".join(f"({linear:.2f}, {angular:.2f})" for linear, angular in self.commands)
+        return f"{what}, {asked}: stopped: {list(self.causes)}, warned: {list(self.warnings)}"
+
+
+def _joint_friction(robot: str) -> float:
+    """N·m, the largest of the description."""
+    joints = ET.parse(urdf_of(robot)).iter("dynamics")
+    return max((float(joint.get("friction", 0.0)) for joint in joints), default=0.0)
+
+
+def _scrub(robot: dict[str, Any]) -> float:
+    """N·m of the most loaded wheel in a turn at friction 1; 0: no wheel behind another. The law: scrub.h."""
+    wheels = robot["wheels"]
+    if len(wheels) == 2:
+        return 0.0
+    x = np.array([wheel["centre"][0] for wheel in wheels])
+    x -= x.mean()
+    along = (robot["effective_wheel_base"] - robot["wheel_base"]) / 2
+    ahead = robot["centre_of_gravity"][0] - np.mean([wheel["centre"][0] for wheel in wheels])
+    loads = robot["mass"] * GRAVITY / len(wheels) * (1 + ahead * x / np.mean(x**2))
+    return float(np.max(wheels[0]["radius"] * loads * along / np.hypot(along, x)))
+
+
+def most_friction(robot: str, loop: ClosedLoop) -> float:
+    """Of the ground, with which the motors can still turn the robot; at most the upper end of `GROUND`."""
+    scrub = _scrub(loop.robot)
+    limits = {joint["name"]: joint["effort_limit"] for joint in loop.robot["joints"]}
+    weakest = min(limits[wheel["joint"]] for wheel in loop.robot["wheels"])
+    spare = SPARE * weakest - _joint_friction(robot)
+    return GROUND[1] if scrub == 0 else float(np.clip(spare / scrub, GROUND[0], GROUND[1]))
+
+
+def draw(random: np.random.Generator, half_base: float) -> list[tuple[float, float]]:
+    """Commands [m/s, rad/s]: turns on the spot and their reversals, curves whose inner wheel is within a tenth of the
+    outer one's speed of standing, and any other.
+    """
+    commands: list[tuple[float, float]] = []
+    while len(commands) < PHASES:
+        angular = float(random.choice([-1, 1]) * ANGULAR_LIMIT * 10 ** random.uniform(-1.3, 0))
+        kind = random.integers(3)
+        if kind == 0:
+            commands += [(0.0, angular), (0.0, -angular)]
+        elif kind == 1:
+            linear = float(random.choice([-1, 1]) * abs(angular) * half_base * random.uniform(0.8, 1.2))
+            commands += [(float(np.clip(linear, -LINEAR_LIMIT, LINEAR_LIMIT)), angular)]
+        else:
+            commands += [(float(random.uniform(-1, 1)), angular)]
+    return commands[:PHASES]
+
+
+def carry_out(robot: str, seed: int, errors: str = "data_sheet") -> Turning:
+    """Drives it with sensors that err as `errors` says, one of sensor_errors.LEVELS."""
+    random = np.random.default_rng([seed, len(robot), sum(robot.encode())])
+    urdf = urdf_of(robot)
+    described = ClosedLoop(urdf=urdf)
+    most = most_friction(robot, described)
+    friction = float(np.exp(random.uniform(np.log(GROUND[0]), np.log(most))))
+    counts = int(random.choice(COUNTS))
+    plant = {"ground_friction": friction, "encoder_resolution": counts, **plant_parameters(errors)}
+    estimator = {"encoder_noise": 2 * np.pi / counts / 12**0.5}
+    loop = ClosedLoop({"mujoco_plant": plant, "state_estimator": estimator}, seed=seed, urdf=urdf)
+    logs = [loop.run(REST, (0.0, 0.0))]
+    commands = draw(random, loop.robot["effective_wheel_base"] / 2)
+    logs += [loop.run(PHASE, command) for command in commands]
+    last = round(0.5 / loop.period)
+    errors = [
+        abs(float(np.mean(log["truth_angular"][-last:])) - command[1])
+        for log, command in zip(logs[1:], commands, strict=True)
+    ]
+    causes, warnings = (
+        tuple(causes_in(np.concatenate([log[name] for log in logs]))) for name in ("permit_causes", "permit_warnings")
+    )
+    return Turning(robot, seed, friction, counts, tuple(commands), causes, warnings, max(errors))
