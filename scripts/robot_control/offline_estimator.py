@@ -14,7 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robot_control._robot_control import OfflineEstimator, slip_reasons, state_flags, state_sensors
+from robot_control._robot_control import (
+    OfflineEstimator,
+    degraded_reasons,
+    slip_reasons,
+    state_flags,
+    state_sensors,
+)
 from robot_control.parameter_layers import layered, leaves
 
 FloatArray = NDArray[np.float64]
@@ -29,6 +35,9 @@ FLAGS: dict[str, int] = dict(state_flags)
 
 SLIP_REASONS: dict[str, int] = dict(slip_reasons)
 """Name → bit of `slip`."""
+
+DEGRADED_REASONS: dict[str, int] = dict(degraded_reasons)
+"""Name → bit of `degraded`."""
 
 _STAMP_ROUNDING = 1e-9  # s: text and ROS stamps hold nanoseconds
 _FARTHEST, _MOST_TURNED = 1e6, 1e6  # m, rad: as the node's service set_odometry takes
@@ -172,6 +181,8 @@ class Estimator:
                 wheel_x, wheel_y (M,) m, wheel_yaw (M,) rad, wheel_linear m/s, wheel_angular rad/s: by wheels alone
                 confidence (M, 6): 0 (not used) … 1 (agrees); nis (M, 6): normalised innovation squared, ideal 1;
                 rejected (M, 6): samples refused so far; columns: SENSORS
+                degraded (M,): bits of DEGRADED_REASONS, while pose and twist are those of wheels and gyro alone;
+                residual_level (M,): wheels against accelerometer, over what the sensors' noise explains; 0: not known
                 flags (M,): bits of FLAGS; slip (M,): bits of SLIP_REASONS. A row without an angle of a side says so:
                 no_left_encoder, no_right_encoder, bad_sample; whether that matters yet says valid
                 valid (M,): bool, pose and twist may be used

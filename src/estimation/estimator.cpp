@@ -35,7 +35,8 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
       rate_noise_gain_(rate_.noise_gain()),
       wheel_velocities_(robot, parameters.speed_bandwidth, period),
       sides_{Side{SideEncoder(robot, robot_control::Side::kLeft), SpeedTracker(parameters.speed_bandwidth, period)},
-             Side{SideEncoder(robot, robot_control::Side::kRight), SpeedTracker(parameters.speed_bandwidth, period)}} {
+             Side{SideEncoder(robot, robot_control::Side::kRight), SpeedTracker(parameters.speed_bandwidth, period)}},
+      simple_(simple_part(parameters, robot), geometry_) {
   reset();
 }
 
@@ -59,6 +60,9 @@ void Estimator::reset() noexcept {
   rate_.reset(Eigen::Vector3d::Zero());
   rate_follows_ = false;
   wheel_velocities_.reset();
+  simple_.reset();
+  supervision_.reset();
+  place_simply();
   resting_ = true;
   held_ = {};
   steady_time_ = 0;
@@ -134,6 +138,7 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
     p(Filter::kPosition + 1, Filter::kPosition + 1) += moved;
     p(Filter::kOrientation + 2, Filter::kOrientation + 2) += square(kRestartYaw) + square(wheel_rate() * dt);
     slip_.begin(filter_);
+    place_simply();
   } else if (dt > 0) {
     follow_wheels();
     if (resting_) {
@@ -141,6 +146,8 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
     } else {
       move(dt);
     }
+    follow_simply(dt);
+    if (parameters_.slip_detection) supervise(dt);
   }
   follow_rate(dt);
   wheel_velocities_.step(sensors, dt);
@@ -149,6 +156,7 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
     held_ = {};
     pose_pending_.reset();
     slip_.renew(filter_);
+    place_simply();
   }
 }
 
@@ -328,6 +336,7 @@ void Estimator::fill(StateFrame& out) const noexcept {
   write_twist(filter_, rate_.rate(), rate_noise(), parameters_.planar, out);
   write_learned(filter_, base_from_imu_, out);
   fill_health(out);
+  if (supervision_.degraded()) fill_simply(out);
 }
 
 RateNoise Estimator::rate_noise() const noexcept {
@@ -367,6 +376,8 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (silent == 0 || (silent == 1 && imu_.gyro())) out.flags |= kStateValid;
   if (resting_) out.flags |= lasting_flags_ & kStateStandstill;
   if (out.slip != 0) out.flags |= kStateSlip;
+  out.degraded = 0;
+  out.residual_level = simple_.slip().level();
   out.distance = distance_;
   out.skipped = skipped_;
 }

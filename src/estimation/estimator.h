@@ -23,6 +23,9 @@
 /// The angular velocity of the twist is the gyro's, less its bias, behind a tracking loop (rate_tracker.h); pose and
 /// biases follow every sample.
 ///
+/// Beside it runs the simple part (simple/simple_part.h). Where both disagree beyond what both can explain, and no slip
+/// is proven, the simple part's pose and twist are published (kStateDegraded, simple/supervision.h).
+///
 /// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kSmoothing.
 
 #include <array>
@@ -35,6 +38,8 @@
 #include "estimation/inertial/imu_samples.h"
 #include "estimation/inertial/rate_tracker.h"
 #include "estimation/inertial/standstill_window.h"
+#include "estimation/simple/simple_part.h"
+#include "estimation/simple/supervision.h"
 #include "estimation/wheels/side_encoder.h"
 #include "estimation/wheels/slip_watch.h"
 #include "estimation/wheels/speed_tracker.h"
@@ -125,6 +130,15 @@ class Estimator {
   void note(SensorIndex sensor, double nis, double dt) noexcept;
   void fill(StateFrame& out) const noexcept;
   void follow_rate(double dt) noexcept;
+  void follow_simply(double dt) noexcept;
+  void supervise(double dt) noexcept;
+  FullEstimate full_estimate() const noexcept;
+  void renew() noexcept;   ///< the full law begins anew where the simple part is
+  void accept() noexcept;  ///< the full law's pose is the simple part's
+  void place_at(const PlanarTrack& track) noexcept;
+  void place_simply() noexcept;  ///< the simple part is where the full law is
+  PlanarPose base_of(const PlanarPose& middle) const noexcept;
+  void fill_simply(StateFrame& out) const noexcept;
   RateNoise rate_noise() const noexcept;
   void fill_health(StateFrame& out) const noexcept;
 
@@ -140,6 +154,8 @@ class Estimator {
   double rate_noise_gain_;  ///< RateTracker::noise_gain
   WheelVelocities wheel_velocities_;
   std::array<Side, 2> sides_;
+  SimplePart simple_;
+  Supervision supervision_;
 
   bool rate_follows_ = false;  ///< `rate_` tracks the filter's rate
   bool resting_ = true;        ///< nothing is integrated until the window breaks

@@ -86,4 +86,26 @@ StandstillLimits standstill_limits(const EstimatorParameters& parameters, const 
           .acceleration = parameters.standstill_acceleration};
 }
 
+SimplePartParams simple_part(const EstimatorParameters& parameters, const RobotModel& robot) {
+  const WheelGeometry wheels(robot);
+  const double largest = std::ranges::max(robot.wheels, {}, &WheelModel::radius).radius;
+  const Eigen::Vector3d bias = rotation_of(robot.imu_in_base.orientation) * algebra::vector(parameters.gyro_bias);
+  SimplePartParams params;
+  params.rest = {
+      .tolerance = standstill_limits(parameters, robot).tolerance / parameters.standstill_time * RestBias::kWindow,
+      .steady = parameters.standstill_speed,
+      .noise = parameters.gyro_noise,
+      .walk = parameters.gyro_bias_walk,
+      .initial = parameters.gyro_bias_initial};
+  params.track.gyro = parameters.gyro_noise;
+  params.track.scale = parameters.gyro_scale_deviation;
+  params.slip = {.encoder = parameters.encoder_noise * largest,
+                 .accelerometer = parameters.accelerometer_noise,
+                 .half_base = wheels.wheel_base / 2,
+                 .ahead = robot.imu_in_base.position[0] - wheels.axle_x,
+                 .aside = robot.imu_in_base.position[1] - wheels.axle_y};
+  params.gyro_bias = algebra::array(bias);
+  return params;
+}
+
 }  // namespace robot_control

@@ -4,6 +4,7 @@
 #include "estimation/estimator_parameters.h"
 #include "estimation/filter/error_state_filter.h"
 #include "estimation/inertial/standstill_window.h"
+#include "estimation/simple/simple_part.h"
 #include "estimation/wheels/wheel_geometry.h"
 #include "robot/robot_model.h"
 
@@ -20,5 +21,7 @@ FilterNoise filter_noise(const EstimatorParameters& parameters, const RobotModel
 FilterPrior filter_prior(const EstimatorParameters& parameters);
 
 StandstillLimits standstill_limits(const EstimatorParameters& parameters, const RobotModel& robot);
+
+SimplePartParams simple_part(const EstimatorParameters& parameters, const RobotModel& robot);
 
 }  // namespace robot_control

@@ -140,6 +140,7 @@ void add_knowledge(Numbers& to, py::ssize_t rows, bool covariance) {
   add("radius_ratio_deviation", {}, [](const S& s, double* cell) { *cell = s.calibration.radius_ratio_deviation; });
   add("wheel_base_factor", {}, [](const S& s, double* cell) { *cell = s.calibration.wheel_base_factor; });
   add("wheel_base_deviation", {}, [](const S& s, double* cell) { *cell = s.calibration.wheel_base_deviation; });
+  add("residual_level", {}, [](const S& s, double* cell) { *cell = s.residual_level; });
   add("confidence", {kCount}, [](const S& s, double* cell) { copy(s.confidence, kSensors, cell); });
   add("nis", {kCount}, [](const S& s, double* cell) { copy(s.nis, kSensors, cell); });
 }
@@ -152,6 +153,7 @@ void add_counts(Counts& to, py::ssize_t rows) {
   add("rejected", {kCount}, [](const S& s, std::int64_t* cell) { copy(s.rejected, kSensors, cell); });
   add("flags", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.flags); });
   add("slip", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.slip); });
+  add("degraded", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.degraded); });
 }
 
 /// True while in scope.
@@ -320,6 +322,7 @@ void bind_offline_estimator(py::module_& module) {
   module.attr("state_sensors") = std::vector<std::string>(kStateSensorNames.begin(), kStateSensorNames.end());
   module.attr("state_flags") = words(kStateFlagNames);
   module.attr("slip_reasons") = words(kSlipReasonNames);
+  module.attr("degraded_reasons") = words(kDegradedReasonNames);
   py::class_<OfflineEstimator>(module, "OfflineEstimator")
       .def(py::init<const std::string&, const OfflineEstimator::Values&, bool>(), py::arg("path"), py::arg("values"),
            py::arg("two_wheels"))

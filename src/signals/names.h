@@ -118,6 +118,17 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
     {kStateNoRightEncoder, "no_right_encoder", "no valid readings of the right encoders", "look at the right encoder"},
     {kStateNoAccelerometer, "no_accelerometer", "tilt, and slip of all wheels together, are not noticed",
      "look at the IMU"},
+    {kStateDegraded, "degraded", "pose and twist are those of wheels and gyro alone",
+     "look at the IMU's mounting and accelerometer_noise"},
+});
+
+inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
+    {kDegradedPosition, "position", "the accelerometer contradicts the way of the wheels, and no slip explains it",
+     "set accelerometer_noise to what the robot shakes it by"},
+    {kDegradedHeading, "heading", "calibration or bias contradict the gyro's heading", "start with a second of rest"},
+    {kDegradedSpeed, "speed", "the accelerometer contradicts the speed of the wheels, and no slip explains it",
+     "set accelerometer_noise to what the robot shakes it by"},
+    {kDegradedTilt, "tilt", "the estimated tilt contradicts gravity", "look at the IMU's mounting"},
 });
 
 inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
@@ -274,6 +285,6 @@ static_assert(in_bit_order(kStopCauseNames) && kStopCauseNames.size() == kStopCa
 static_assert(in_bit_order(kResetRefusalNames) && in_bit_order(kMissingNodeNames));
 static_assert(in_bit_order(kGateReasonNames) && in_bit_order(kCommandReasonNames));
 static_assert(in_bit_order(kDriverFaultNames) && in_bit_order(kStateFlagNames) && in_bit_order(kSlipReasonNames) &&
-              in_bit_order(kDigitalInputNames));
+              in_bit_order(kDegradedReasonNames) && in_bit_order(kDigitalInputNames));
 
 }  // namespace robot_control

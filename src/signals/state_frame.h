@@ -35,6 +35,16 @@ enum StateFlag : std::uint64_t {
   kStateNoLeftEncoder = 1u << 7,    ///< No valid readings of the left encoders.
   kStateNoRightEncoder = 1u << 8,   ///< No valid readings of the right encoders.
   kStateNoAccelerometer = 1u << 9,  ///< Tilt and slip of all wheels together are not noticed.
+  kStateDegraded = 1u << 10,        ///< Pose and twist are the simple part's; StateFrame::degraded says why.
+};
+
+/// Bits of StateFrame::degraded: in what the full law contradicted the simple part (estimation/simple/supervision.h)
+/// beyond what both can explain, without proof of slip. They last until the full law has agreed for a while.
+enum DegradedReason : std::uint64_t {
+  kDegradedPosition = 1u << 0,  ///< The way travelled.
+  kDegradedHeading = 1u << 1,   ///< The yaw.
+  kDegradedSpeed = 1u << 2,     ///< The speed, which neither wheels nor a slide explain; at rest any speed.
+  kDegradedTilt = 1u << 3,      ///< Roll or pitch.
 };
 
 /// Bits of StateFrame::slip: which contact is not trusted, and what contradicts it.
@@ -84,6 +94,8 @@ struct StateFrame {
       nis{};  ///< normalised innovation squared per degree of freedom, smoothed; ideal 1
   std::array<std::uint64_t, kMaxConfidences> rejected{};  ///< samples of this run that the chi-square gate refused
   std::uint64_t slip = 0;                                 ///< SlipReason bits
+  std::uint64_t degraded = 0;                             ///< DegradedReason bits
+  double residual_level = 0;  ///< wheels against accelerometer: residual over what the sensors' noise explains; 0: none
   std::uint64_t flags = 0;
   double distance = 0;        ///< m travelled since the run began, always growing
   std::uint64_t skipped = 0;  ///< sensor cycles of this run never seen

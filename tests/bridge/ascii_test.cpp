@@ -68,6 +68,7 @@ TEST(Ascii, IsWhatTheTablesHoldBesideTheirUnits) {
   look(kDriverFaultNames);
   look(kStateFlagNames);
   look(kSlipReasonNames);
+  look(kDegradedReasonNames);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from robot_control.estimate.samples import IntArray, Robot, Samples
-from robot_control.offline_estimator import FLAGS, SENSORS, SLIP_REASONS, Estimate
+from robot_control.offline_estimator import DEGRADED_REASONS, FLAGS, SENSORS, SLIP_REASONS, Estimate
 
 DEGREE = math.pi / 180
 
@@ -16,8 +16,9 @@ class Summary:
     """Times of the states, and the last row."""
 
     def __init__(self) -> None:
-        self.seconds = {"slip": 0.0, "standstill": 0.0, "invalid": 0.0}
+        self.seconds = {"slip": 0.0, "standstill": 0.0, "degraded": 0.0, "invalid": 0.0}
         self.reasons = 0
+        self.degraded = 0
         self.last: Estimate = {}
         self._before: int | None = None
 
@@ -28,6 +29,8 @@ class Summary:
         flags = estimate["flags"]
         self.seconds["slip"] += float(steps[flags & FLAGS["slip"] != 0].sum())
         self.seconds["standstill"] += float(steps[flags & FLAGS["standstill"] != 0].sum())
+        self.seconds["degraded"] += float(steps[flags & FLAGS["degraded"] != 0].sum())
+        self.degraded |= int(np.bitwise_or.reduce(estimate["degraded"]))
         self.seconds["invalid"] += float(steps[~estimate["valid"]].sum())
         self.reasons |= int(np.bitwise_or.reduce(estimate["slip"]))
         self.last = {name: values[-1] for name, values in estimate.items()}
@@ -63,6 +66,16 @@ class Summary:
             ("slip", self._slip()),
             ("rejected", _rejected(last, samples)),
         ]
+        if self.degraded:
+            names = [name for name, bit in DEGRADED_REASONS.items() if self.degraded & bit]
+            level = float(last["residual_level"])
+            lines.append(
+                (
+                    "degraded",
+                    f"{self.seconds['degraded']:.1f} s by wheels and gyro alone ({', '.join(names)}); "
+                    f"the accelerometer's residuals are {level:.3g} × its noise",
+                )
+            )
         if self.seconds["invalid"] > 0:
             lines.append(("not valid", f"{self.seconds['invalid']:.1f} s"))
         lines += [("note", note) for note in samples.notes]

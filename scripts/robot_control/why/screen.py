@@ -162,6 +162,9 @@ def _circumstances(facts: Facts) -> Rows:
     lost = facts.reasons(ESTIMATOR, "estimate").values()
     if lost:
         yield "odometry", "; ".join(lost), "33"
+    degraded = facts.reasons(ESTIMATOR, "degraded").values()
+    if degraded:
+        yield "odometry", f"by wheels and gyro alone: {'; '.join(degraded)}", "33"
     if not facts.master_answers and facts.received() is not None:
         yield (
             "master",

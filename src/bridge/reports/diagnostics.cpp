@@ -86,14 +86,20 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
   } else if ((state.flags & kStateSlip) != 0) {
     report.warn("slip: wheels and inertial sensors disagree");
   }
+  if ((state.flags & kStateDegraded) != 0) {
+    report.warn("degraded to wheels and gyro: " + sentences_of(kDegradedReasonNames, state.degraded));
+  }
   report.value("cycle", state.head.cycle);
   report.value("flags", names_of(kStateFlagNames, state.flags));
+  report.value("degraded", names_of(kDegradedReasonNames, state.degraded));
+  report.value("residual_level", state.residual_level);
   report.value("distance_m", state.distance);
   report.value("skipped", state.skipped);
   report.value("slip", names_of(kSlipReasonNames, state.slip));
   report.value("slip_lately", names_of(kSlipReasonNames, slip_lately));
   report.reasons("slip", kSlipReasonNames, slip_lately | state.slip);
   report.reasons("estimate", kStateFlagNames, state.flags & kLost);
+  report.reasons("degraded", kDegradedReasonNames, state.degraded);
   for (std::size_t i = 0; i < kStateSensorNames.size(); ++i) {
     const std::string sensor(kStateSensorNames[i]);
     report.value("confidence_" + sensor, state.confidence[i]);

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -53,7 +53,7 @@ class Recording:
         rest: s at the beginning in which the robot stands.
         radius, base: m; the effective wheel base where the recording's description names one.
         counts: of a wheel's turn; None: its encoder is fine.
-        truth: (n, 3) time, x, y of another sensor; None where there is none.
+        truth: (n, 3) time, x, y of another sensor; empty where there is none.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Recording:
     radius: float
     base: float
     counts: float | None = None
-    truth: FloatArray | None = None
+    truth: FloatArray = field(default_factory=lambda: np.empty((0, 3)))
 
     def geometry(self) -> dict[str, Any]:
         """Arguments of `Estimator`."""
@@ -108,7 +108,7 @@ def _strictly_increasing(time: FloatArray) -> FloatArray:
     return np.asarray(steps)
 
 
-def _merged(wheels: Table, imu: Table) -> Rows:
+def merged(wheels: Table, imu: Table) -> Rows:
     """(time, left, right), (time, gyro, accel) → time, left, right, gyro, accel; one row per stamp."""
     both = np.concatenate([wheels[0], imu[0]])
     order = np.argsort(both, kind="stable")
@@ -135,7 +135,7 @@ def _skid_steer(name: str, data: Mapping[str, FloatArray]) -> Recording:
         time, radius = data["wheel_time"], 0.127
         left = (data["counts_front_left"] + data["counts_rear_left"]) / 2
         right = (data["counts_front_right"] + data["counts_rear_right"]) / 2
-    rows = _merged((time, left * turn, right * turn), (data["imu_time"], data["gyro"], data["accel"]))
+    rows = merged((time, left * turn, right * turn), (data["imu_time"], data["gyro"], data["accel"]))
     base = {"c": 0.95, "d": 0.72}.get(name[-1], 0.78)
     return Recording(name, *rows, rest=_rest_of(rows), radius=radius, base=base, counts=_SKID_COUNTS)
 
@@ -158,7 +158,7 @@ def _outdoor(name: str, data: Mapping[str, FloatArray]) -> Recording:
     left, right = (np.cumsum(data[f"{side}_speed"] * since) for side in ("left", "right"))
     start = min(data["wheel_time"][0], data[f"imu{b}_time"][0])
     wheels, imu = data["wheel_time"] < _OUTDOOR_END, data[f"imu{b}_time"] < _OUTDOOR_END
-    rows = _merged(
+    rows = merged(
         (data["wheel_time"][wheels], left[wheels], right[wheels]),
         (data[f"imu{b}_time"][imu], data[f"gyro{b}"][imu], data[f"accel{b}"][imu]),
     )
@@ -174,7 +174,7 @@ def _vehicle(name: str, data: Mapping[str, FloatArray]) -> Recording:
     forward = np.cumsum(data["odom_linear"] * since)
     half_turn = np.cumsum(data["odom_angular"] * since) * _VEHICLE_BASE / 2
     force = np.array([-1.0, 1.0, 1.0] if name.endswith("x") else [1.0, -1.0, 1.0])
-    rows = _merged(
+    rows = merged(
         (data["odom_time"], (forward - half_turn) / _VEHICLE_RADIUS, (forward + half_turn) / _VEHICLE_RADIUS),
         (data["imu_time"], -force * data["gyro"], force * data["accel"]),
     )
@@ -194,7 +194,8 @@ def simple_path(drive: Recording) -> FloatArray:
     seen = ~np.isnan(drive.gyro[:, 2])
     time, rate = drive.time[seen], drive.gyro[seen, 2]
     # A wheel's first count may come late: the last tenths of a second before it may not be rest.
-    bias = rate[time < drive.rest - min(0.5, drive.rest / 4)].mean()
+    rests = time < drive.rest - min(0.5, drive.rest / 4)
+    bias = rate[rests].mean() if rests.any() else 0.0
     turned = np.concatenate([[0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
     yaw = np.interp(drive.time, time, turned - bias * (time - time[0]))
     read = ~np.isnan(drive.left)
