@@ -133,7 +133,7 @@ class Estimator {
   void follow_simply(double dt) noexcept;
   void supervise(double dt) noexcept;
   FullEstimate full_estimate() const noexcept;
-  void renew() noexcept;   ///< the full law begins anew where the simple part is
+  void renew() noexcept;   ///< the full law begins again where the simple part is
   void accept() noexcept;  ///< the full law's pose is the simple part's
   void place_at(const PlanarTrack& track) noexcept;
   void place_simply() noexcept;  ///< the simple part is where the full law is

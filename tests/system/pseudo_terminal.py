@@ -24,7 +24,8 @@ while now=$(stty -g) && [ "$now" != "$before" ] && [ $looks -lt 100 ]; do sleep 
 exit $code
 """
 """The session's leader. Its death hangs up the terminal, so it waits for one that is being restored, as a user's shell
-stays; a signal's exit code is 128 + its number."""
+stays; a signal's exit code is 128 + its number. Signals are as in a login shell: tests that run in the background
+inherit that SIGINT is ignored."""
 
 
 class PseudoTerminal:
@@ -38,7 +39,7 @@ class PseudoTerminal:
         fcntl.ioctl(self._slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
         self.before = termios.tcgetattr(self._slave)
         self._shell = subprocess.Popen(
-            ["setsid", "--ctty", "sh", "-c", SHELL, "sh", *command],
+            ["env", "--default-signal=INT,QUIT", "setsid", "--ctty", "sh", "-c", SHELL, "sh", *command],
             stdin=self._slave,
             stdout=self._slave,
             stderr=self._slave,

@@ -64,7 +64,7 @@ class SlipEvidence {
   explicit SlipEvidence(const SlipEvidenceParams& params) noexcept : params_(params) { reset(); }
 
   void reset() noexcept;    ///< levels, too
-  void restart() noexcept;  ///< E begins anew
+  void restart() noexcept;  ///< E begins again
   void step(const Sample& sample) noexcept;
 
   bool proven() const noexcept { return since_ < kLasts; }

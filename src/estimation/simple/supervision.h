@@ -10,7 +10,7 @@
 ///   the tilt is further apart than kTiltSlack at rest
 ///
 /// σ is what the simple part's own errors have grown by since its track began. Then, if no slip is proven
-/// (slip_evidence.h), the simple part wins, from where both agreed last. The full law begins anew from the simple
+/// (slip_evidence.h), the simple part wins, from where both agreed last. The full law begins again from the simple
 /// part's pose, and is published again once it has agreed, without a slip that is not proven, for a probation, which
 /// doubles each time. While slip is proven, and as long as the full law follows it up, at most kSlide, the simple part
 /// follows the full law; not where the residuals show that the accelerometer errs by more than its noise.
@@ -56,7 +56,7 @@ class Supervision {
 
   enum class Verdict {
     kKeep,    ///< as before
-    kRenew,   ///< the full law begins anew at the simple part's pose: that of track kLong
+    kRenew,   ///< the full law begins again at the simple part's pose: that of track kLong
     kAccept,  ///< the full law is published again, placed at the simple part's pose
   };
 

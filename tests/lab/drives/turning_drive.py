@@ -109,11 +109,11 @@ def carry_out(robot: str, seed: int, errors: str = "data_sheet") -> Turning:
     commands = draw(random, loop.robot["effective_wheel_base"] / 2)
     logs += [loop.run(PHASE, command) for command in commands]
     last = round(0.5 / loop.period)
-    errors = [
+    yaw_errors = [
         abs(float(np.mean(log["truth_angular"][-last:])) - command[1])
         for log, command in zip(logs[1:], commands, strict=True)
     ]
     causes, warnings = (
         tuple(causes_in(np.concatenate([log[name] for log in logs]))) for name in ("permit_causes", "permit_warnings")
     )
-    return Turning(robot, seed, friction, counts, tuple(commands), causes, warnings, max(errors))
+    return Turning(robot, seed, friction, counts, tuple(commands), causes, warnings, max(yaw_errors))
