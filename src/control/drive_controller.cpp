@@ -221,8 +221,7 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   const bool clamped = in_control_ && (sensors.gate.reasons & kGateClamps) != 0;
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    const double friction = in_control_ ? feed_forward_.friction(i) : 0;
-    const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i], friction}, periods_, clamped);
+    const double effort = loops_[i].step({velocity[i], acceleration[i], feed_forward[i]}, periods_, clamped);
     out.joints[i] = effort_command(velocity[i], effort);
     if (loops_[i].saturated()) out.reasons |= kReasonSaturated;
   }

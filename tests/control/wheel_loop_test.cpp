@@ -152,30 +152,5 @@ TEST(WheelLoop, WithoutAnIntegratorForgetsWhatItCarried) {
   EXPECT_LT(loop.integral(), 1.3 * std::exp(-9.9)) << "a tenth of a second, ten times";
 }
 
-// The gains of a robot of 2.5 kg, whose error alone would need a second for it.
-TEST(WheelLoop, OvercomesThreeTimesTheExpectedFrictionWithinThreeTenthsOfASecond) {
-  constexpr double kFriction = 0.13;  // N·m
-  const WheelLoopGains gains{.kp = 0.027, .ki = 0.2, .model_inertia = 1.3e-4};
-  for (const double speed : {1.5, -1.5}) {
-    WheelLoop loop = seeded(0, gains);
-    double effort = 0;
-    for (int k = 0; k < 300; ++k) {
-      loop.measure({.effort = effort}, 1, true);
-      effort = loop.step({.velocity = speed, .friction = kFriction}, 1);
-    }
-    EXPECT_GT(effort * speed, 3 * kFriction * std::abs(speed));
-  }
-}
-
-TEST(WheelLoop, AddsNothingForTheFrictionOfAWheelThatTurnsAsPlanned) {
-  WheelLoop with = seeded(2), without = seeded(2);
-  for (int k = 1; k < 500; ++k) {
-    const JointSample sample{.position = 2 * k * kPeriod};
-    with.measure(sample, 1, true);
-    without.measure(sample, 1, true);
-    ASSERT_EQ(with.step({.velocity = 2, .friction = 1}, 1), without.step({.velocity = 2}, 1)) << k;
-  }
-}
-
 }  // namespace
 }  // namespace robot_control

@@ -47,9 +47,6 @@ class FeedForward {
   /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²), that of the joint included.
   WheelValues efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;
 
-  /// N·m ≥ 0, the dry friction of joint and scrubbing treads, at ground friction 1.
-  double friction(std::size_t wheel) const noexcept { return friction_[wheel] + scrub_.most(wheel); }
-
  private:
   Scrub scrub_;
   double mass_;

@@ -6,8 +6,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kDecayTime = 0.1;      // s
-constexpr double kFrictionTime = 0.05;  // s
+constexpr double kDecayTime = 0.1;  // s
 
 }  // namespace
 
@@ -39,7 +38,6 @@ void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, const FeedFo
 void WheelLoop::measure(const JointSample& sample, double periods, bool driven) noexcept {
   if (!tracked_) {
     tracking_.restart_from(sample.position, sample.velocity);
-    progress_.restart_from(sample.position);
     tracked_ = true;
     effort_residual_ = 0;
     reset_to_measured();
@@ -48,8 +46,6 @@ void WheelLoop::measure(const JointSample& sample, double periods, bool driven) 
   // While cycles were skipped the driver held the last command.
   if (periods > 1) plans_[1] = plans_[0];
   const WheelPlan& plan = plans_[1];
-  progress_.step(driven && plan.friction > 0 ? plan.velocity : 0.0, sample.position, tracking_.quantum(),
-                 periods * period_);
   effort_residual_ = driven ? sample.effort - plan.feed_forward - load_ : 0;
   tracking_.step(sample.position, driven ? plan.acceleration + effort_residual_ / gains_.model_inertia : 0.0, periods);
 }
@@ -83,8 +79,7 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
   }
   const double direct = direct_with(gains_);
   if (gains_.ki == 0) integral_ *= kept;
-  const double rate = gains_.ki * error + progress_.held() * plan.friction / kFrictionTime;
-  const double integral = std::clamp(integral_ + rate * periods * period_, -effort_limit_, effort_limit_);
+  const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
   const bool at_limit = clamped || std::abs(direct + integral) > effort_limit_;
   const bool winds_up = at_limit && (direct + integral) * error > 0;
   if (!winds_up) integral_ = integral;

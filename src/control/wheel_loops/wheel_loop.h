@@ -2,7 +2,7 @@
 /// One driven wheel: planned motion → torque. Feed-forward, PID on the tracked speed, clamp.
 ///
 ///   error    = velocity_plan(k−2) − velocity
-///   integral = integral + (ki·error + held·friction/0.05 s)·dt
+///   integral = integral + ki·error·dt
 ///   effort   = feed_forward + hand_over + kp·error + integral − kd·acceleration,   |effort| ≤ effort_limit
 ///
 /// velocity, acceleration: of the tracking loop on the encoder angle. The torque of cycle k acts over [t_k+1, t_k+2),
@@ -15,11 +15,6 @@
 /// with the constant load = integral at the last hand-over; under the brake, whose torque is not this loop's, the known
 /// acceleration is 0. Without it the lag of the tracking loop makes a lifted wheel unstable at every useful kp. Plan
 /// and torque need not be exact: the loop's residual estimates the rest.
-///
-/// Dry friction (of the joint, and of treads that scrub in a turn, scrub.h) is known only roughly, and a wheel that it
-/// holds does not tell by how much. While a wheel does not turn as planned at all (`held`, wheel_progress.h), the
-/// integral therefore moves towards the plan at a pace that does not depend on the error: from standstill a friction
-/// three times the expected one is overcome within 0.3 s.
 ///
 /// Anti-windup by conditional integration: the integrator stops while its change would increase a clamped sum, clamped
 /// here or by the gate, and |integral| ≤ effort_limit. With ki = 0 a preloaded integrator would never change: it decays
@@ -48,7 +43,6 @@
 #include <optional>
 
 #include "control/wheel_loops/tracking_loop.h"
-#include "control/wheel_loops/wheel_progress.h"
 #include "signals/joint.h"
 
 namespace robot_control {
@@ -68,7 +62,6 @@ struct WheelPlan {
   double velocity = 0;      ///< rad/s
   double acceleration = 0;  ///< rad/s²
   double feed_forward = 0;  ///< N·m
-  double friction = 0;      ///< N·m ≥ 0, dry: the most that is expected
 };
 
 /// Decrease of the feed-forward of the present plan by other parameters, N·m.
@@ -118,7 +111,6 @@ class WheelLoop {
   double effort_limit_;
   double period_;
   TrackingLoop tracking_;
-  WheelProgress progress_;
   std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
   double integral_ = 0;
   double planned_hand_over_ = 0;              ///< N·m, of the feed-forward's part for the acceleration
