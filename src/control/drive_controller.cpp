@@ -116,6 +116,8 @@ bool DriveController::track(const WheelValues& angle, const SensorFrame& sensors
     // Very large finite numbers overflow the tracking loops, which would not recover by themselves.
     good = good && std::isfinite(loops_[i].velocity());
   }
+  // From each wheel to the next: within some cycles all have it.
+  for (std::size_t i = 0; i < loops_.size(); ++i) loops_[i].assume_encoder_of(loops_[(i + 1) % loops_.size()]);
   return good;
 }
 

@@ -272,6 +272,36 @@ TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
   EXPECT_NEAR(bench.command.joints[1].velocity, -5.5, 1e-12);
 }
 
+// The right wheel is held. Taken for one of 45 counts a turn, its encoder would not contradict 0.5 rad/s for 0.3 s.
+TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
+  DriveController controller({}, make_test_robot(), 1e-3);
+  controller.reset();
+  SensorFrame sensors;
+  sensors.valid = kValidJoints;
+  sensors.joint_count = 2;
+  Permit permit;
+  permit.action = PermitAction::kDrive;
+  permit.speed_limit = kNoSpeedLimit;
+  VelocityCommand request;
+  request.twist = {.linear = {0.05, 0, 0}};
+  request.count = 1;
+  CommandFrame out;
+  double angle = 0;
+  std::array<CommandFrame, 2> last{};
+  for (std::uint64_t k = 0; k < 250; ++k) {
+    sensors.head.cycle = permit.head.cycle = k;
+    sensors.gate.verdict = k == 0 ? GateVerdict::kBrake : GateVerdict::kPassed;
+    angle += 1e-3 * last[1].joints[0].velocity;
+    sensors.joints[0].position = 1.5e-3 * std::floor(angle / 1.5e-3);
+    for (std::size_t i = 0; i < 2; ++i) sensors.joints[i].effort = last[1].joints[i].effort;
+    controller.step({&sensors, nullptr, &permit, request}, out);
+    last = {out, last[0]};
+  }
+  EXPECT_NEAR(out.joints[1].velocity, 0.5, 1e-9);
+  EXPECT_NEAR(out.velocity_measured[0], 0.5, 0.1);
+  EXPECT_LT(std::abs(out.velocity_measured[1]), 0.25);
+}
+
 // Sensors that do as commanded: the plans of 0.5 m/s, 0.2 rad/s on all four wheels, load shared.
 TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyThatFails) {
   const RobotModel robot = make_skid_steer();

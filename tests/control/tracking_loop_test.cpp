@@ -167,6 +167,18 @@ TEST(TrackingLoop, LearnsTheCountsOfItsEncoder) {
   EXPECT_EQ(loop.quantum(), 0) << "exact";
 }
 
+TEST(TrackingLoop, OfAWheelThatStandsTakesTheEncoderOfAnother) {
+  TrackingLoop turning(kBandwidth, 1e-3), standing(kBandwidth, 1e-3);
+  standing.assume_encoder_of(turning);
+  EXPECT_NEAR(standing.quantum(), 2 * std::numbers::pi / 45, 1e-15) << "none has shown a count";
+  turning.step(0.01, 0, 1);
+  standing.assume_encoder_of(turning);
+  EXPECT_NEAR(standing.quantum(), 0.01, 1e-12);
+  standing.step(0.03, 0, 1);
+  standing.assume_encoder_of(turning);
+  EXPECT_NEAR(standing.quantum(), 0.03, 1e-12) << "its own is another one";
+}
+
 TEST(TrackingLoop, PredictsOverSkippedSamples) {
   const double dt = 1e-3;
   TrackingLoop loop(kBandwidth, dt);

@@ -9,12 +9,22 @@ bool EncoderQuantum::refine(double turned) noexcept {
   constexpr double kExact = 1e-4;  // rad
   constexpr double kLeast = 1e-9;  // rad: below, a difference is rounding
   const double before = value_;
+  if (!changed_ && std::abs(turned) > kLeast) {
+    changed_ = true;
+    value_ = kCoarsest;  // what another wheel's encoder said no longer counts
+  }
   for (const double step : {turned, turned - last_}) {
     const double size = std::abs(step);
     if (size > kLeast && size < value_) value_ = size < kExact ? 0 : size;
   }
   last_ = turned;
   return value_ != before;
+}
+
+bool EncoderQuantum::assume(const EncoderQuantum& other) noexcept {
+  if (changed_ || other.value_ >= value_) return false;
+  value_ = other.value_;
+  return true;
 }
 
 }  // namespace robot_control

@@ -50,6 +50,9 @@ class TrackingLoop {
   /// A new run: what was learned of the encoder is forgotten.
   void reset() noexcept;
 
+  /// The loop of another wheel: its encoder counts for this one's, until this one's angle changes.
+  void assume_encoder_of(const TrackingLoop& other) noexcept;
+
   /// What was learned of the encoder stays.
   void restart_from(double position, double velocity) noexcept;
 

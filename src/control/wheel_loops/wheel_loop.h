@@ -84,6 +84,9 @@ class WheelLoop {
   /// Between two cycles: other gains and bandwidth, Hz.
   void tune(const WheelLoopGains& gains, double bandwidth, const FeedForwardDecrease& decrease) noexcept;
 
+  /// Until this wheel's angle changes for the first time, its encoder is taken for that of `other`.
+  void assume_encoder_of(const WheelLoop& other) noexcept { tracking_.assume_encoder_of(other.tracking_); }
+
   /// The next sample initialises the tracking loop; the integrator keeps the load.
   void restart_tracking() noexcept { tracked_ = false; }
 
