@@ -63,7 +63,7 @@ class TeleopTest(RobotTestCase):
             time.sleep(0.03)
             self.terminal.type("\x1b[119;1:2u")
         self.terminal.type("\x1b[119;1:3u")
-        wait_for("zero", lambda: "asked                 0.00" in self.terminal.screen, limit=10.0)
+        wait_for("zero", lambda: "requested             0.00" in self.terminal.screen, limit=10.0)
         self.await_rest()
 
     def test_the_e_stop_latches_and_a_reset_takes_two_keys(self) -> None:
@@ -73,10 +73,10 @@ class TeleopTest(RobotTestCase):
         self.await_rest()
         wait_for("its cause on the screen", lambda: "e_stop_trigger was called" in self.terminal.screen)
         self.terminal.type("y")
-        wait_for("the release by two keys", lambda: not self.robot.causes, every=self.ask_for_reset)
+        wait_for("the release by two keys", lambda: not self.robot.causes, every=self.request_reset)
         wait_for("the answer", lambda: "reset accepted" in self.terminal.screen)
 
-    def ask_for_reset(self) -> None:
+    def request_reset(self) -> None:
         """Refused until the robot stands."""
         self.terminal.type("r")
         wait_for("the question or its answer", lambda: "reset?" in self.terminal.screen)
@@ -148,7 +148,7 @@ class TeleopTest(RobotTestCase):
                     if row["stamp_ns"] and row["left_wheel_joint_effort_command"] and row["requested_linear"]
                 ]
         delays = [
-            next(stamp for stamp, effort, asked in rows if stamp > at and asked > 0 and abs(effort) > 0.01) - at
+            next(stamp for stamp, effort, requested in rows if stamp > at and requested > 0 and abs(effort) > 0.01) - at
             for at in typed
         ]
         median = 1e-6 * statistics.median(delays)

@@ -138,6 +138,18 @@ def test_another_key_begins_another_max_hold(dead_man):
     assert dead_man.look(49.0).key == "a"
 
 
+def test_another_key_of_the_same_motion_does_not_begin_another_max_hold():
+    dead_man = DeadMan(PARAMETERS, {"w": "forward", "up": "forward", "a": "left"})
+    times = [0.1 * number for number in range(1200)]
+    held = []
+    for key, time in zip(itertools.cycle(("w", "up")), times, strict=False):
+        dead_man.press(key, time)
+        held.append(dead_man.look(time) is not None)
+    assert held == [time < PARAMETERS.max_hold for time in times]
+    dead_man.press("a", times[-1] + 0.1)
+    assert dead_man.look(times[-1] + 0.1).key == "a"
+
+
 def test_what_was_held_when_the_robot_stopped_has_to_pause(dead_man):
     last = press(dead_man, "w", train(0.0, 2.0))
     dead_man.end(last)

@@ -6,11 +6,12 @@ from robot_control.teleop.keyboard import Event, Key
 from robot_control.teleop.operator import RESET_PAUSE, RESET_WINDOW, ZEROS, Command, Operator, Request
 
 LINEAR, ANGULAR = 0.4, 0.8
+CHOSEN, LIMITS = Command(LINEAR, ANGULAR), Command(1.0, 2.0)
 
 
 @pytest.fixture
 def operator():
-    operator = Operator(ARROWS, LINEAR, ANGULAR)
+    operator = Operator(ARROWS, CHOSEN, LIMITS)
     operator.permit(True, 0.0)
     return operator
 
@@ -23,7 +24,7 @@ def hold(operator, key, begin, seconds):
     return times[-1]
 
 
-def test_a_held_key_asks_for_half_and_then_all_of_the_chosen_speed(operator):
+def test_a_held_key_commands_half_and_then_all_of_the_chosen_speed(operator):
     operator.key(Key("w"), 1.0)
     assert operator.command(1.0) == Command(LINEAR / 2, 0.0)
     last = hold(operator, "w", 2.0, 2.0)
@@ -36,7 +37,7 @@ def test_a_held_key_asks_for_half_and_then_all_of_the_chosen_speed(operator):
     (CLASSIC, "i", (1, 0)), (CLASSIC, ",", (-1, 0)), (CLASSIC, "j", (0, 1)), (CLASSIC, "m", (-1, -1)),
 ])  # fmt: skip
 def test_forward_is_positive_and_left_is_positive(keys, key, signs):
-    operator = Operator(keys, LINEAR, ANGULAR)
+    operator = Operator(keys, CHOSEN, LIMITS)
     last = hold(operator, key, 0.0, 2.0)
     assert operator.command(last) == Command(signs[0] * LINEAR, signs[1] * ANGULAR)
 
@@ -51,7 +52,7 @@ def test_after_a_release_zeros_follow_and_then_nothing_so_that_others_may_comman
 
 @pytest.mark.parametrize("name", KEY_MAPS)
 def test_space_stops_at_once(name):
-    operator = Operator(KEY_MAPS[name], LINEAR, ANGULAR)
+    operator = Operator(KEY_MAPS[name], CHOSEN, LIMITS)
     last = hold(operator, next(iter(KEY_MAPS[name].motions)), 0.0, 2.0)
     assert operator.key(Key("space"), last + 0.02) is None
     assert operator.command(last + 0.02) == Command()
@@ -117,7 +118,7 @@ def test_a_robot_that_stopped_does_not_go_on_under_the_key_that_was_held(operato
 
 
 def test_a_silent_monitor_does_not_keep_commands_back():
-    operator = Operator(ARROWS, LINEAR, ANGULAR)
+    operator = Operator(ARROWS, CHOSEN, LIMITS)
     operator.permit(None, 0.0)
     operator.key(Key("w"), 0.0)
     assert operator.command(0.0) == Command(LINEAR / 2, 0.0)
@@ -132,13 +133,64 @@ def test_what_was_typed_while_the_program_stood_moves_nothing_and_may_stop(opera
     assert operator.key(Key("!"), last, late=True) is Request.E_STOP
 
 
-def test_speeds_change_by_a_tenth_and_have_a_bound(operator):
+def test_speeds_change_by_a_tenth(operator):
     operator.key(Key("+"), 0.0)
     operator.key(Key(","), 0.0)
-    assert (operator.linear, operator.angular) == pytest.approx((1.1 * LINEAR, 0.9 * ANGULAR))
-    for _ in range(200):
-        operator.key(Key("+"), 0.0)
-    assert operator.linear == 100.0
+    assert operator.chosen == Command(pytest.approx(1.1 * LINEAR), pytest.approx(0.9 * ANGULAR))
+
+
+@pytest.mark.parametrize(("keys", "key"), [(ARROWS, "+"), (CLASSIC, "w")])
+def test_the_first_byte_after_a_held_speed_key_commands_no_more_than_half_of_what_the_robot_drives(keys, key):
+    operator = Operator(keys, Command(0.9 * LIMITS.linear, ANGULAR), LIMITS)
+    hold(operator, key, 0.0, 2.0)
+    operator.key(Key("up" if keys is ARROWS else "i"), 3.0)
+    assert operator.command(3.0).linear <= LIMITS.linear / 2
+
+
+def test_a_speed_key_that_is_held_changes_the_speed_once(operator):
+    for time in (0.0, *(0.5 + 0.03 * number for number in range(50))):
+        operator.key(Key("+"), time)
+        operator.command(time + 0.01)
+    operator.command(9.0)
+    assert operator.chosen.linear == pytest.approx(1.1 * LINEAR)
+
+
+def test_every_tap_of_a_speed_key_changes_the_speed(operator):
+    for number in range(5):
+        operator.key(Key("+"), 0.25 * number)
+    operator.command(2.0)
+    assert operator.chosen.linear == pytest.approx(1.1**5 * LINEAR)
+
+
+def test_chosen_speeds_have_the_robots_limits_as_a_bound_also_when_those_change(operator):
+    for number in range(200):
+        operator.key(Key("+"), float(number))
+        operator.key(Key("."), number + 0.5)
+    assert operator.chosen == LIMITS
+    operator.limit(Command(0.2, 0.3))
+    assert operator.chosen == Command(0.2, 0.3)
+    operator.key(Key("-"), 300.0)
+    assert operator.chosen == Command(pytest.approx(0.9 * 0.2), 0.3)
+
+
+def test_a_speed_of_the_command_line_above_the_limits_of_the_file_counts_once_the_robots_are_received():
+    operator = Operator(ARROWS, Command(1.5, 1.0), LIMITS)
+    assert operator.chosen == Command(LIMITS.linear, 1.0)
+    operator.limit(Command(2.0, 2.0))
+    assert operator.chosen == Command(1.5, 1.0)
+
+
+@pytest.mark.parametrize(("keys", "first", "second"), [(ARROWS, "w", "up"), (ARROWS, "left", "a")])
+def test_two_keys_of_one_motion_in_turn_are_held_no_longer_than_one(keys, first, second):
+    operator = Operator(keys, CHOSEN, LIMITS)
+    zeros = [0.0]
+    for number in range(1200):
+        time = 0.1 * number
+        operator.key(Key((first, second)[number % 2]), time)
+        if operator.command(time) in {Command(), None}:
+            zeros.append(time)
+    assert 29.9 < zeros[1] < 30.1
+    assert zeros[-1] > 119.0
 
 
 def test_a_key_that_is_held_too_long_is_announced_and_explained(operator):

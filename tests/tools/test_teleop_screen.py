@@ -1,13 +1,13 @@
 """The screen of teleop.py."""
 
 import pytest
-from robot_control.teleop.key_map import CLASSIC, KEY_MAPS
+from robot_control.teleop.key_map import CLASSIC, KEY_MAPS, SAFETY_HELP
 from robot_control.teleop.operator import Command
 from robot_control.teleop.screen import HEIGHT, WIDTH, View, render
 from robot_control.why.diagnosis import CONTROLLER, LOOP, Cause, Facts, Report, Safety
 
 VIEW = View(
-    keys=CLASSIC, topic="/cmd_vel_stamped", own_name="/teleop", chosen=Command(0.5, 1.0), asked=Command(0.25, 0.0)
+    keys=CLASSIC, topic="/cmd_vel_stamped", own_name="/teleop", chosen=Command(0.5, 1.0), requested=Command(0.25, 0.0)
 )
 
 
@@ -26,9 +26,9 @@ def screen(robot, view=VIEW):
     return "\n".join(render(robot, view))
 
 
-def test_it_shows_speed_asked_limited_and_measured():
+def test_it_shows_speed_requested_limited_and_measured():
     lines = [" ".join(line.split()) for line in render(facts(), VIEW)]
-    for line in ("chosen 0.50 1.00", "asked 0.25 0.00", "after limits 0.25 0.00", "measured 0.24 0.00"):
+    for line in ("chosen 0.50 1.00", "requested 0.25 0.00", "after limits 0.25 0.00", "measured 0.24 0.00"):
         assert line in lines
 
 
@@ -46,7 +46,7 @@ def test_it_shows_the_age_of_the_command_and_who_else_commands():
     assert "sent on /cmd_vel_stamped, 40 ms ago; also commanding: /planner;" in text
 
 
-def test_an_idle_robot_asks_for_a_key_and_for_nothing_else():
+def test_an_idle_robot_needs_a_key_and_nothing_else():
     reports = {**{node: Report() for node in LOOP}, CONTROLLER: Report(values={"command: timed_out": "too old"})}
     text = screen(facts(reports=reports))
     assert "It may move: hold a key." in text
@@ -71,3 +71,11 @@ def test_it_fits_80_by_24_whatever_there_is_to_say_and_the_safety_keys_are_last(
     assert max(map(len, lines)) <= WIDTH
     assert "EMERGENCY STOP" in lines[-1]
     assert "\x1b" not in "".join(lines)
+
+
+@pytest.mark.parametrize("height", [1, 3, 5, 10, 23, 24, 60])
+def test_a_lower_terminal_cuts_the_body_and_keeps_the_keys_of_the_e_stop(height):
+    lines = render(facts(), VIEW, height)
+    assert len(lines) == min(height, HEIGHT)
+    assert lines[-1] == SAFETY_HELP
+    assert lines == (render(facts(), VIEW)[: len(lines) - 5] + render(facts(), VIEW)[-5:])[-len(lines) :]

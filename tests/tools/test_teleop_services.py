@@ -5,7 +5,8 @@ import time
 import pytest
 import rospy
 from robot_control.teleop import services as module
-from robot_control.teleop.services import Answer, Services
+from robot_control.teleop.services import Answer, Services, in_words
+from robot_control.why.diagnosis import Cause, Facts, Safety
 from std_srvs.srv import TriggerResponse
 
 
@@ -90,3 +91,28 @@ def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, 
     wait_for(lambda: answers.extend(services.look()) or len(answers) == 2)
     assert robot.calls == ["e_stop_trigger"]
     assert not answers[1].accepted
+
+
+def stopped_by(*causes, namespace="/"):
+    return Facts(master="http://localhost:11311", namespace=namespace, safety=Safety("STOPPED", "brake", causes=causes))
+
+
+def test_a_refused_reset_names_the_command_that_takes_back_the_topic_of_an_ended_node():
+    answer = Answer("e_stop_reset", accepted=False, text="refused: a cause of the stop persists")
+    level = Cause("e_stop_topic", "the topic e_stop said true", active=True)
+    text = in_words(answer, stopped_by(level, namespace="/robot2"))
+    assert "rostopic pub -1 /robot2/e_stop std_msgs/Bool false, then r, y" in text
+    assert len(text) <= 3 * 70
+
+
+@pytest.mark.parametrize("cause", ["e_stop_input", "e_stop_service"])
+def test_another_refusal_is_the_services_own_text(cause):
+    answer = Answer("e_stop_reset", accepted=False, text="refused: the robot has not come to rest")
+    robot = stopped_by(Cause(cause, "a stop", active=True), Cause("e_stop_topic", "the topic e_stop said true"))
+    assert in_words(answer, robot) == "reset REFUSED: refused: the robot has not come to rest"
+
+
+def test_what_was_accepted_or_sent_on_the_topic_is_said():
+    assert in_words(Answer("e_stop_reset", accepted=True, text="released"), stopped_by()) == "reset accepted: released"
+    answer = Answer("e_stop_trigger", accepted=None, text="no master")
+    assert in_words(answer, stopped_by()) == "emergency stop sent on the topic e_stop: no master"

@@ -147,3 +147,37 @@ def test_without_a_terminal_it_says_so():
         Terminal(reading)
     os.close(reading)
     os.close(writing)
+
+
+WHOLE_PROGRAM = """
+import sys, types
+messages = types.ModuleType("robot_control.msg")
+messages.SafetyStatus = None
+sys.modules["robot_control.msg"] = messages
+from robot_control.teleop import main
+main.rosgraph.is_master_online = lambda: True
+main.main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("TERM=dumb", "TERM=dumb"),
+        ("TERM=unknown", "TERM=unknown"),
+        ("TERM=", "TERM is not set"),
+        ("-uTERM", "TERM is not"),
+    ],
+)
+def test_a_terminal_without_control_sequences_is_refused_with_one_message_and_receives_none(given, words):
+    program = PseudoTerminal(
+        ["env", given, sys.executable, "-c", WHOLE_PROGRAM], {"PYTHONPATH": os.pathsep.join(sys.path)}
+    )
+    assert program.wait() == 1
+    wait_for(lambda: program.written.endswith(b"\n"))
+    text = program.written.decode()
+    assert text.startswith(f"teleop.py: {words}")
+    assert text.rstrip().endswith("with TERM=xterm")
+    assert text.count("\n") == 1
+    assert "\x1b" not in text
+    program.end()

@@ -5,13 +5,15 @@
     burst              bytes less than BURST apart, which no keyboard sends: a link that had stalled delivers them. They
                        count as one byte, and after a stop among them no motion key of the same burst counts
     change of keys     while one key is held, another takes over at once and at the same speed
-    max_hold           a key that repeats for so long without a pause ends in zero, until it has paused for `first_hold`
+    max_hold           a motion whose keys repeat for so long without a pause ends in zero, until all of its keys have
+                       paused for `first_hold`
 
 `first_hold` has to exceed the keyboard's delay until the first repeat, which is measured (RepeatDelay).
 Times are s of any one clock that never turns back.
 """
 
 from collections import deque
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 
 BURST = 0.01
@@ -75,8 +77,10 @@ class RepeatDelay:
 class DeadMan:
     """Which motion key is held."""
 
-    def __init__(self, parameters: HoldParameters | None = None) -> None:
+    def __init__(self, parameters: HoldParameters | None = None, motions: Mapping[str, Hashable] | None = None) -> None:
+        """`motions`: of each key; a key that is not among them has one of its own."""
         self._parameters = parameters or HoldParameters()
+        self._motions = motions or {}
         self._delay = RepeatDelay(self._parameters.first_hold)
         self._key = ""
         self._until = 0.0
@@ -85,7 +89,7 @@ class DeadMan:
         self._fast = False
         self._last_key, self._last_byte = "", float("-inf")
         self._stopped_in_burst = False
-        self._blocked: set[str] | None = None  # None: no key is; else these, or with an empty set all
+        self._blocked: set[Hashable] | None = None  # None: no motion is; else these, or with an empty set all
         self._blocked_byte = 0.0
 
     @property
@@ -111,7 +115,9 @@ class DeadMan:
         if held is None:
             self._begin(key, now, fast=False)
         elif held.key != key:
+            begin = self._since if self._motion(key) == self._motion(held.key) else now
             self._begin(key, now, fast=self._fast)
+            self._since = begin
         else:
             self._bytes += 1
             tapped = self._bytes == 2 and gap < SHORTEST_DELAY and not repeat
@@ -122,7 +128,7 @@ class DeadMan:
         """The terminal reports that this key was released."""
         if key == self._key:
             self._key = ""
-        if self._blocked is not None and (not self._blocked or key in self._blocked):
+        if self._blocked is not None and (not self._blocked or self._motion(key) in self._blocked):
             self._blocked = None
 
     def stop(self, now: float) -> None:
@@ -150,7 +156,7 @@ class DeadMan:
             return None
         left = self._since + self._parameters.max_hold - now
         if left <= 0:
-            self._blocked, self._blocked_byte = {self._key}, now
+            self._blocked, self._blocked_byte = {self._motion(self._key)}, now
             self._key = ""
             return None
         return Held(self._key, 1.0 if self._fast else self._parameters.slow, left)
@@ -168,6 +174,9 @@ class DeadMan:
         """A key has to be released first."""
         return self._blocked is not None and now - self._blocked_byte <= self._parameters.first_hold
 
+    def _motion(self, key: str) -> Hashable:
+        return self._motions.get(key, key)
+
     def _begin(self, key: str, now: float, *, fast: bool) -> None:
         self._key, self._since, self._bytes, self._fast = key, now, 1, fast
         self._until = now + self.first_hold
@@ -175,8 +184,8 @@ class DeadMan:
     def _is_blocked(self, key: str, now: float) -> bool:
         if self._blocked is None:
             return False
-        if self._blocked and key not in self._blocked:
-            self._blocked = None  # another key: a person is there
+        if self._blocked and self._motion(key) not in self._blocked:
+            self._blocked = None  # another motion: a person is there
             return False
         paused = now - self._blocked_byte > self._parameters.first_hold
         self._blocked_byte = now

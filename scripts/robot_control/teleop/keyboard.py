@@ -19,7 +19,7 @@ SEQUENCE_WAIT = 1.0
 LONGEST = 32
 """bytes of a sequence"""
 
-ASK_RELEASES = b"\x1b[?u"
+QUERY_RELEASES = b"\x1b[?u"
 """does this terminal speak kitty's protocol?"""
 REPORT_RELEASES = b"\x1b[>15u"
 """1 disambiguate, 2 event types, 4 shifted keys, 8 all keys as sequences"""
@@ -39,7 +39,7 @@ class Event(Enum):
     PRESS = 1
     REPEAT = 2
     RELEASE = 3
-    SPEAKS_KITTY = 4  # no key: the answer to ASK_RELEASES
+    SPEAKS_KITTY = 4  # no key: the answer to QUERY_RELEASES
 
 
 @dataclass(frozen=True)

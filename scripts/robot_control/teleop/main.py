@@ -20,7 +20,8 @@ from robot_control.teleop.key_map import KEY_MAPS
 from robot_control.teleop.keyboard import Decoder, Event
 from robot_control.teleop.operator import Command, Operator, Request
 from robot_control.teleop.screen import View, render
-from robot_control.teleop.services import Services
+from robot_control.teleop.services import Services, in_words
+from robot_control.teleop.speed_limits import SpeedLimits
 from robot_control.teleop.terminal import NoTerminalError, Terminal
 from robot_control.why.diagnosis import SILENCE
 from robot_control.why.listener import MASTER_PERIOD, Listener
@@ -35,7 +36,6 @@ HEARTBEAT_PERIOD = 0.1
 FRAME = 0.1
 """s between two screens"""
 DRIVABLE = {"READY", "DRIVE"}
-VERDICTS = {True: "accepted", False: "REFUSED", None: "sent on the topic e_stop"}
 
 
 class Teleop:
@@ -45,7 +45,8 @@ class Teleop:
         self._terminal = terminal
         self._keys = KEY_MAPS[given.keys]
         hold = HoldParameters(first_hold=given.first_hold, max_hold=given.max_hold)
-        self._operator = Operator(self._keys, given.linear, given.angular, hold)
+        self._limits = SpeedLimits()
+        self._operator = Operator(self._keys, Command(given.linear, given.angular), self._limits.newest(), hold)
         self._decoder = Decoder()
         self._listener = Listener()
         self._services = Services()
@@ -56,7 +57,7 @@ class Teleop:
         self._beat_at = self._drawn_at = float("-inf")
         self._answer = ""
         self._releases = False
-        threading.Thread(target=self._ask_master, daemon=True).start()
+        threading.Thread(target=self._query_master, daemon=True).start()
 
     def run(self, signals: Signals) -> None:
         """Until Ctrl-C, a signal, or the end of the terminal (NoTerminalError)."""
@@ -71,6 +72,7 @@ class Teleop:
             safety = self._listener.safety(now)
             fresh = safety is not None and safety.age < SILENCE
             self._operator.permit(safety.state in DRIVABLE if safety is not None and fresh else None, now)
+            self._operator.limit(self._limits.newest())
             self._send(now)
             self._take_answers()
             if now - self._beat_at >= HEARTBEAT_PERIOD:
@@ -93,7 +95,7 @@ class Teleop:
             if request is Request.E_STOP:
                 self._services.e_stop()
             elif request is Request.RESET:
-                self._answer = "the reset was asked for"
+                self._answer = "the reset was requested"
                 self._services.reset()
         return False
 
@@ -107,9 +109,8 @@ class Teleop:
 
     def _take_answers(self) -> None:
         for answer in self._services.look():
-            what = "reset" if answer.service == "e_stop_reset" else "emergency stop"
-            self._answer = f"{what} {VERDICTS[answer.accepted]}: {answer.text}"
-            if what == "reset" and answer.accepted:
+            self._answer = in_words(answer, self._listener.facts())
+            if answer.service == "e_stop_reset" and answer.accepted:
                 self._operator.reset_accepted()
 
     def _draw(self, now: float) -> None:
@@ -118,19 +119,20 @@ class Teleop:
             keys=self._keys,
             topic=self._topic.name,
             own_name=rospy.get_name(),
-            chosen=Command(self._operator.linear, self._operator.angular),
-            asked=self._sent,
+            chosen=self._operator.chosen,
+            requested=self._sent,
             held="" if held is None else f"key {held.key}" + (", slow until it repeats" if held.share < 1 else ""),
             sent_age=None if self._sent_at is None else now - self._sent_at,
             message=self._operator.message(now),
             answer=self._answer,
             releases=self._releases,
         )
-        self._terminal.draw(render(self._listener.facts(), view))
+        _, height = self._terminal.size()
+        self._terminal.draw(render(self._listener.facts(), view, height))
 
-    def _ask_master(self) -> None:
+    def _query_master(self) -> None:
         while True:
-            self._listener.ask_master()
+            self._listener.query_master()
             time.sleep(MASTER_PERIOD)
 
 
@@ -150,8 +152,18 @@ def arguments(given: list[str]) -> argparse.Namespace:
         help="arrows: arrow keys and w a s d; "
         "classic: u i o j k l m , . of teleop_twist_keyboard (default %(default)s)",
     )
-    parser.add_argument("--linear", type=positive, default=0.5, help="m/s, chosen speed (default %(default)s)")
-    parser.add_argument("--angular", type=positive, default=1.0, help="rad/s, chosen speed (default %(default)s)")
+    parser.add_argument(
+        "--linear",
+        type=positive,
+        default=0.5,
+        help="m/s, chosen speed, at most the robot's max_linear_speed (default %(default)s)",
+    )
+    parser.add_argument(
+        "--angular",
+        type=positive,
+        default=1.0,
+        help="rad/s, chosen speed, at most max_angular_speed (default %(default)s)",
+    )
     parser.add_argument(
         "--first-hold",
         type=positive,

@@ -1,8 +1,11 @@
 """From keys to a velocity command, an e-stop and a reset. Pure: time is an argument.
 
-Motion is asked for only while a key is held and the robot may drive. A robot that stopped, for whatever reason, does
+Motion is commanded only while a key is held and the robot may drive. A robot that stopped, for whatever reason, does
 not move again under a key that was held all the time: keys count after they have paused. The first key of a reset arms
-it for RESET_WINDOW, the second one, RESET_PAUSE later or more, asks for it.
+it for RESET_WINDOW, the second one, RESET_PAUSE later or more, requests it.
+
+The chosen speeds stay within the robot's limits, so that the share of them until a key's first repeat is a share of
+what the robot drives, and a held key changes them once per press.
 """
 
 from dataclasses import dataclass
@@ -11,6 +14,7 @@ from enum import Enum, auto
 from robot_control.teleop.dead_man import DeadMan, Held, HoldParameters
 from robot_control.teleop.key_map import E_STOPS, KeyMap
 from robot_control.teleop.keyboard import Event, Key
+from robot_control.teleop.single_press import SinglePress
 
 RESET_WINDOW = 5.0
 """s"""
@@ -18,12 +22,10 @@ RESET_PAUSE = 0.2
 """s; two keys within it are one act: a paste, a macro of the keyboard, the burst of a link that had stalled"""
 ZEROS = 1.0
 """s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
-FASTEST = 100.0
-"""m/s, rad/s; a bound of the chosen speeds, the robot has its own limits"""
 
 
 class Request(Enum):
-    """What else a key asks for."""
+    """What else a key requests."""
 
     E_STOP = auto()
     RESET = auto()
@@ -39,13 +41,14 @@ class Command:
 
 
 class Operator:
-    """What the person at the keyboard asks for."""
+    """What the person at the keyboard commands and requests."""
 
-    def __init__(self, keys: KeyMap, linear: float, angular: float, hold: HoldParameters | None = None) -> None:
-        """Of the speeds chosen at first: `linear` in m/s, `angular` in rad/s."""
+    def __init__(self, keys: KeyMap, chosen: Command, limits: Command, hold: HoldParameters | None = None) -> None:
+        """`chosen`: the speeds at first; `limits`: the robot's."""
         self._keys = keys
-        self.linear, self.angular = linear, angular
-        self._dead_man = DeadMan(hold)
+        self._chosen, self._limits = chosen, limits
+        self._speed_keys = SinglePress()
+        self._dead_man = DeadMan(hold, keys.motions)
         self._drivable: bool | None = None
         self._e_stopped = False
         self._reset_at = float("-inf")
@@ -60,6 +63,7 @@ class Operator:
         name = key.name
         if key.event is Event.RELEASE:
             self._dead_man.release(name)
+            self._change_speeds(self._speed_keys.release(name))
             return None
         if name == "interrupt":
             return Request.END
@@ -85,10 +89,17 @@ class Operator:
             self._stop(now)
             self._reset_at = now
         elif name in self._keys.speeds:
-            factor = self._keys.speeds[name]
-            self.linear = min(FASTEST, self.linear * factor.linear)
-            self.angular = min(FASTEST, self.angular * factor.angular)
+            self._change_speeds(self._speed_keys.press(name, now, repeat=key.event is Event.REPEAT))
         return None
+
+    @property
+    def chosen(self) -> Command:
+        """The speeds of a held key, within the robot's limits."""
+        return Command(min(self._chosen.linear, self._limits.linear), min(self._chosen.angular, self._limits.angular))
+
+    def limit(self, limits: Command) -> None:
+        """The robot's limits are these now."""
+        self._limits = limits
 
     def permit(self, drivable: bool | None, now: float) -> None:  # noqa: FBT001 (a three-valued state)
         """May the robot drive, by its safety monitor? None: it says nothing."""
@@ -105,11 +116,12 @@ class Operator:
 
     def command(self, now: float) -> Command | None:
         """What to send now; None: nothing."""
+        self._change_speeds(self._speed_keys.look(now))
         held = self.held(now)
         if held is not None:
             self._zeros_until = now + ZEROS
-            motion = self._keys.motions[held.key]
-            return Command(motion.linear * held.share * self.linear, motion.angular * held.share * self.angular)
+            motion, chosen = self._keys.motions[held.key], self.chosen
+            return Command(motion.linear * held.share * chosen.linear, motion.angular * held.share * chosen.angular)
         return Command() if now < self._zeros_until or self._e_stopped else None
 
     def held(self, now: float) -> Held | None:
@@ -121,7 +133,7 @@ class Operator:
         """What this program has to say about itself; empty: nothing."""
         held = self.held(now)
         if self._e_stopped:
-            text = "EMERGENCY STOP asked for; no motion until a reset (r, then y)"
+            text = "EMERGENCY STOP requested; no motion until a reset (r, then y)"
         elif held is not None and self._dead_man.ends_soon(held):
             text = f"key {held.key}: held for long; the robot stops in {held.left:.0f} s unless it is pressed again"
         elif self._dead_man.overlong:
@@ -133,6 +145,11 @@ class Operator:
         if now - self._reset_at < RESET_WINDOW:
             text = f"reset? y within {self._reset_at + RESET_WINDOW - now:.0f} s; any motion key cancels"
         return text
+
+    def _change_speeds(self, keys: list[str]) -> None:
+        for key in keys:
+            factor, chosen = self._keys.speeds[key], self.chosen
+            self._chosen = Command(chosen.linear * factor.linear, chosen.angular * factor.angular)
 
     def _stop(self, now: float) -> None:
         self._dead_man.stop(now)

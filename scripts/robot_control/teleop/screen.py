@@ -11,7 +11,7 @@ from robot_control.why.diagnosis import CONTROLLER, Facts, Verdict, judge
 WIDTH, HEIGHT = 80, 24
 LABEL = 10
 """columns of the word before each line"""
-MOST_LINES = {"to do": 3, "causes": 3, "warnings": 2, "limits": 2}
+MOST_LINES = {"to do": 3, "causes": 3, "answer": 3, "warnings": 2, "limits": 2}
 """of one label, so that all of them find room"""
 
 
@@ -22,8 +22,8 @@ class View:
     keys: KeyMap
     topic: str  # absolute
     own_name: str  # of this node
-    chosen: Command  # m/s, rad/s: what a held key asks for
-    asked: Command | None  # what is sent now; None: nothing
+    chosen: Command  # m/s, rad/s: the speeds of a held key
+    requested: Command | None  # what is sent now; None: nothing
     held: str = ""  # which key, and how
     sent_age: float | None = None  # s since the last command; None: none was sent
     message: str = ""  # of this program
@@ -31,18 +31,21 @@ class View:
     releases: bool = False  # the terminal reports releases
 
 
-def render(facts: Facts, view: View) -> list[str]:
-    """At most HEIGHT lines of at most WIDTH columns."""
+def render(facts: Facts, view: View, height: int = HEIGHT) -> list[str]:
+    """At most HEIGHT lines of at most WIDTH columns, for a terminal of `height` lines. Where it has
+    fewer, the body is cut, and the foot with the keys of the emergency stop stays, if need be its last line alone.
+    """
+    height = min(height, HEIGHT)
     safety = facts.received()
     state = "no safety_status" if safety is None else f"{safety.state}, permit: {safety.permit}"
     left = f"teleop {facts.namespace}"
-    foot = ["-" * WIDTH, *view.keys.help]
+    foot = ["-" * WIDTH, *view.keys.help][-height:]
     body = [
         f"{left}{state:>{WIDTH - len(left)}}",
         "-" * WIDTH,
         f"{'':14}{'linear m/s':>12}{'angular rad/s':>16}",
         _speeds("chosen", view.chosen),
-        _speeds("asked", view.asked, view.held),
+        _speeds("requested", view.requested, view.held),
         _speeds("after limits", None if facts.limited is None else Command(*facts.limited)),
         _speeds("measured", None if facts.measured is None else Command(*facts.measured)),
         "",
@@ -50,8 +53,8 @@ def render(facts: Facts, view: View) -> list[str]:
     ]
     for label, text in _rows(facts, view):
         body += _wrapped(text, label, MOST_LINES.get(label, 2))
-    body = body[: HEIGHT - len(foot)]
-    body += [""] * (HEIGHT - len(foot) - len(body))
+    body = body[: height - len(foot)]
+    body += [""] * (height - len(foot) - len(body))
     return [line[:WIDTH].rstrip() for line in body + foot]
 
 
@@ -90,7 +93,7 @@ def _rows(facts: Facts, view: View) -> Iterator[tuple[str, str]]:
 
 
 def _command(facts: Facts, view: View) -> str:
-    if view.asked is None or view.sent_age is None:
+    if view.requested is None or view.sent_age is None:
         own = f"nothing is sent on {view.topic} now"
     else:
         own = f"sent on {view.topic}, {1000 * view.sent_age:.0f} ms ago"

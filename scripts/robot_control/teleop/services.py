@@ -11,6 +11,8 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
+from robot_control.why.diagnosis import Facts
+
 PATIENCE = 0.3
 """s for the answer of e_stop_trigger; then `true` goes out on the topic e_stop as well"""
 LATEST = 5.0
@@ -28,15 +30,32 @@ class Answer:
     text: str
 
 
+VERDICTS = {True: "accepted", False: "REFUSED", None: "sent on the topic e_stop"}
+
+
+def in_words(answer: Answer, facts: Facts) -> str:
+    """For the screen. A reset does not take back a level of the topic e_stop that another node published, even if that
+    node has ended: the level may be that of a pressed button. The command for it is named instead.
+    """
+    if answer.service != "e_stop_reset":
+        return f"emergency stop {VERDICTS[answer.accepted]}: {answer.text}"
+    safety = facts.received()
+    causes = () if safety is None else safety.causes
+    if answer.accepted is False and any(cause.name == "e_stop_topic" and cause.active for cause in causes):
+        command = f"rostopic pub -1 {facts.path('e_stop')} std_msgs/Bool false"
+        return f"reset REFUSED: the topic e_stop still says true; once its reason is gone: {command}, then r, y again"
+    return f"reset {VERDICTS[answer.accepted]}: {answer.text}"
+
+
 class Services:
     """Used by one thread; a second one, inside, makes the calls."""
 
     def __init__(self) -> None:
         self._topic = rospy.Publisher("e_stop", Bool, queue_size=1, tcp_nodelay=True)
         self._topic_said_true = False
-        self._wanted: queue.Queue[tuple[str, float]] = queue.Queue()  # service, when it was asked for
+        self._wanted: queue.Queue[tuple[str, float]] = queue.Queue()  # service, when it was requested
         self._answers: queue.Queue[Answer] = queue.Queue()
-        self._e_stop_at: float | None = None  # when it was asked for, until it is answered
+        self._e_stop_at: float | None = None  # when it was requested, until it is answered
         self._last_e_stop = float("-inf")
         threading.Thread(target=self._work, daemon=True).start()
 
@@ -78,9 +97,9 @@ class Services:
 
     def _work(self) -> None:
         while True:
-            name, asked = self._wanted.get()
-            if name == "e_stop_reset" and time.monotonic() - asked > LATEST:
-                self._answers.put(Answer(name, accepted=False, text="it could not be called in time; ask again"))
+            name, requested = self._wanted.get()
+            if name == "e_stop_reset" and time.monotonic() - requested > LATEST:
+                self._answers.put(Answer(name, accepted=False, text="it could not be called in time; request it again"))
                 continue
             try:
                 response = rospy.ServiceProxy(name, Trigger)()

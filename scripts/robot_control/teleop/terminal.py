@@ -21,9 +21,9 @@ from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
 
-from robot_control.teleop.keyboard import ASK_RELEASES, END_RELEASES, REPORT_RELEASES
+from robot_control.teleop.keyboard import END_RELEASES, QUERY_RELEASES, REPORT_RELEASES
 
-BEGIN = b"\x1b[?1049h\x1b[?25l\x1b[2J" + ASK_RELEASES
+BEGIN = b"\x1b[?1049h\x1b[?25l\x1b[2J" + QUERY_RELEASES
 """alternate screen, no cursor (xterm's control sequences)"""
 END = END_RELEASES + b"\x1b[?25h\x1b[?1049l"
 LONGEST_READ = 4096
@@ -33,7 +33,7 @@ SETTINGS, ALL = b"settings", b"all"
 
 
 class NoTerminalError(RuntimeError):
-    """The standard input is no terminal, or it is gone."""
+    """The standard input is no terminal, one without control sequences, or it is gone."""
 
 
 def undelayed(settings: list[Any]) -> list[Any]:
@@ -47,6 +47,15 @@ def undelayed(settings: list[Any]) -> list[Any]:
     return changed
 
 
+def refuse_without_sequences(name: str) -> None:
+    """Raises NoTerminalError for the value of TERM that stands for a terminal without control sequences, or none."""
+    if name in {"", "dumb", "unknown"}:
+        raise NoTerminalError(
+            f"{f'TERM={name}' if name else 'TERM is not set'}: the screen needs a terminal with control sequences; "
+            "start it in one, or, if this terminal has them, with TERM=xterm"
+        )
+
+
 class Terminal:
     """Use as `with Terminal() as terminal`."""
 
@@ -54,6 +63,7 @@ class Terminal:
         """Raises NoTerminalError."""
         try:
             self._settings = termios.tcgetattr(descriptor)
+            refuse_without_sequences(os.environ.get("TERM", ""))
             self._descriptor = os.open(os.ttyname(descriptor), os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
         except (OSError, termios.error) as error:
             raise NoTerminalError(

@@ -15,7 +15,7 @@ from robot_control.why.diagnosis import LOOP, SILENCE, Facts, Report, Safety
 from robot_control.why.facts import below, nodes_of, other_robots, safety_of
 
 MASTER_PERIOD = 1.0
-"""s between two questions to the master"""
+"""s between two queries of the master"""
 
 
 class Listener:
@@ -25,7 +25,7 @@ class Listener:
         self.namespace = rospy.get_namespace().rstrip("/") or "/"
         self.master = Master(rospy.get_name())
         self._state: Sequence[Any] | None = None
-        self._asked = 0.0
+        self._queried_at = 0.0
         self._status: SafetyStatus | None = None
         self._status_at = 0.0
         self._reports: dict[str, tuple[float, Report]] = {}  # by absolute name
@@ -51,12 +51,12 @@ class Listener:
     def _receive_odometry(self, message: Odometry) -> None:
         self._measured = (message.twist.twist.linear.x, message.twist.twist.angular.z, time.monotonic())
 
-    def ask_master(self) -> None:
+    def query_master(self) -> None:
         """At most every MASTER_PERIOD; waits up to ros_master.TIMEOUT."""
         now = time.monotonic()
-        if now - self._asked < MASTER_PERIOD:
+        if now - self._queried_at < MASTER_PERIOD:
             return
-        self._asked = now
+        self._queried_at = now
         self._state = self.master.state()
         known = self._state is None or rospy.get_name() in nodes_of(self._state)
         self.unknown_to_master = 0 if known else self.unknown_to_master + 1

@@ -1,4 +1,4 @@
-"""why.py's ROS side: asks the robot and the master, draws."""
+"""why.py's ROS side: receives the robot's reports, queries the master, draws."""
 
 import argparse
 import os
@@ -73,7 +73,7 @@ def _listen() -> Listener:
     listener = Listener()
     end = time.monotonic() + TIMEOUT
     while time.monotonic() < end and not rospy.is_shutdown():
-        listener.ask_master()
+        listener.query_master()
         if listener.complete():
             break
         time.sleep(0.05)
@@ -91,7 +91,7 @@ def answer_live() -> int:
     _master_is_there(screen)
     listener = _listen()
     while not rospy.is_shutdown():
-        listener.ask_master()
+        listener.query_master()
         screen.show(listener.facts())
         if listener.unknown_to_master > 1:  # another master: this program is no part of its graph
             os.execv(sys.executable, [sys.executable, *sys.argv])

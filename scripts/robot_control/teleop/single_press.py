@@ -1,0 +1,46 @@
+"""One act per press of a key, on a terminal that reports no releases. Pure: time is an argument.
+
+first byte                       acts at once: no byte of this key within LONGEST_DELAY before it
+byte after SLOWEST_REPEAT        a tap or the keyboard's first repeat; it acts after SLOWEST_REPEAT, unless a
+                                 further byte comes within that time and shows that the key repeats
+byte sooner than SLOWEST_REPEAT  a repeat, which does not act
+"""
+
+from robot_control.teleop.dead_man import SLOWEST_REPEAT, HoldParameters
+
+LONGEST_DELAY = HoldParameters.first_hold
+"""s until a keyboard's first repeat"""
+
+
+class SinglePress:
+    """Of all keys that act once per press."""
+
+    def __init__(self) -> None:
+        self._key = ""
+        self._last_byte = float("-inf")
+        self._undecided = False  # the last byte may be a tap
+
+    def press(self, key: str, now: float, *, repeat: bool = False) -> list[str]:
+        """A byte of `key` came; `repeat`: the terminal reports it as a repeat. The keys that act now."""
+        acts = self.look(now)
+        gap = now - self._last_byte if key == self._key else float("inf")
+        if key != self._key and self._undecided:
+            acts.append(self._key)
+        self._key, self._last_byte = key, now
+        self._undecided = not repeat and SLOWEST_REPEAT < gap <= LONGEST_DELAY
+        return [*acts, key] if gap > LONGEST_DELAY and not repeat else acts
+
+    def release(self, key: str) -> list[str]:
+        """The terminal reports that `key` was released: its next byte is another press. The keys that act now."""
+        if key != self._key:
+            return []
+        acts = [key] if self._undecided else []
+        self._key, self._undecided = "", False
+        return acts
+
+    def look(self, now: float) -> list[str]:
+        """The keys that act now, since no repeat has followed."""
+        if not self._undecided or now - self._last_byte <= SLOWEST_REPEAT:
+            return []
+        self._undecided = False
+        return [self._key]
