@@ -23,7 +23,7 @@ def pad():
 
 
 def hold(pad, axes, buttons, begin, seconds):
-    """As a device does that is asked all the time; the last time."""
+    """As a device does that is read all the time; the last time."""
     now = begin
     for number in range(round(seconds / PERIOD) + 1):
         now = begin + number * PERIOD

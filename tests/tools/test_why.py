@@ -186,7 +186,7 @@ def test_the_actor_stands_before_the_action(driving):
 
 def test_a_node_that_still_requests_motion_is_named_before_the_reset(driving):
     actions = judge(stopped(driving, E_STOP)).actions
-    assert actions[-2] == ("operator", "stop /send_cmd: while a motion is asked for, a reset is refused")
+    assert actions[-2] == ("operator", "stop /send_cmd: while a motion is requested, a reset is refused")
     assert actions[-1] == ("operator", "then call e_stop_reset")
 
 
@@ -340,9 +340,9 @@ def test_without_a_warning_a_limit_is_that_of_clearance(driving):
 def test_a_refused_reset_says_why(driving):
     facts = stopped(driving, E_STOP)
     facts = replace(
-        facts, safety=replace(facts.safety, refusal=("a motion is still being asked for (stop the sender)",))
+        facts, safety=replace(facts.safety, refusal=("a motion is still being requested (stop the sender)",))
     )
-    assert "refused: a motion is still being asked for" in text(facts)
+    assert "refused: a motion is still being requested" in text(facts)
 
 
 def test_a_master_that_died_is_reported_while_the_robot_drives_on(driving):

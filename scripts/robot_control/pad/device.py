@@ -28,14 +28,14 @@ class EventDevice(Protocol):
         """Codes by type; an axis with its AbsInfo."""
 
     def active_keys(self) -> list[int]:
-        """Buttons that are held, asked of the kernel; OSError: the device is gone."""
+        """Buttons that are held, read from the kernel; OSError: the device is gone."""
 
     def absinfo(self, code: int) -> Any:
-        """Value, min and max of an axis, asked of the kernel; OSError likewise."""
+        """Value, min and max of an axis, read from the kernel; OSError likewise."""
 
 
 class Device:
-    """Asked as a whole at every look: no event can be missed, and a device that is gone says so."""
+    """Read as a whole at every look: no event can be missed, and a device that is gone says so."""
 
     def __init__(self, device: EventDevice) -> None:
         self._device = device

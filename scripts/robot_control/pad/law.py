@@ -50,7 +50,7 @@ class Command:
 
 
 class Pad:
-    """What the person with the pad asks for."""
+    """What the person with the pad commands."""
 
     def __init__(self, parameters: PadParameters | None = None) -> None:
         self._given = parameters or PadParameters()

@@ -181,8 +181,9 @@ def _no_nodes(facts: Facts) -> Answer | None:
         where = "" if facts.namespace == "/" else f" in {facts.namespace}"
         commands = [_launch(facts)]
         commands += [f"rosrun robot_control why.py __ns:={other}" for other in facts.elsewhere]
-        text = f"a robot runs in {', '.join(facts.elsewhere)}: ask there, or start" if facts.elsewhere else "start"
-        return Answer(Verdict.STOPPED, f"No node of the robot runs{where}.", (("", f"{text} one"),), tuple(commands))
+        others = f"a robot runs in {', '.join(facts.elsewhere)}: run why.py there, or " if facts.elsewhere else ""
+        actions = (("", f"{others}start one"),)
+        return Answer(Verdict.STOPPED, f"No node of the robot runs{where}.", actions, tuple(commands))
     if safety is None:
         state = "hangs" if MONITOR in facts.registered and facts.there(MONITOR) else "does not run"
         return Answer(
@@ -244,10 +245,10 @@ def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iter
         if cause.remedy and cause.remedy not in named:
             named.add(cause.remedy)
             yield cause.actor, cause.remedy
-    asked = _asked(facts)
-    if asked and facts.senders:
-        yield "operator", f"stop {', '.join(facts.senders)}: while a motion is asked for, a reset is refused"
-    yield "operator", "then call e_stop_reset" if named or absent or asked else "call e_stop_reset"
+    requested = _requested(facts)
+    if requested and facts.senders:
+        yield "operator", f"stop {', '.join(facts.senders)}: while a motion is requested, a reset is refused"
+    yield "operator", "then call e_stop_reset" if named or absent or requested else "call e_stop_reset"
 
 
 def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[str]:
@@ -273,7 +274,7 @@ def _gate(facts: Facts) -> Answer | None:
 
 def _no_path(facts: Facts) -> Answer | None:
     safety = facts.received()
-    if safety is None or safety.speed_limit >= MOVING or not _asked(facts):
+    if safety is None or safety.speed_limit >= MOVING or not _requested(facts):
         return None
     remedy = "clear the path, and publish it on clearance in metres"
     if facts.seers:
@@ -347,7 +348,7 @@ def _namespace(facts: Facts) -> str:
     return "" if facts.namespace == "/" else f" __ns:={facts.namespace}"
 
 
-def _asked(facts: Facts) -> bool:
+def _requested(facts: Facts) -> bool:
     return any(facts.value(CONTROLLER, key) not in {"", "0"} for key in ("requested_m_s", "requested_rad_s"))
 
 
@@ -379,4 +380,4 @@ def _moving(facts: Facts) -> Answer:
             f"It is commanded to move ({speeds(facts.limited)}) and has not begun to{slow}.",
             (("", "if it stays so: look at ground, motors and torque limits"),),
         )
-    return Answer(Verdict.IDLE, f"It may move{slow}; nothing stands against it, and nothing is asked of it.")
+    return Answer(Verdict.IDLE, f"It may move{slow}; nothing stands against it, and no motion is requested.")

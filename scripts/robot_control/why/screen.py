@@ -126,10 +126,10 @@ def _command(facts: Facts, look: Look) -> Rows:
     sources = facts.sources()
     if sources:
         yield "sources", ", ".join(f"{name}: {state}" for name, state in sources.items()), ""
-    asked = [facts.value(CONTROLLER, key) for key in ("requested_m_s", "requested_rad_s")]
+    requested = [facts.value(CONTROLLER, key) for key in ("requested_m_s", "requested_rad_s")]
     parts = []
-    if look.times and all(asked):
-        parts.append(f"asked {speeds((float(asked[0]), float(asked[1])))}")
+    if look.times and all(requested):
+        parts.append(f"requested {speeds((float(requested[0]), float(requested[1])))}")
     if look.times and facts.limited is not None:
         parts.append(f"after limits {speeds(facts.limited)}")
     if look.times and facts.measured is not None:
