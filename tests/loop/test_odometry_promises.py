@@ -37,8 +37,10 @@ UNTOLD = {  # by one run
     "waves, yaw over simple part's",
 }
 MISSED = {
-    # Kept with fifty, 93 %. Three robots share their luck of 60 times in a row: here 73 %.
-    "NEES of the pose in its band": 55,
+    # Where the full law and the simple part disagree for long, the simple part wins, although a wheel spins: real floors
+    # look like that to the accelerometer (docs/recordings.md). Here 77 % and 26, in one of three robots.
+    "slip above 20 % flagged": 62,
+    "slip, mean NEES of the pose": 33,
 }
 # Robots whose estimate once was lost: tilt and bias pried apart by a body that rocked, calibration pulled off before a
 # slide was found, gravity learned amid a slide, a window that for ever was too large to teach.

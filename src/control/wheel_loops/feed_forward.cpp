@@ -72,7 +72,8 @@ WheelValues FeedForward::efforts(const PlanarTwist& twist, const PlanarTwist& ac
     efforts[i] = kGroundFriction * efforts[i] + effort_per_force_[i] * (0.5 * force + side_[i] * difference) +
                  effort_per_acceleration_[i] * (acceleration.linear + side_[i] * rim_difference);
     const double velocity = turn_per_rim_[i] * (twist.linear + side_[i] * rim_speed_difference);
-    efforts[i] += damping_[i] * velocity + friction_[i] * std::tanh(velocity / kFrictionSpeed);
+    efforts[i] += damping_[i] * velocity;
+    if (friction_[i] != 0) efforts[i] += friction_[i] * std::tanh(velocity / kFrictionSpeed);  // a call of 10 ns
   }
   return efforts;
 }
