@@ -37,7 +37,7 @@ UNTOLD = {  # by one run
     "waves, yaw over simple part's",
 }
 MISSED = {
-    # Where the full law and the simple part disagree for long, the simple part wins, although a wheel spins: real floors
+    # Where full law and simple part disagree for long, the simple part wins, although a wheel spins: real floors
     # look like that to the accelerometer (docs/recordings.md). Here 77 % and 26, in one of three robots.
     "slip above 20 % flagged": 62,
     "slip, mean NEES of the pose": 33,

@@ -78,7 +78,8 @@ def test_every_run_begins_at_rest_and_no_monitor_stops_it(scenario):
 
 def test_on_the_square_nominal_wheels_return_to_where_they_began():
     """But for whole cycles, 0.5 ms of 1 rad/s in each of four turns, and the creep of the wheel loops, less than a
-    count, 0.15 mm, of both wheels, 0.5 m apart, after each of eight ramps: 7 mrad, of squares whose corners are at most 5.7 m away.
+    count, 0.15 mm, of both wheels, 0.5 m apart, after each of eight ramps: 7 mrad, of squares
+    whose corners are at most 5.7 m away.
     """
     trial = draw_trial("umbmark", 0)
     begin, end = trial.marks["cw"][0], trial.marks["end"][0]
