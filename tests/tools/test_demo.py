@@ -1,9 +1,11 @@
 import signal
+import subprocess
 import sys
 import time
 
 import pytest
 from robot_control.demo import main as demo
+from robot_control.demo.arguments import parse
 
 
 def test_each_kind_of_refusal_is_said_once_with_its_remedy():
@@ -69,7 +71,7 @@ def test_the_last_complete_row_of_a_growing_file_is_found(tmp_path):
 @pytest.mark.parametrize("seconds", ["0", "-3", "1.9", "nan", "inf", "ten"])
 def test_a_run_too_short_to_judge_is_refused(seconds, capsys):
     with pytest.raises(SystemExit):
-        demo.parse([f"--seconds={seconds}"])
+        parse([f"--seconds={seconds}"])
     assert "--seconds" in capsys.readouterr().err
 
 
@@ -77,13 +79,21 @@ def test_a_run_too_short_to_judge_is_refused(seconds, capsys):
 def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_starts(out, tmp_path, capsys):
     (tmp_path / "file").touch()
     with pytest.raises(SystemExit) as ended:
-        demo.parse(["--out", str(tmp_path / out)])
+        parse(["--out", str(tmp_path / out)])
     assert ended.value.code == 2
     assert "cannot be written to" in capsys.readouterr().err
 
 
+def test_the_command_line_is_judged_before_anything_is_built(tmp_path):
+    code = (
+        "import sys; sys.modules['robot_control._robot_control'] = None; from robot_control.demo.arguments import parse"
+    )
+    code += f"; parse(['--out', {str(tmp_path)!r}])"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
 def test_the_folder_is_made_and_left_empty(tmp_path):
-    assert demo.parse(["--out", str(tmp_path / "new" / "out")]).out == tmp_path / "new" / "out"
+    assert parse(["--out", str(tmp_path / "new" / "out")]).out == tmp_path / "new" / "out"
     assert list((tmp_path / "new" / "out").iterdir()) == []
 
 

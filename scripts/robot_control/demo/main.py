@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import os
 import re
@@ -10,7 +9,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -19,6 +17,7 @@ from typing import IO
 
 from robot_control.common.file_errors import in_words
 from robot_control.common.run_log import LogError, read_log
+from robot_control.demo.arguments import parse
 from robot_control.demo.loop_timing import processor_time, stolen_share
 from robot_control.demo.run_picture import draw_run
 from robot_control.demo.run_summary import summarize, to_json, to_table
@@ -207,35 +206,8 @@ def _tail(path: Path, lines: int = 25) -> str:
     return "\n".join(path.read_text(errors="replace").splitlines()[-lines:])
 
 
-def _seconds(text: str) -> float:
-    value = float(text)
-    if not 2 <= value <= 3600:
-        raise argparse.ArgumentTypeError(f"{text} is not 2 … 3600 s: ramp, settling and a steady part must fit")
-    return value
-
-
-def _folder(text: str) -> Path:
-    """Makes it and writes in it: a permission bit alone does not show whether that succeeds (read-only, /proc)."""
-    folder = Path(text).resolve()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise argparse.ArgumentTypeError(f"{folder} cannot be written to: {error.strerror}") from None
-    return folder
-
-
 def _interrupt(signal_number: int, _frame: FrameType | None) -> None:
     raise KeyboardInterrupt(signal.Signals(signal_number).name)
-
-
-def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """The command line of scripts/demo: `seconds` and `out`; ends the program on a wrong one."""
-    parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
-    parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
-    parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
-    return parser.parse_args(arguments)
 
 
 def main() -> int:

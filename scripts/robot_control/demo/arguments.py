@@ -1,0 +1,35 @@
+"""The command line of scripts/demo, judged before anything is built: nothing that is built is imported here."""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+
+def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    """The command line of scripts/demo: `seconds` and `out`; ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
+    parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
+    parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
+    return parser.parse_args(arguments)
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 2 <= value <= 3600:
+        raise argparse.ArgumentTypeError(f"{text} is not 2 … 3600 s: ramp, settling and a steady part must fit")
+    return value
+
+
+def _folder(text: str) -> Path:
+    """Makes it and writes in it: a permission bit alone does not show whether that succeeds (read-only, /proc)."""
+    folder = Path(text).resolve()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{folder} cannot be written to: {error.strerror}") from None
+    return folder
