@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import rospy
 from nav_msgs.msg import Odometry
 
 from robot_control.calibrate.law import FloatArray
+from robot_control.common.orientation import yaw_of
 from robot_control.identify.excitation_watch import Pose
 from robot_control.identify.robot import RunningRobot
 
@@ -54,6 +53,5 @@ class CalibratedRobot(RunningRobot):
 
 
 def _pose(message: Odometry) -> Pose:
-    position, q = message.pose.pose.position, message.pose.pose.orientation
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-    return Pose(position.x, position.y, yaw)
+    pose = message.pose.pose
+    return Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation))

@@ -1,6 +1,7 @@
 """The ROS master, with a time limit for its answers, and what its list of publishers says."""
 
 import http.client
+import sys
 import xmlrpc.client
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -17,6 +18,15 @@ class _Transport(xmlrpc.client.Transport):
         connection = super().make_connection(host)
         connection.timeout = TIMEOUT
         return connection
+
+
+def require_master() -> None:
+    """Ends the program with a message where no ROS master answers."""
+    if not rosgraph.is_master_online():
+        sys.exit(
+            f"no ROS master at {rosgraph.get_master_uri()}: start the robot first, for instance with "
+            "roslaunch robot_control sim.launch"
+        )
 
 
 class Master:

@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from robot_control.common.safety_states import DRIVABLE
+
 NO_MONITOR = 3.0
 """s without any safety_status, which comes once per second at least"""
 GONE = 0.5
@@ -41,7 +43,7 @@ class Status:
     @property
     def drivable(self) -> bool:
         """A permit to drive."""
-        return self.state in {"READY", "DRIVE"}
+        return self.state in DRIVABLE
 
     def why(self) -> str:
         """State and cause: STOPPED: the robot hit something (51 m/s^2, limit 30 m/s^2)."""

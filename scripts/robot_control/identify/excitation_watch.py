@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from robot_control.common.safety_states import DRIVABLE
+
 SILENCE = 1.0
 """s without odometry or safety_status (each comes at least once per second); beyond, the robot is not supervised"""
 MARGIN = 0.1
@@ -115,7 +117,7 @@ def _astray(look: Look, start: Pose, reach: float, unanswered: float) -> str:
 
 
 def _stopped(look: Look) -> str:
-    if look.state in ("READY", "DRIVE"):
+    if look.state in DRIVABLE:
         return ""
     why = "; ".join(look.sentences) or (
         f"waiting for {', '.join(look.missing)}" if look.missing else "no cause is reported"

@@ -8,11 +8,11 @@ import sys
 import time
 from typing import Any
 
-import rosgraph
 import rospy
 from sensor_msgs.msg import Joy
 
 from robot_control.common.command_topic import CommandTopic
+from robot_control.common.ros_master import require_master
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.pad.device import PACKAGE, Device, open_device
 from robot_control.pad.law import Pad, PadParameters
@@ -133,8 +133,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
 def main() -> None:
     """Entry point of scripts/pad.py."""
     given = arguments(rospy.myargv(sys.argv)[1:])
-    if not rosgraph.is_master_online():
-        sys.exit(f"no ROS master at {rosgraph.get_master_uri()}: start the robot first")
+    require_master()
     rospy.init_node("pad")
     try:
         with ended_by_signals() as signals:

@@ -9,13 +9,15 @@ import threading
 import time
 from pathlib import Path as FilePath
 
-import rosgraph
 import rospy
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control.common.command_topic import CommandTopic
+from robot_control.common.orientation import yaw_of
+from robot_control.common.ros_master import require_master
+from robot_control.common.safety_states import DRIVABLE
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.drive.send_plan import positive
 from robot_control.msg import DriveState, SafetyStatus
@@ -33,15 +35,12 @@ LOOK = 0.005
 """s between two looks for a new odometry message"""
 REPORT_PERIOD = 1.0
 """s"""
-DRIVABLE = {"READY", "DRIVE"}
 
 
 def pose_of(odometry: Odometry) -> Pose:
     """Of the robot, in the frame odom."""
     pose = odometry.pose.pose
-    q = pose.orientation
-    yaw = math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-    return Pose(pose.position.x, pose.position.y, yaw)
+    return Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation))
 
 
 class Robot:
@@ -247,11 +246,7 @@ def main() -> None:
         points = None if given.path is None else points_of(given.path, given.size)
     except (PathError, OSError) as error:
         sys.exit(f"drive_path.py: {error}")
-    if not rosgraph.is_master_online():
-        sys.exit(
-            f"no ROS master at {rosgraph.get_master_uri()}: start the robot first, for instance with "
-            "roslaunch robot_control sim.launch"
-        )
+    require_master()
     rospy.init_node("drive_path")
     try:
         with ended_by_signals() as signals:

@@ -7,11 +7,12 @@ import sys
 import threading
 import time
 
-import rosgraph
 import rospy
 from std_msgs.msg import Empty
 
 from robot_control.common.command_topic import CommandTopic
+from robot_control.common.ros_master import require_master
+from robot_control.common.safety_states import DRIVABLE
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.drive.send_plan import positive
 from robot_control.teleop.backlog import Backlog
@@ -35,7 +36,6 @@ HEARTBEAT_PERIOD = 0.1
 """s"""
 FRAME = 0.1
 """s between two screens"""
-DRIVABLE = {"READY", "DRIVE"}
 
 
 class Teleop:
@@ -183,11 +183,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
 def main() -> None:
     """Entry point of scripts/teleop.py."""
     given = arguments(rospy.myargv(sys.argv)[1:])
-    if not rosgraph.is_master_online():
-        sys.exit(
-            f"no ROS master at {rosgraph.get_master_uri()}: start the robot first, "
-            "for instance with roslaunch robot_control sim.launch"
-        )
+    require_master()
     try:
         with Terminal() as terminal:
             rospy.init_node("teleop", anonymous=True)

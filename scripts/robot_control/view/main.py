@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 
-import rosgraph
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from visualization_msgs.msg import Marker, MarkerArray
 
+from robot_control.common.ros_master import require_master
 from robot_control.common.topic_sender import ended_by_signals
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.view.scene import Trail, force_arrows, limits_of, status_text, wheels_of
@@ -107,8 +107,7 @@ def main() -> None:
         description="Publishes for RViz, as view.launch starts it: wheel forces, safety state and reasons as markers "
         "on view/markers, the path driven on view/path_driven.",
     ).parse_args(rospy.myargv(sys.argv)[1:])
-    if not rosgraph.is_master_online():
-        sys.exit(f"no ROS master at {rosgraph.get_master_uri()}")
+    require_master()
     rospy.init_node("view_markers")
     with ended_by_signals() as signals:
         view = View()

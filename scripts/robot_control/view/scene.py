@@ -8,6 +8,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from robot_control.common.safety_states import DRIVABLE
+
 WIDTH = 60
 """columns of the text above the robot"""
 MOST_LINES = 6
@@ -95,7 +97,7 @@ def status_text(
     if not sentences:
         lines += [f"limited: {reason}" for reason in reasons]
     wrapped = [part for line in lines for part in textwrap.wrap(line, WIDTH)]
-    colour = RED if state not in {"READY", "DRIVE"} else AMBER if len(lines) > 1 else GREEN
+    colour = RED if state not in DRIVABLE else AMBER if len(lines) > 1 else GREEN
     return Text("\n".join(wrapped[:MOST_LINES]), colour)
 
 

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
+from robot_control.common.safety_states import DRIVABLE
+
 PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
 
@@ -208,7 +210,7 @@ def _paused(facts: Facts) -> Answer | None:
 
 def _stopped(facts: Facts) -> Answer | None:
     safety = facts.received()
-    if safety is None or safety.state in {"READY", "DRIVE"}:
+    if safety is None or safety.state in DRIVABLE:
         return None
     absent = missing_nodes(facts)
     if safety.awaiting_zero and not safety.causes and not absent:

@@ -1,0 +1,4 @@
+"""SafetyStatus.state_name."""
+
+DRIVABLE = frozenset({"READY", "DRIVE"})
+"""The states in which the safety monitor permits to drive."""
