@@ -79,10 +79,9 @@ void Estimator::place_simply() noexcept {
 void Estimator::place_at(const PlanarTrack& track) noexcept {
   const PlanarPose base = base_of(track.pose());
   place({base.x, base.y, base.yaw}, filter_);
-  const PlanarCovariance& c = track.covariance();
-  const double known[3][3] = {{c.xx, c.xy, c.xw}, {c.xy, c.yy, c.yw}, {c.xw, c.yw, c.ww}};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) filter_.covariance(kPlanarAxes[i], kPlanarAxes[j]) += known[i][j];
+  const auto known = track.covariance().pose();
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) filter_.covariance(kPlanarAxes[i], kPlanarAxes[j]) += known[i][j];
   }
 }
 
@@ -125,7 +124,6 @@ void Estimator::accept() noexcept {
 void Estimator::fill_simply(StateFrame& out) const noexcept {
   const PlanarTrack& track = simple_.track(SimplePart::kLong);
   PlanarPose middle = track.pose();
-  const PlanarCovariance& p = track.covariance();
   const double roll = simple_.tilt().roll();
   const double pitch = simple_.tilt().pitch();
   const bool rests = simple_.rest().resting();
@@ -145,7 +143,7 @@ void Estimator::fill_simply(StateFrame& out) const noexcept {
   out.pose_odom.position = {base.x, base.y, parameters_.planar ? 0 : out.pose_odom.position[2]};
   out.pose_odom.orientation =
       parameters_.planar ? Quaternion{0, 0, std::sin(base.yaw / 2), std::cos(base.yaw / 2)} : out.attitude;
-  const double entries[3][3] = {{p.xx, p.xy, p.xw}, {p.xy, p.yy, p.yw}, {p.xw, p.yw, p.ww}};
+  const auto entries = track.covariance().pose();
   constexpr std::size_t kAt[3] = {0, 1, 5};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) out.pose_covariance[6 * kAt[i] + kAt[j]] = entries[i][j];

@@ -7,6 +7,7 @@
 /// ψ̄ in the middle of the way between two readings of that side. (x, y) is the middle of the wheels. Errors: ψ by the
 /// gyro's noise, its bias b and scale, the way by slip noise per √distance; their covariance is that of (x, y, ψ, b).
 
+#include <array>
 #include <cmath>
 #include <initializer_list>
 
@@ -22,6 +23,9 @@ struct PlanarCovariance {
   double xx = 0, xy = 0, yy = 0;
   double xw = 0, yw = 0, ww = 0;  ///< w: yaw
   double xb = 0, yb = 0, wb = 0, bb = 0;
+
+  /// Of x, y and yaw.
+  std::array<std::array<double, 3>, 3> pose() const noexcept { return {{{xx, xy, xw}, {xy, yy, yw}, {xw, yw, ww}}}; }
 };
 
 struct PlanarNoise {
