@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "signals/names.h"
+#include "signals/rotation.h"
 
 namespace robot_control {
 namespace {
@@ -45,21 +46,6 @@ Column column(std::string name, std::string unit, Get, std::size_t joint = 0) {
     };
   }
   return result;
-}
-
-double yaw_of(const Quaternion& q) {
-  const auto [x, y, z, w] = q;
-  return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
-}
-
-double roll_of(const Quaternion& q) {
-  const auto [x, y, z, w] = q;
-  return std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y));
-}
-
-double pitch_of(const Quaternion& q) {
-  const auto [x, y, z, w] = q;
-  return std::asin(std::clamp(2 * (w * y - z * x), -1.0, 1.0));
 }
 
 /// Between the vertical of the start pose and the base's.
@@ -303,25 +289,8 @@ void add_timing(Columns& to) {
 
 }  // namespace
 
-bool Column::present(const JoinedRow& row) const noexcept {
-  switch (source) {
-    case ColumnSource::kRow:
-      return true;
-    case ColumnSource::kDriver:
-      return row.driver != nullptr;
-    case ColumnSource::kEstimator:
-      return row.estimator != nullptr;
-    case ColumnSource::kController:
-      return row.controller != nullptr;
-    case ColumnSource::kMonitor:
-      return row.monitor != nullptr;
-  }
-  return false;
-}
-
-double Column::value(const JoinedRow& row) const noexcept {
-  if (!present(row)) return std::numeric_limits<double>::quiet_NaN();
-  return real != nullptr ? real(row, joint) : static_cast<double>(integer(row, joint));
+PresentSources present_sources(const JoinedRow& row) noexcept {
+  return {true, row.driver != nullptr, row.estimator != nullptr, row.controller != nullptr, row.monitor != nullptr};
 }
 
 std::vector<Column> log_columns(const std::vector<std::string>& joints, bool timing) {

@@ -9,7 +9,9 @@
 /// values among them (signals/drive_tuning.h): a joint that no loop drives has gains 0. `evidence_…`: by what the first
 /// cause became active, else the first warning; unit by its row in signals/cause_names.h.
 
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,11 @@
 
 namespace robot_control {
 
-enum class ColumnSource { kRow, kDriver, kEstimator, kController, kMonitor };
+enum class ColumnSource : std::size_t { kRow, kDriver, kEstimator, kController, kMonitor };
+
+/// Which of the sources a row has, by ColumnSource: the same for all columns, of which there are more than a hundred.
+using PresentSources = std::array<bool, 5>;
+PresentSources present_sources(const JoinedRow& row) noexcept;
 
 enum class ColumnKind {
   kPhysical,  ///< the same in every run of the same seed, script and parameters, whatever the clock
@@ -30,15 +36,18 @@ struct Column {
   ColumnSource source = ColumnSource::kRow;
   ColumnKind kind = ColumnKind::kPhysical;
   std::size_t joint = 0;  ///< index handed to the getters; columns of one joint, sensor or axis only
-  /// Exactly one of the two is set. Call only when `present`.
+  /// Exactly one of the two is set. Call only where `source` is present.
   double (*real)(const JoinedRow& row, std::size_t joint) = nullptr;
   std::int64_t (*integer)(const JoinedRow& row, std::size_t joint) = nullptr;
 
-  /// False: the row's cell is empty.
-  bool present(const JoinedRow& row) const noexcept;
+  /// False: the row's cell is empty. `present`: those of the row.
+  bool filled(const PresentSources& present) const noexcept { return present[static_cast<std::size_t>(source)]; }
 
   /// As a double, for arrays: NaN where the cell is empty. Integers are exact up to 2^53.
-  double value(const JoinedRow& row) const noexcept;
+  double value(const JoinedRow& row, const PresentSources& present) const noexcept {
+    if (!filled(present)) return std::numeric_limits<double>::quiet_NaN();
+    return real != nullptr ? real(row, joint) : static_cast<double>(integer(row, joint));
+  }
 };
 
 /// `joints`: names in the order of RobotModel::joints. `timing`: with the columns of kind kTiming.

@@ -1,16 +1,9 @@
 #include "telemetry/csv_writer.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <filesystem>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace robot_control {
@@ -37,9 +30,8 @@ void append_real(std::string& to, double value) {
 
 }  // namespace
 
-CsvWriter::CsvWriter(std::string path, std::vector<Column> columns, Room room)
-    : path_(std::move(path)), columns_(std::move(columns)), room_(std::move(room)) {
-  open();
+CsvWriter::CsvWriter(std::string path, std::vector<Column> columns, LogFile::Room room)
+    : file_(std::move(path), std::move(room), " (beside run.bag half of it)"), columns_(std::move(columns)) {
   buffer_.reserve(kBufferBytes + 4096);
   for (const Column& column : columns_) buffer_.append(column.name).push_back(',');
   buffer_.back() = '\n';
@@ -54,19 +46,11 @@ CsvWriter::~CsvWriter() {
   }
 }
 
-void CsvWriter::open() {
-  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) fail("cannot make its folder", error.value());
-  file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file_ < 0) fail("cannot be opened", errno);
-}
-
 void CsvWriter::write(const JoinedRow& row) {
-  if (file_ < 0) return;
+  if (!file_.open()) return;
+  const PresentSources present = present_sources(row);
   for (const Column& column : columns_) {
-    if (column.present(row)) {
+    if (column.filled(present)) {
       if (column.real != nullptr) {
         append_real(buffer_, column.real(row, column.joint));
       } else {
@@ -80,56 +64,19 @@ void CsvWriter::write(const JoinedRow& row) {
 }
 
 void CsvWriter::flush() {
-  std::size_t done = 0;
-  if (file_ >= 0 && room_ && !room_(bytes_ + static_cast<std::int64_t>(buffer_.size()))) {
-    end();
-    throw LogError("log " + path_ +
-                   " has ended: telemetry.quota is reached and no older log can be removed; remedy: start telemetry "
-                   "again, then this log may be removed, or raise telemetry.quota or make room");
-  }
-  while (file_ >= 0 && done < buffer_.size()) {
-    const ssize_t taken = ::write(file_, buffer_.data() + done, buffer_.size() - done);
-    if (taken < 0 && errno == EINTR) continue;
-    if (taken < 0) {
-      const int error = errno;
-      count(done);
-      // Half a row would be read as one with less columns. A pipe cannot be cut, nor need it be.
-      [[maybe_unused]] const int cut = ::ftruncate(file_, bytes_);
-      fail("cannot be written", error);
-    }
-    done += static_cast<std::size_t>(taken);
-  }
-  count(done);
+  if (!file_.open()) return;
+  file_.check_presence();
+  file_.append(buffer_, [this](std::string_view taken) {
+    lines_ += static_cast<std::uint64_t>(std::count(taken.begin(), taken.end(), '\n'));
+    return taken.rfind('\n') + 1;  // npos + 1 is 0
+  });
   buffer_.clear();
-}
-
-void CsvWriter::count(std::size_t taken) {
-  const std::string_view text(buffer_.data(), taken);
-  lines_ += static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
-  const std::size_t end = text.rfind('\n');
-  if (end != std::string_view::npos) bytes_ += static_cast<std::int64_t>(end) + 1;
 }
 
 void CsvWriter::close() {
-  if (file_ < 0) return;
+  if (!file_.open()) return;
   flush();
-  // Pipes and devices have nothing to synchronise.
-  if (::fsync(file_) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be completed", errno);
-  const int file = std::exchange(file_, -1);
-  if (::close(file) != 0) fail("cannot be closed", errno);
-}
-
-void CsvWriter::end() noexcept {
-  if (file_ >= 0) ::close(std::exchange(file_, -1));
-  buffer_.clear();
-}
-
-void CsvWriter::fail(const std::string& what, int error) {
-  end();
-  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
-  throw LogError("log " + path_ + " " + what + ": " + std::strerror(error) +
-                 (full ? "; make room or name another folder" : "; name a folder that can be written") +
-                 " (telemetry.directory)");
+  file_.close();
 }
 
 }  // namespace robot_control

@@ -6,60 +6,46 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "telemetry/columns.h"
+#include "telemetry/log_error.h"
+#include "telemetry/log_file.h"
+#include "telemetry/row_log.h"
 
 namespace robot_control {
 
-/// What could not be written, why, what to do.
-class LogError : public std::runtime_error {
+class CsvWriter final : public RowLog {
  public:
-  using std::runtime_error::runtime_error;
-};
-
-class CsvWriter {
- public:
-  /// Whether the file may grow to so many bytes.
-  using Room = std::function<bool(std::int64_t)>;
+  using RowLog::write;
 
   /// Makes the folders above `path` where they are missing, replaces the file and writes the header line. Without
   /// `room` for its buffer the log ends as on a full disk. Throws LogError.
-  CsvWriter(std::string path, std::vector<Column> columns, Room room = {});
+  CsvWriter(std::string path, std::vector<Column> columns, LogFile::Room room = {});
 
   /// Closes without a word; call `close` to learn of errors.
-  ~CsvWriter();
+  ~CsvWriter() override;
   CsvWriter(const CsvWriter&) = delete;
   CsvWriter& operator=(const CsvWriter&) = delete;
 
   /// Throws LogError when the disk does not take the buffer, once; the log then ends with its last whole row, and rows
   /// are ignored.
-  void write(const JoinedRow& row);
+  void write(const JoinedRow& row) override;
 
   /// Hands what is buffered to the system, for processes that read the file meanwhile. Throws LogError.
   void flush();
 
   /// flush, fsync, close. Throws LogError.
-  void close();
+  void close() override;
 
   /// Whole rows that the system has taken.
   std::uint64_t rows() const noexcept { return lines_ == 0 ? 0 : lines_ - 1; }
 
  private:
-  void open();
-  void count(std::size_t taken);
-  void end() noexcept;
-  [[noreturn]] void fail(const std::string& what, int error);
-
-  std::string path_;
+  LogFile file_;
   std::vector<Column> columns_;
-  Room room_;
   std::string buffer_;
-  int file_ = -1;
-  std::int64_t bytes_ = 0;   ///< up to the end of the last whole line
   std::uint64_t lines_ = 0;  ///< whole, the header's included
 };
 

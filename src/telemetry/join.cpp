@@ -6,27 +6,14 @@
 namespace robot_control {
 namespace {
 
-const FrameHead& head_of(const DriverTrace& row) {
-  return row.sensors.head;
-}
-const FrameHead& head_of(const EstimatorTrace& row) {
-  return row.state.head;
-}
-const FrameHead& head_of(const ControllerTrace& row) {
-  return row.command.head;
-}
-const FrameHead& head_of(const MonitorTrace& row) {
-  return row.permit.head;
-}
-
 template <class Row>
 const FrameHead* front_of(const std::deque<Row>& queue) {
   return queue.empty() ? nullptr : &head_of(queue.front());
 }
 
 template <class Row>
-const Row* content_of(const std::deque<Row>& queue, bool has_row) {
-  return has_row && head_of(queue.front()).kind == FrameKind::kFrame ? &queue.front() : nullptr;
+const Row* first_of(const std::deque<Row>& queue, bool has_row) {
+  return has_row ? &queue.front() : nullptr;
 }
 
 }  // namespace
@@ -57,11 +44,41 @@ void Join::add_to(const Row& row) {
   const bool again =
       !queue.empty() && head_of(queue.back()).run == head.run && head.cycle <= head_of(queue.back()).cycle;
   if (run_over || emitted || again) {
-    ++counts_.late[Node];
+    if (!repeats<Node>(row)) ++counts_.late[Node];
     return;
   }
+  newest_[Node] = {row.calls.law.process, head.run, head.cycle};
   queue.push_back(row);
   drain(false);
+}
+
+template <std::size_t Node, class Row>
+bool Join::repeats(const Row& row) {
+  const FrameHead& head = head_of(row);
+  Newest& newest = newest_[Node];
+  if (head.run != newest.run || head.cycle != newest.cycle || row.calls.law.process == newest.process) return false;
+  newest.process = row.calls.law.process;
+  std::get<Node>(repeated_).push_back(row);
+  give_repeated();
+  return true;
+}
+
+void Join::give_repeated() {
+  const auto over = [this](const auto& row) { return std::ranges::count(finished_runs_, head_of(row).run) != 0; };
+  const auto give = [&](auto& queue, auto put) {
+    while (!queue.empty() && over(queue.front())) queue.pop_front();
+    while (!queue.empty() && run_ == head_of(queue.front()).run && last_cycle_ >= head_of(queue.front()).cycle) {
+      const std::uint64_t cycle = head_of(queue.front()).cycle;
+      JoinedRow row{.run = run_index_, .cycle = cycle, .time = row_time(cycle, period_)};
+      row.repeats = true;
+      put(row.laws, queue.front());
+      sink_(row);
+      queue.pop_front();
+    }
+  };
+  give(std::get<1>(repeated_), [](JoinedRow::Laws& laws, const EstimatorTrace& row) { laws.estimator = &row; });
+  give(std::get<2>(repeated_), [](JoinedRow::Laws& laws, const ControllerTrace& row) { laws.controller = &row; });
+  give(std::get<3>(repeated_), [](JoinedRow::Laws& laws, const MonitorTrace& row) { laws.monitor = &row; });
 }
 
 void Join::finish() {
@@ -117,15 +134,15 @@ void Join::emit(std::uint64_t cycle) {
   row.run = run_index_;
   row.cycle = cycle;
   row.time = row_time(cycle, period_);
-  row.driver = content_of(std::get<0>(queues_), has[0]);
-  row.estimator = content_of(std::get<1>(queues_), has[1]);
-  row.controller = content_of(std::get<2>(queues_), has[2]);
-  row.monitor = content_of(std::get<3>(queues_), has[3]);
+  row.driver = first_of(std::get<0>(queues_), has[0]);
+  row.set({first_of(std::get<1>(queues_), has[1]), first_of(std::get<2>(queues_), has[2]),
+           first_of(std::get<3>(queues_), has[3])});
   sink_(row);
   ++counts_.emitted;
   last_cycle_ = cycle;
   std::size_t node = 0;
   std::apply([&](auto&... queue) { ((has[node++] ? queue.pop_front() : void()), ...); }, queues_);
+  give_repeated();
 }
 
 }  // namespace robot_control

@@ -5,7 +5,8 @@
 /// as soon as every node has given its row k or has moved past k, to a later cycle or a later run. A run is over
 /// when every node has left it; of the runs that follow, the one whose sensor stamp is earliest comes next. A
 /// dead or missing node would hold that up for ever: once another one is `window` rows ahead, its cells stay
-/// empty. What it delivers for cycles already emitted is late: dropped and counted.
+/// empty. What it delivers for cycles already emitted is late: dropped and counted. The first row of a node that was
+/// started again may answer a cycle that its predecessor had answered: it is given on by itself (JoinedRow::repeats).
 
 #include <array>
 #include <cstdint>
@@ -53,6 +54,9 @@ class Join {
   void drain(bool force);
   void begin_run(std::uint64_t run);
   void emit(std::uint64_t cycle);
+  template <std::size_t Node, class Row>
+  bool repeats(const Row& row);
+  void give_repeated();
 
   double period_;
   std::function<void(const JoinedRow&)> sink_;
@@ -62,6 +66,13 @@ class Join {
   std::int64_t run_index_ = -1;
   std::optional<std::uint64_t> last_cycle_;  ///< emitted of it
   std::vector<std::uint64_t> finished_runs_;
+  struct Newest {
+    std::uint64_t process = 0;
+    std::uint64_t run = 0;
+    std::uint64_t cycle = 0;
+  };
+  std::array<Newest, 4> newest_{};  ///< of each node
+  Queues repeated_;                 ///< wait until the cycle that they repeat is emitted
   JoinCounts counts_;
 };
 

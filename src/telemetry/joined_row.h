@@ -17,6 +17,29 @@ struct JoinedRow {
   const EstimatorTrace* estimator = nullptr;
   const ControllerTrace* controller = nullptr;
   const MonitorTrace* monitor = nullptr;
+
+  /// The same rows, also where an injected fault suppressed the frame: the law ran, and a token was published.
+  struct Laws {
+    const EstimatorTrace* estimator = nullptr;
+    const ControllerTrace* controller = nullptr;
+    const MonitorTrace* monitor = nullptr;
+  };
+  Laws laws{};
+
+  /// A node that was started again answered a cycle that its predecessor had answered: of its row alone, in `laws`, and
+  /// no row of the run.
+  bool repeats = false;
+
+  /// Fills in the rows of the laws, and of them those whose frame was published.
+  void set(const Laws& ran) noexcept {
+    laws = ran;
+    if (laws.estimator != nullptr && published(laws.estimator->state.head)) estimator = laws.estimator;
+    if (laws.controller != nullptr && published(laws.controller->command.head)) controller = laws.controller;
+    if (laws.monitor != nullptr && published(laws.monitor->permit.head)) monitor = laws.monitor;
+  }
+
+ private:
+  static bool published(const FrameHead& head) noexcept { return head.kind == FrameKind::kFrame; }
 };
 
 /// The one way to compute `time`, so that equal cycles have equal bits wherever a row is made.

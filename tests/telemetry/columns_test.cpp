@@ -35,7 +35,7 @@ class Columns : public ::testing::Test {
   double value(const std::string& name) const {
     const auto column = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
     EXPECT_NE(column, columns.end()) << name;
-    return column == columns.end() ? std::nan("") : column->value(row);
+    return column == columns.end() ? std::nan("") : column->value(row, present_sources(row));
   }
 
   DriverTrace driver = driver_row(1, 1234);
@@ -160,8 +160,9 @@ TEST_F(Columns, AreEmptyWhereTheNodeHasNoFrame) {
   monitor.permit.evidence[0].cause = kCauseTilt;
   row.estimator = nullptr;
   for (const Column& column : columns) {
-    EXPECT_EQ(column.present(row), column.source != ColumnSource::kEstimator) << column.name;
-    EXPECT_EQ(std::isnan(column.value(row)), column.source == ColumnSource::kEstimator) << column.name;
+    EXPECT_EQ(column.filled(present_sources(row)), column.source != ColumnSource::kEstimator) << column.name;
+    EXPECT_EQ(std::isnan(column.value(row, present_sources(row))), column.source == ColumnSource::kEstimator)
+        << column.name;
   }
 }
 

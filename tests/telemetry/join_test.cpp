@@ -140,6 +140,24 @@ TEST_F(JoinTest, DropsTheSecondRowOfACycle) {
   EXPECT_EQ(join.counts().late[1], 1u);
 }
 
+TEST_F(JoinTest, GivesTheRowOfARestartedNodeThatAnswersACycleAgainAfterThatCycle) {
+  std::vector<std::string> given;
+  Join each(kPeriod, [&](const JoinedRow& row) {
+    given.push_back(std::to_string(row.cycle) + (row.repeats ? " again" : ""));
+    EXPECT_TRUE(!row.repeats || row.laws.controller->calls.law.process == 2);
+  });
+  ControllerTrace again = controller_row(1, 0);
+  again.calls.law.process = 2;
+  each.add(controller_row(1, 0));
+  each.add(again);
+  each.add(driver_row(1, 0));
+  each.add(estimator_row(1, 0));
+  EXPECT_THAT(given, IsEmpty());
+  each.add(monitor_row(1, 0));
+  EXPECT_THAT(given, ElementsAre("0", "0 again"));
+  EXPECT_EQ(each.counts().late[2], 0u);
+}
+
 TEST_F(JoinTest, NumbersRunsInTheirOrder) {
   cycle(50, 0);
   cycle(50, 1);

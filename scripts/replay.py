@@ -1,0 +1,7 @@
+#!/usr/bin/python3
+"""Runs the laws of a log again and compares every bit of what they gave; see --help."""
+
+from robot_control.replay.main import main
+
+if __name__ == "__main__":
+    main()

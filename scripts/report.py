@@ -1,0 +1,6 @@
+#!/usr/bin/python3
+"""One page and a verdict of a log: report.py run.bag|run.csv."""
+
+from robot_control.report.main import main
+
+main()

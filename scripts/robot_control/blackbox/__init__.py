@@ -1,0 +1,1 @@
+"""blackbox.py: the last minute before a crash as run.bag."""

@@ -1,0 +1,16 @@
+"""Optional packages of PyPI, in environments of their own beside Debian's."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from robot_control._robot_control import project_folder
+
+
+def use_packages(section: str) -> None:
+    """Makes what `scripts/setup --SECTION` has installed importable, where it has."""
+    packages = Path(project_folder, "build", section, "lib")
+    for path in map(str, packages.glob("python3.*/site-packages")):
+        if path not in sys.path:
+            sys.path.append(path)

@@ -1,0 +1,1 @@
+"""export.py: run.bag as CSV, MCAP, or standard topics."""

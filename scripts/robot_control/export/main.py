@@ -1,0 +1,63 @@
+"""The command line of export.py."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from robot_control._robot_control import BagError, BagReader, TraceError, write_run_csv
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import NewFiles, fit_for_message
+from robot_control.common.run_log import LogError, is_bag
+from robot_control.export.mcap_file import McapError, write_mcap
+
+EPILOG = """
+--csv     the table run.csv: a row per cycle, columns with the names of docs/log.md; outputs with the precision of
+          float32
+--mcap    every message as it is, for Foxglove; of any ROS 1 bag. Needs PyPI's mcap
+--topics  odom, tf, joint_states and cmd_vel, for `rosbag play --clock` and RViz, of the last run
+"""
+
+REFUSALS = (TraceError, LogError, McapError, OSError, ValueError, RuntimeError)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Entry point of scripts/export.py: exit code 0 with everything written, else 1 with one message, and nothing."""
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if (options.csv, options.mcap, options.topics) == (None, None, None):
+        parser.error("nothing is to be written: name an output with --csv, --mcap or --topics")
+    try:
+        if not is_bag(options.input):
+            raise LogError(f"{options.input} is no ROS bag")
+        cut = BagReader(str(options.input)).cut
+        with NewFiles() as files:
+            if options.csv is not None:
+                write_run_csv(str(options.input), str(files.name(options.csv)))
+            if options.mcap is not None:
+                write_mcap(options.input, files.name(options.mcap))
+            if options.topics is not None:
+                from robot_control.export.topics import write_topics
+
+                write_topics(options.input, files.name(options.topics))
+        if cut:
+            print(f"export.py: {options.input}: {fit_for_message(cut)}", file=sys.stderr)
+    except BagError as error:
+        sys.exit(f"export.py: {fit_for_message(f'{options.input}: {error}')}")
+    except REFUSALS as error:
+        sys.exit(f"export.py: {fit_for_message(in_words(error))}")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="export.py",
+        description="Turns a log of every cycle, run.bag, into other formats.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("input", type=Path, help="run.bag")
+    parser.add_argument("--csv", type=Path, metavar="OUT.csv")
+    parser.add_argument("--mcap", type=Path, metavar="OUT.mcap")
+    parser.add_argument("--topics", type=Path, metavar="OUT.bag")
+    return parser

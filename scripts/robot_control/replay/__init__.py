@@ -1,0 +1,1 @@
+"""replay.py: the laws of a log, run again."""

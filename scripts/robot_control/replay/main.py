@@ -1,0 +1,130 @@
+"""The command line of replay.py."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from robot_control import ParameterError, RobotError
+from robot_control._robot_control import BagError, replay_log
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import fit_for_message
+from robot_control.common.picture_file import check_picture
+from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup
+
+LAWS = ("gate", "state_estimator", "diff_drive_controller", "safety_monitor")
+VARIED = ("state_estimator.", "safety_monitor.")
+WITHOUT_EFFECT = "the controller reads it at its start alone, or it belongs to no law that is varied"
+MOST_LINES = 20
+EXACT, DIFFERENT, REFUSED = 0, 1, 2
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point of scripts/replay.py: 0 exact, 1 something differs, 2 it cannot be replayed."""
+    options = parse(arguments)
+    try:
+        if options.set or options.params:
+            check_plot(options.plot, options.log)
+        with tempfile.TemporaryDirectory() as folder:
+            setup = recorded_setup(options.log, Path(folder))
+            varied = setup.varied(options.params, options.set) if options.set or options.params else None
+            report = replay_log(str(options.log), setup.layers(), varied)
+        print(text_of(report, setup, options.law))
+        for key in without_effect([key for key, _ in options.set], report["live"]):
+            print(f"! {key} has no effect here: {WITHOUT_EFFECT}")
+        if varied is not None:
+            from robot_control.replay.picture import draw  # noqa: PLC0415 (matplotlib takes a second)
+
+            draw(report["varied"], report["period"], options.plot)
+            print(f"wrote {options.plot}: what the laws gave, and would have given on the same inputs (open loop)")
+    except BagError as error:
+        print(f"replay.py: {fit_for_message(f'{options.log}: {error}')}", file=sys.stderr)
+        sys.exit(REFUSED)
+    except (ParameterError, RobotError, RuntimeError, OSError, ValueError) as error:
+        print(f"replay.py: {fit_for_message(in_words(error))}", file=sys.stderr)
+        sys.exit(REFUSED)
+    sys.exit(verdict(report, options.law))
+
+
+def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(
+        prog="replay.py",
+        description="Runs the laws of a log again, from its rows alone, and compares every bit of what they gave. "
+        "Exit code 0: all is the same; 1: something differs; 2: the log cannot be replayed.",
+    )
+    parser.add_argument("log", type=Path, metavar="LOG", help="run.bag")
+    parser.add_argument("--law", choices=[*LAWS, "estimator", "controller", "monitor"], help="of this law alone")
+    what_if = parser.add_argument_group("what if", "the laws with other parameters beside, on the recorded inputs")
+    what_if.add_argument(
+        "--set", action="append", default=[], type=_assignment, metavar="NODE.PARAMETER=VALUE", help="repeatable"
+    )
+    what_if.add_argument("--params", type=Path, metavar="FILE", help="YAML, laid over the parameters of the log")
+    what_if.add_argument("--plot", type=Path, default=Path("replay.png"), help="picture of both; default: %(default)s")
+    return parser.parse_args(arguments)
+
+
+def check_plot(path: Path, log: Path) -> None:
+    """Before minutes of work.
+
+    Raises:
+        ValueError: no picture can be written there.
+    """
+    if path.exists() and log.exists() and path.samefile(log):
+        raise ValueError(f"{path} is the log itself; give the picture another name")
+    check_picture(path)
+
+
+def _assignment(text: str) -> tuple[str, str]:
+    key, equals, value = text.partition("=")
+    if not equals or "." not in key:
+        raise argparse.ArgumentTypeError(f"{text} is not NODE.PARAMETER=VALUE")
+    return key, value
+
+
+def chosen(law: str | None) -> list[str]:
+    """Full names of the laws that are meant."""
+    return [name for name in LAWS if law is None or name.endswith(law)]
+
+
+def without_effect(keys: Sequence[str], live: Sequence[str]) -> list[str]:
+    """Of the keys that are set, those that no law takes over; `live`: of the controller, it takes them over."""
+    taken = [f"diff_drive_controller.{key}" for key in live]
+    return [key for key in keys if not key.startswith(("robot.", *VARIED)) and not key.startswith(tuple(taken))]
+
+
+def verdict(report: Mapping[str, Any], law: str | None) -> int:
+    """The exit code."""
+    laws = [report["laws"][name] for name in chosen(law)]
+    if not any(each["compared"] for each in laws):
+        return REFUSED
+    return DIFFERENT if any(each["different"] for each in laws) else EXACT
+
+
+def text_of(report: Mapping[str, Any], setup: RecordedSetup, law: str | None) -> str:
+    """What was found."""
+    lines = [f"{setup.path}: {setup.robot}", *(f"! {doubt}" for doubt in report["doubts"])]
+    if report["cut"]:
+        lines.append(f"! {report['cut']}")
+    lines.append(f"{'law':<24}{'compared':>10}{'different':>11}{'not compared':>14}")
+    for name in chosen(law):
+        counts = report["laws"][name]
+        lines.append(f"{name:<24}{counts['compared']:>10}{counts['different']:>11}{counts['not_compared']:>14}")
+    lines += _listed("differs", _of(report["differences"], law)) + _listed("not compared", _of(report["gaps"], law))
+    if not any(report["laws"][name]["compared"] for name in chosen(law)):
+        lines.append("nothing was compared: there is no snapshot of a law in this log")
+    return "\n".join(lines)
+
+
+def _of(sentences: Sequence[str], law: str | None) -> list[str]:
+    return [text for text in sentences if text.startswith(tuple(chosen(law)))]
+
+
+def _listed(what: str, sentences: Sequence[str]) -> list[str]:
+    lines = [f"{what}: {text}" for text in sentences[:MOST_LINES]]
+    more = len(sentences) - MOST_LINES
+    return [*lines, f"{what}: {more} more"] if more > 0 else lines

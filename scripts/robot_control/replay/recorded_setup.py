@@ -1,0 +1,47 @@
+"""The robot and the parameters of a log, as files from which laws can be made."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from robot_control._robot_control import read_run_header
+from robot_control.common.files import LARGEST_TABLE, check_input
+
+Layers = tuple[str, list[tuple[str, str]]]
+"""path of a parameter file, and what is laid over it"""
+
+
+@dataclass(frozen=True)
+class RecordedSetup:
+    """As the header of a log has it."""
+
+    path: Path
+    robot: str
+    parameters: Path
+    urdf: Path
+
+    def layers(self) -> Layers:
+        """The parameters of the log."""
+        return str(self.parameters), [("robot.urdf", str(self.urdf))]
+
+    def varied(self, params: Path | None, values: Sequence[tuple[str, str]]) -> Layers:
+        """Those of another file and `values`, to be laid over the parameters of the log."""
+        path, over = self.layers()
+        return (path if params is None else str(params)), [*over, *values]
+
+
+def recorded_setup(log: Path, folder: Path) -> RecordedSetup:
+    """Writes the texts in the header of `log` into `folder`.
+
+    Raises:
+        InputFileError, OSError: it is no file to read.
+        RuntimeError: it is no log, or a damaged one.
+    """
+    check_input(log, LARGEST_TABLE)  # an error that names the file
+    header = read_run_header(str(log))
+    parameters, urdf = folder / "parameters.yaml", folder / "robot.urdf"
+    parameters.write_text(header["parameters"])
+    urdf.write_text(header["urdf"])
+    return RecordedSetup(log, header["robot"], parameters, urdf)

@@ -1,0 +1,106 @@
+"""A log as the report reads it: columns that may be absent, counters, durations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robot_control.common.run_log import BoolArray, FloatArray, Log, RunLog, joint_names
+from robot_control.common.signal_names import mask_of, number_of
+from robot_control.demo.brakes import GATE_BRAKE
+from robot_control.demo.loop_timing import while_all_ran
+
+IntArray = NDArray[np.int64]
+
+PERMIT_DRIVE = number_of("PermitAction", "drive")
+COMMAND_HELD, CONTROLLER_BRAKE = mask_of("GateReason", "command_held"), mask_of("GateReason", "controller_brake")
+
+MOVING = 0.01
+"""m/s and rad/s; slower is standing"""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One run."""
+
+    name: str
+    log: Log
+    lost: int | None = None
+    """Rows that telemetry counted as lost; None: the file does not hold it, and every cycle that is absent is lost."""
+    part: str = ""
+    """Which part of the file is here, where it was not completed or holds several runs; empty: all of it."""
+
+    @property
+    def time(self) -> FloatArray:
+        """s since the begin of the run."""
+        return self.log["time"]
+
+    @property
+    def period(self) -> float:
+        """s of a cycle."""
+        steps, cycles = np.diff(self.time), np.diff(self.log["cycle"])
+        known = cycles > 0
+        return float(np.median(steps[known] / cycles[known])) if known.any() else float("nan")
+
+    @property
+    def joints(self) -> list[str]:
+        """Names, in the order of the log."""
+        return joint_names(self.log)
+
+    def column(self, name: str) -> FloatArray:
+        """NaN in every row where the log has no such column."""
+        values = self.log.get(name)
+        return np.full(self.time.shape, np.nan) if values is None else values
+
+    def has(self, *names: str) -> bool:
+        """All of them have at least one value."""
+        return all(name in self.log and not np.all(np.isnan(self.log[name])) for name in names)
+
+    def count(self, name: str) -> float:
+        """What a counter, which restarts at 0 with its node, counted; NaN: it is not in the log."""
+        values = self.column(name)
+        values = values[~np.isnan(values)]
+        if values.size == 0:
+            return float("nan")
+        steps = np.diff(values)
+        return float(values[0] + steps[steps > 0].sum())
+
+    def bits(self, name: str) -> IntArray:
+        """A column of bits; 0 where its node published nothing."""
+        return np.nan_to_num(self.column(name)).astype(np.int64)
+
+    def driving(self) -> BoolArray:
+        """The monitor permits it, and motion is commanded or there."""
+        moving = np.zeros(self.time.shape, dtype=bool)
+        for name in ("limited_linear", "limited_angular", "estimate_linear", "estimate_angular"):
+            moving |= np.abs(np.nan_to_num(self.column(name))) > MOVING
+        permitted: BoolArray = self.column("permit_action") == PERMIT_DRIVE
+        moving &= permitted
+        return moving
+
+    def gate_braked(self) -> BoolArray:
+        """The gate braked while driving.
+
+        A command k-1 is executed in tick k; the brake that the controller itself commands at standstill is none.
+        """
+        driving = self.driving()
+        standing = np.ones(self.time.shape, dtype=bool)
+        for name in ("limited_linear", "limited_angular"):
+            standing &= np.abs(np.nan_to_num(self.column(name))) < MOVING
+        by_controller = self.bits("gate_reasons") & ~COMMAND_HELD == CONTROLLER_BRAKE
+        braked: BoolArray = self.column("gate_verdict") == GATE_BRAKE
+        braked &= driving & np.roll(driving, 1) & ~(by_controller & standing)
+        return braked
+
+
+def drive_of(path: Path, run: RunLog) -> Drive:
+    """Without the tail in which the nodes end one after the other."""
+    log: Log = run.columns
+    if "command_published_ns" in log and "permit_published_ns" in log:
+        log = while_all_ran(log)
+    lost = run.lost if run.header else None
+    name = path.stem if path.stem != "run" else path.resolve().parent.name + "/" + path.name
+    return Drive(name, log, lost, "; ".join(run.notes))

@@ -1,0 +1,154 @@
+"""What happened: stops, brakes, slip, warnings, lost rows, each with its evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from robot_control.common import signal_names as names
+from robot_control.report.drive import MOVING, Drive, IntArray
+from robot_control.report.figures import DEGRADED, SLIP, STOPPED
+from robot_control.report.intervals import intervals, joined
+
+TOGETHER = 0.5
+"""s: two of a kind that are closer are one"""
+STOPPING = names.number_of("SupervisorState", "STOPPING")
+LONGEST_STOP = 10.0
+"""s in which a robot is expected to come to rest"""
+
+
+@dataclass(frozen=True)
+class Incident:
+    """One event."""
+
+    severity: int
+    """0: a latched stop, 1: a brake, 2: a warning, 3: a note"""
+    kind: str
+    begin: float
+    """s"""
+    end: float
+    """s"""
+    title: str
+    evidence: list[str] = field(default_factory=list)
+
+
+def incidents(drive: Drive) -> list[Incident]:
+    """In the order of time."""
+    found = [*_stops(drive), *_brakes(drive), *_slips(drive), *_warnings(drive), *_faults(drive), *_gaps(drive)]
+    return sorted(found, key=lambda one: (one.begin, one.severity))
+
+
+def _span(drive: Drive, begin: int, end: int) -> tuple[float, float]:
+    return float(drive.time[begin]), float(drive.time[min(end, drive.time.size - 1)])
+
+
+def _rows(drive: Drive, seconds: float) -> int:
+    return max(1, round(seconds / drive.period))
+
+
+def _union(values: IntArray) -> int:
+    return int(np.bitwise_or.reduce(values, initial=0))
+
+
+def _stops(drive: Drive) -> Iterator[Incident]:
+    state = drive.column("supervisor_state")
+    causes = drive.bits("permit_causes")
+    for begin, end in intervals(np.isin(state, (*STOPPED, STOPPING)) & (causes != 0)):
+        of = names.bits_in("StopCause", _union(causes[begin:end]))
+        title = ", ".join(one.name for one in of)
+        evidence = [one.sentence + (f" (remedy: {one.remedy})" if one.remedy else "") for one in of]
+        evidence += [*_measured(drive, begin), _standstill(drive, begin)]
+        if end < drive.time.size:
+            evidence.append(f"released after {drive.time[end] - drive.time[begin]:.2f} s")
+        else:
+            evidence.append("not released until the end of the log")
+        yield Incident(0, "stop", *_span(drive, begin, end), title, evidence)
+
+
+def _measured(drive: Drive, row: int) -> Iterator[str]:
+    cause = int(drive.bits("evidence_cause")[row])
+    value, limit = drive.column("evidence_value")[row], drive.column("evidence_limit")[row]
+    if cause != 0 and not np.isnan(value):
+        of = names.bit("StopCause", cause.bit_length() - 1)
+        if of.unit:
+            yield f"{of.name}: measured {value:.4g} {of.unit}, limit {limit:.4g} {of.unit}"
+
+
+def _standstill(drive: Drive, row: int) -> str:
+    """How far the robot came after it."""
+    speed = np.abs(drive.column("truth_linear" if drive.has("truth_linear") else "estimate_linear"))
+    turning = np.abs(drive.column("truth_angular" if drive.has("truth_angular") else "estimate_angular"))
+    after = slice(row, row + _rows(drive, LONGEST_STOP))
+    still = np.flatnonzero((speed[after] < MOVING) & (turning[after] < MOVING))
+    begin = f"{speed[row]:.2f} m/s, {turning[row]:.2f} rad/s"
+    if still.size == 0:
+        return f"at {begin}; no standstill within {LONGEST_STOP:g} s"
+    if still[0] == 0:
+        return "the robot stood"
+    rows = slice(row, row + int(still[0]) + 1)
+    way = float(np.nansum(speed[rows]) * drive.period)
+    return f"at {begin}; standstill after {drive.time[rows][-1] - drive.time[row]:.3f} s and {way:.3f} m"
+
+
+def _brakes(drive: Drive) -> Iterator[Incident]:
+    """Of the gate alone: what the monitor ordered is a stop."""
+    braked = drive.gate_braked()
+    reasons = drive.bits("gate_reasons")
+    for begin, end in joined(intervals(braked), _rows(drive, TOGETHER)):
+        of = names.bits_in("GateReason", _union(reasons[begin:end][braked[begin:end]]))
+        cycles = int(np.count_nonzero(braked[begin:end]))
+        title = ", ".join(one.name for one in of) or "brake"
+        yield Incident(
+            1, "brake", *_span(drive, begin, end), title, [f"{cycles} cycles", *(one.sentence for one in of)]
+        )
+
+
+def _slips(drive: Drive) -> Iterator[Incident]:
+    flags, slip = drive.bits("estimate_flags"), drive.bits("estimate_slip")
+    for begin, end in joined(intervals(flags & SLIP != 0), _rows(drive, TOGETHER)):
+        of = names.bits_in("SlipReason", _union(slip[begin:end]))
+        title = ", ".join(one.name for one in of) or "slip"
+        yield Incident(3, "slip", *_span(drive, begin, end), title, [one.sentence for one in of])
+    for begin, end in joined(intervals(flags & DEGRADED != 0), _rows(drive, TOGETHER)):
+        title = "a correction of slip was taken back, or the gyro's bias is not known yet"
+        yield Incident(2, "degraded", *_span(drive, begin, end), title)
+
+
+def _warnings(drive: Drive) -> Iterator[Incident]:
+    yield from _bits(drive, "permit_warnings", "StopCause", "warning")
+
+
+def _faults(drive: Drive) -> Iterator[Incident]:
+    yield from _bits(drive, "faults", "DriverFault", "driver fault")
+    injected = drive.column("injected")
+    for begin, end in intervals(np.nan_to_num(injected) != 0):
+        yield Incident(3, "injected fault", *_span(drive, begin, end), f"code {int(injected[begin])}")
+
+
+def _bits(drive: Drive, column: str, kind: str, what: str) -> Iterator[Incident]:
+    values = drive.bits(column)
+    for number in range(_union(values).bit_length()):
+        of = names.bit(kind, number)
+        for begin, end in joined(intervals(values >> number & 1 != 0), _rows(drive, TOGETHER)):
+            remedy = [f"remedy: {of.remedy}"] if of.remedy else []
+            yield Incident(2, what, *_span(drive, begin, end), of.name, [of.sentence, *remedy])
+
+
+def _gaps(drive: Drive) -> Iterator[Incident]:
+    steps = np.diff(drive.log["cycle"])
+    # Where none was lost, what is not in the log was not to be recorded: telemetry.record is `motion`.
+    for row in np.flatnonzero(steps > 1).tolist() if drive.lost != 0 else ():
+        span = float(drive.time[row]), float(drive.time[row + 1])
+        yield Incident(2, "rows lost", *span, f"{int(steps[row]) - 1} cycles are not in the log")
+    nodes = (("estimate_x", "estimator"), ("command_reasons", "controller"), ("permit_action", "monitor"))
+    absent = {node: np.isnan(drive.column(column)) for column, node in nodes if column in drive.log}
+    if not absent:
+        return
+    for begin, end in joined(intervals(np.any(list(absent.values()), axis=0)), _rows(drive, TOGETHER)):
+        if begin > 0 or end - begin > 1:  # in its first tick a driver is alone
+            of = [node for node, rows in absent.items() if rows[begin:end].any()]
+            cycles = int(np.any([rows[begin:end] for rows in absent.values()], axis=0).sum())
+            title = f"{cycles} cycles without a row of {', '.join(of)}"
+            yield Incident(2, "node absent", *_span(drive, begin, end), title)

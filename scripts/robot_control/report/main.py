@@ -1,0 +1,89 @@
+"""report.py: one page and a verdict of a log, or of two."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from robot_control.common.file_errors import in_words
+from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.pypi import use_packages
+from robot_control.common.run_log import read_run
+from robot_control.installed_files import share_file
+from robot_control.report.budgets import Judged, Verdict, failed, judge, read_budgets
+from robot_control.report.drive import Drive, drive_of
+from robot_control.report.figures import figures
+from robot_control.report.incidents import incidents
+
+BUDGETS = "config/report_budgets.yaml"
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Writes the page, prints the verdict; exits with 1 and one message when something is refused."""
+    options = _parser().parse_args(arguments)
+    try:
+        judged = report(options)
+    except (ValueError, OSError) as error:
+        sys.exit(f"report.py: {fit_for_message(in_words(error))}")
+    except MemoryError:
+        sys.exit("report.py: the log needs more memory than there is; cut it into pieces")
+    wrong = [one for of in judged for one in failed(of)]
+    if options.ci and wrong:
+        sys.exit(f"report.py: {len(wrong)} figures break their budget: {', '.join(one.figure.name for one in wrong)}")
+
+
+def report(options: argparse.Namespace) -> list[list[Judged]]:
+    """The verdicts of each log; they are printed, and the page is there.
+
+    Raises:
+        ValueError, OSError: one message.
+    """
+    paths = options.compare or [options.log]
+    drives = [drive_of(path, read_run(path)) for path in paths]
+    found = [figures(drive) for drive in drives]
+    budgets = read_budgets(options.budgets or Path(share_file(BUDGETS)), found[0])
+    judged = [judge(of, budgets) for of in found]
+    for drive, of in zip(drives, judged, strict=True):
+        if drive.part:
+            print(f"report.py: {drive.name}: {fit_for_message(drive.part)}", file=sys.stderr)
+        print("\n".join(_table(drive, of)))
+    if not (options.ci and options.out is None):
+        out = options.out or paths[0].with_suffix(".html")
+        _write(out, drives, judged)
+        print(f"wrote {out}", file=sys.stderr)
+    return judged
+
+
+def _table(drive: Drive, judged: list[Judged]) -> list[str]:
+    lines = [drive.name]
+    for one in judged:
+        if one.verdict is not Verdict.UNJUDGED:
+            figure = one.figure
+            bounds = " ".join(f"{sign} {figure.shown(bound)}" for sign, bound in one.bounds)
+            lines.append(f"  {figure.name:<28}{figure.shown(figure.value):>16}{bounds:>16}   {one.verdict.value}")
+    return lines
+
+
+def _write(out: Path, drives: list[Drive], judged: list[list[Judged]]) -> None:
+    for drive in drives:
+        if math.isnan(drive.period):
+            raise ValueError(f"{drive.name}: there are no two cycles with a time, and nothing to draw")
+    use_packages("report")
+    try:
+        from robot_control.report.page import page
+    except ImportError as error:
+        raise ValueError(f"the page needs Bokeh ({error}): scripts/setup --report; --ci alone needs no page") from None
+    write_text(out, page(drives, judged, [incidents(drive) for drive in drives]))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="report.py", description=__doc__)
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("log", nargs="?", type=Path, help="run.csv, or a bag of trace")
+    which.add_argument("--compare", nargs=2, type=Path, metavar=("A", "B"), help="two logs beside each other")
+    parser.add_argument("--out", type=Path, help="the page; default: the log's name with .html")
+    parser.add_argument("--budgets", type=Path, help=f"default: {BUDGETS} of this package")
+    parser.add_argument("--ci", action="store_true", help="exit code 1 if a budget is broken; a page only with --out")
+    return parser

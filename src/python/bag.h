@@ -1,0 +1,10 @@
+#pragma once
+/// BagReader for Python.
+
+#include <pybind11/pybind11.h>
+
+namespace robot_control {
+
+void bind_bag(pybind11::module_& module);
+
+}  // namespace robot_control

@@ -1,0 +1,144 @@
+#include "python/log_replay.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "parameters/live_parameters.h"
+#include "python/loop_replay.h"
+#include "recording/trace_reader.h"
+#include "replay/replay_error.h"
+#include "runtime/log_header.h"
+
+namespace py = pybind11;
+
+namespace robot_control {
+namespace {
+
+/// Path of a file, and what is laid over it.
+using Layers = std::pair<std::string, std::vector<std::pair<std::string, std::string>>>;
+
+/// Over those of the file `base`.
+Parameters parameters_in(const Layers& layers, const std::string& base) {
+  std::vector<Overlay> overlays;
+  for (const auto& [key, text] : layers.second) overlays.push_back({.path = key, .text = text, .origin = "replay"});
+  return read_parameters(layers.first, overlays, base);
+}
+
+RobotModel robot_in(const Parameters& parameters) {
+  return read_robot(load_description(parameters.urdf), parameters.robot);
+}
+
+/// What the laws gave, and what they would have given with other parameters: by column of run.csv.
+class VariedColumns {
+ public:
+  explicit VariedColumns(const RobotModel& robot) {
+    for (const WheelModel& wheel : robot.wheels) {
+      efforts_.emplace_back(wheel.joint, "command_effort_" + robot.joints[wheel.joint].name);
+    }
+  }
+
+  void add(const VariedRow& row) {
+    if (row.state != nullptr) {
+      const StateFrame& was = *row.state;
+      const StateFrame& would = *row.varied_state;
+      add("estimate_x", was.pose_odom.position[0], would.pose_odom.position[0]);
+      add("estimate_y", was.pose_odom.position[1], would.pose_odom.position[1]);
+      add("estimate_linear", was.twist_base.linear[0], would.twist_base.linear[0]);
+      add("estimate_angular", was.twist_base.angular[2], would.twist_base.angular[2]);
+    }
+    if (row.command != nullptr) {
+      const CommandFrame& was = *row.command;
+      const CommandFrame& would = *row.varied_command;
+      add("limited_linear", was.twist_limited.linear[0], would.twist_limited.linear[0]);
+      add("limited_angular", was.twist_limited.angular[2], would.twist_limited.angular[2]);
+      for (const auto& [joint, name] : efforts_) add(name, was.joints[joint].effort, would.joints[joint].effort);
+    }
+    if (row.permit != nullptr) {
+      add("supervisor_state", static_cast<double>(row.permit->state), static_cast<double>(row.varied_permit->state));
+    }
+  }
+
+  /// Name → (logged, varied), one value per row of that law.
+  py::dict arrays() const {
+    py::dict result;
+    for (const auto& [name, column] : columns_) {
+      result[py::str(name)] =
+          py::make_tuple(py::array_t<double>(py::ssize_t(column.first.size()), column.first.data()),
+                         py::array_t<double>(py::ssize_t(column.second.size()), column.second.data()));
+    }
+    return result;
+  }
+
+ private:
+  void add(const std::string& name, double was, double would) {
+    auto& column = columns_[name];
+    column.first.push_back(was);
+    column.second.push_back(would);
+  }
+
+  std::vector<std::pair<std::size_t, std::string>> efforts_;  ///< joint of a wheel, column
+  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> columns_;
+};
+
+/// What makes equal programs compute other bits.
+std::vector<std::string> doubts(const LogHeader& logged, const LogHeader& here) {
+  std::vector<std::string> found;
+  const auto compare = [&](const char* what, const std::string& was, const std::string& is) {
+    if (was != is) found.push_back(std::string("the log is of another ") + what + ": " + was + "; here: " + is);
+  };
+  compare("processor", logged.processor, here.processor);
+  compare("C library", logged.libraries, here.libraries);
+  return found;
+}
+
+/// `logged`: the parameters of the log; `varied`: others, or None.
+py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
+  TraceReader reader(path);
+  const Parameters parameters = parameters_in(logged, logged.first);
+  const RobotModel robot = robot_in(parameters);
+  Replay replay(parameters, robot);
+  VariedColumns columns(robot);
+  std::vector<std::string> live;  // what was left out of the log, but is set now, counts
+  if (varied) {
+    const Parameters others = parameters_in(*varied, logged.first);
+    if (others.loop.rate != parameters.loop.rate) {
+      std::ostringstream text;
+      text << "robot.rate is " << others.loop.rate << " Hz, that of the log " << parameters.loop.rate
+           << " Hz: its rows cannot be made more or fewer; leave robot.rate out";
+      throw ReplayError(text.str());
+    }
+    replay.vary(others, robot_in(others), [&](const VariedRow& row) { columns.add(row); });
+    for (const LiveParameter& each : live_parameters(others, "diff_drive_controller")) live.push_back(each.key);
+  }
+  const double period = reader.header().period;
+  {
+    const py::gil_scoped_release release;
+    // All snapshots first: a telemetry that finds a node's rows before its snapshots writes the first of these late.
+    reader.read({.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+    reader.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(period)); }});
+    replay.finish();
+  }
+  py::dict result = described(replay.report());
+  result["varied"] = columns.arrays();
+  result["doubts"] = doubts(reader.header(), log_header(parameters, robot));
+  result["cut"] = reader.cut();
+  result["live"] = live;
+  result["period"] = period;
+  return result;
+}
+
+}  // namespace
+
+void bind_log_replay(py::module_& module) {
+  py::register_exception<ReplayError>(module, "ReplayError", PyExc_RuntimeError);
+  module.def("replay_log", &replay_log, py::arg("path"), py::arg("logged"), py::arg("varied"));
+}
+
+}  // namespace robot_control

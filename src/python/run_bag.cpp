@@ -1,0 +1,190 @@
+#include "python/run_bag.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recording/bag_log.h"
+#include "recording/black_box/saved_black_box.h"
+#include "recording/trace_reader.h"
+#include "runtime/build_id.h"
+#include "runtime/log_header.h"
+#include "simulation/closed_loop.h"
+#include "telemetry/columns.h"
+#include "telemetry/csv_writer.h"
+#include "telemetry/log_error.h"
+
+namespace py = pybind11;
+
+namespace robot_control {
+namespace {
+
+py::dict header_of(const LogHeader& header) {
+  using namespace py::literals;
+  return py::dict("robot"_a = header.robot, "joints"_a = header.joints, "wheels"_a = header.wheels,
+                  "period"_a = header.period, "clock"_a = header.clock, "record"_a = header.record,
+                  "part"_a = header.part, "parameters"_a = header.parameters, "urdf"_a = header.urdf,
+                  "scene"_a = header.scene, "calibration"_a = header.calibration, "version"_a = header.version,
+                  "build"_a = header.build, "host"_a = header.host, "kernel"_a = header.kernel,
+                  "processor"_a = header.processor, "libraries"_a = header.libraries, "missing"_a = header.missing);
+}
+
+/// A column of the table that grows with the rows.
+struct FilledColumn {
+  Column column;
+  std::vector<double> values;
+};
+
+/// The rows of the last run, and how many runs there were.
+class Table {
+ public:
+  /// `names`: those that are wanted; empty: all.
+  Table(const LogHeader& header, const std::vector<std::string>& names) : period_(header.period) {
+    for (Column& column : log_columns(header.joints, header.clock == "wall")) {
+      if (!names.empty() && std::find(names.begin(), names.end(), column.name) == names.end()) continue;
+      columns_.push_back({.column = std::move(column), .values = {}});
+    }
+  }
+
+  void add(const TraceRow& row, std::int64_t time_ns) {
+    if (row.repeats) return;
+    if (run_ != row.run) {
+      ++runs_;
+      run_ = row.run;
+      for (FilledColumn& each : columns_) each.values.clear();
+      times_.clear();
+    }
+    if (times_.size() == times_.capacity()) grow();
+    const JoinedRow joined = row.joined(period_);
+    const PresentSources present = present_sources(joined);
+    for (FilledColumn& each : columns_) each.values.push_back(each.column.value(joined, present));
+    times_.push_back(static_cast<double>(time_ns) * 1e-9);
+  }
+
+  /// `share` of the file is read.
+  void expect(double share) { expected_ = static_cast<double>(times_.size()) / share; }
+
+  py::dict columns() {
+    py::dict result;
+    for (FilledColumn& each : columns_) result[py::str(each.column.name)] = array_of(std::move(each.values));
+    return result;
+  }
+  py::array_t<double> times() { return array_of(std::move(times_)); }
+  std::uint64_t runs() const noexcept { return runs_; }
+
+ private:
+  /// To what the file seems to hold and some more, since growing again copies everything; not at once to what a file
+  /// may pretend.
+  void grow() {
+    constexpr double kMore = 1.1;
+    constexpr std::size_t kLeast = 1 << 10, kMost = 1 << 20;  // rows at once; 2²⁰ are 1.3 GB of address space
+    const std::size_t now = times_.size();
+    const double expected = std::min(expected_ * kMore, static_cast<double>(now + kMost));
+    const std::size_t rows = std::max({now + kLeast, 2 * now, static_cast<std::size_t>(expected)});
+    for (FilledColumn& each : columns_) each.values.reserve(rows);
+    times_.reserve(rows);
+  }
+
+  /// Without a copy: the array owns the vector.
+  static py::array_t<double> array_of(std::vector<double>&& values) {
+    auto* const owned = new std::vector<double>(std::move(values));
+    const py::capsule owner(owned, [](void* vector) { delete static_cast<std::vector<double>*>(vector); });
+    return py::array_t<double>(static_cast<py::ssize_t>(owned->size()), owned->data(), owner);
+  }
+
+  double period_;
+  double expected_ = 0;  ///< rows in the file, as far as one can tell
+  std::vector<FilledColumn> columns_;
+  std::vector<double> times_;
+  std::int64_t run_ = -1;
+  std::uint64_t runs_ = 0;
+};
+
+py::dict read_run_bag(const std::string& path, const std::vector<std::string>& names) {
+  using namespace py::literals;
+  constexpr std::uint64_t kLook = 1 << 16;  // rows between two looks for Ctrl-C
+  std::optional<Table> table;
+  std::uint64_t rows = 0;
+  std::uint64_t lost = 0;
+  const auto add = [&](const TraceRow& row, std::int64_t time_ns) {
+    table->add(row, time_ns);
+    lost = row.lost;
+    if (++rows % kLook == 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+  };
+  const TraceReader reader(path, {.header = [&](const LogHeader& header) { table.emplace(header, names); },
+                                  .row = add,
+                                  .chunk = [&](double share) { table->expect(share); }});
+  return py::dict("header"_a = header_of(reader.header()), "columns"_a = table->columns(),
+                  "ros_time"_a = table->times(), "runs"_a = table->runs(), "lost"_a = lost, "cut"_a = reader.cut());
+}
+
+/// All runs of a log as the table that telemetry writes.
+void write_run_csv(const std::string& path, const std::string& to) {
+  TraceReader reader(path);
+  const LogHeader& header = reader.header();
+  CsvWriter csv(to, log_columns(header.joints, header.clock == "wall"));
+  reader.read({.row = [&](const TraceRow& row, std::int64_t) {
+    if (!row.repeats) csv.write(row.joined(header.period));
+  }});
+  csv.close();
+}
+
+/// A bag with the folder in which it counts.
+class FolderLog final : public RowLog {
+ public:
+  FolderLog(const std::string& directory, const ClosedLoop& loop)
+      : folder_(directory, 0), log_(folder_, log_header(loop.parameters(), loop.robot()), all_of(loop)) {}
+
+  void write(const JoinedRow& row) override { log_.write(row); }
+  void write(const LawSnapshot& snapshot) override { log_.write(snapshot); }
+  void close() override { log_.close(); }
+
+ private:
+  static TelemetryParameters all_of(const ClosedLoop& loop) {
+    TelemetryParameters parameters = loop.parameters().telemetry;
+    parameters.record = RecordMode::kAlways;
+    parameters.quota = 0;
+    return parameters;
+  }
+
+  LogFolder folder_;
+  BagLog log_;
+};
+
+void log_into(ClosedLoop& loop, const std::string& directory) {
+  if (auto before = loop.set_log(std::make_unique<FolderLog>(directory, loop))) before->close();
+}
+
+void end_log(ClosedLoop& loop) {
+  const std::string problem = loop.log_problem();
+  if (auto log = loop.set_log(nullptr)) log->close();
+  if (!problem.empty()) throw LogError(problem);
+}
+
+}  // namespace
+
+void bind_run_bag(py::module_& module) {
+  py::register_exception<LogError>(module, "RunLogError", PyExc_OSError);
+  py::register_exception<TraceError>(module, "TraceError", PyExc_ValueError);
+  module.def("read_run_bag", read_run_bag, py::arg("path"), py::arg("names"));
+  module.def(
+      "read_run_header", [](const std::string& path) { return header_of(TraceReader(path).header()); },
+      py::arg("path"));
+  module.def("write_run_csv", write_run_csv, py::arg("path"), py::arg("to"));
+  module.def(
+      "save_black_box",
+      [](const std::string& path, const std::string& bag) {
+        const SavedBlackBox saved = save_black_box(path, build_id(), bag);
+        return py::make_tuple(saved.rows, saved.newest_ns, saved.missing);
+      },
+      py::arg("path"), py::arg("bag"));
+  module.def("log_into", log_into, py::arg("loop"), py::arg("directory"));
+  module.def("end_log", end_log, py::arg("loop"));
+}
+
+}  // namespace robot_control

@@ -1,0 +1,105 @@
+#pragma once
+/// The log of every cycle as a ROS bag, run.bag: topics `trace_header` (latched, first), `trace`, `trace_snapshot`.
+///
+/// Rows are collected in chunks of a second. Where only motion is recorded (motion_watch.h), the chunks of the last
+/// `kBeforeNs` are held in memory and written when it begins. A bag that is as large or as long as it may be is closed
+/// and kept under the next number, and another one begins (log_folder.h): with the next snapshots of the laws, so that
+/// each can be replayed from its begin, or, where none comes within `kBeforeNs` or the quota is small, without.
+///
+/// A bag without a message is removed at the end.
+///
+/// A disk that does not take a chunk ends the bag, not the log: rows are counted, and every `kRetryNs` another bag is
+/// tried. All times are given; no clock is read.
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "recording/bag_writer.h"
+#include "recording/log_messages.h"
+#include "recording/motion_watch.h"
+#include "telemetry/log_folder.h"
+#include "telemetry/log_parameters.h"
+#include "telemetry/row_log.h"
+
+namespace robot_control {
+
+class BagLog final : public RowLog {
+ public:
+  static constexpr std::int64_t kChunkNs = 1'000'000'000;
+  static constexpr std::size_t kChunkBytes = 1 << 22;        ///< uncompressed, where a second is more
+  static constexpr std::int64_t kBeforeNs = 12'000'000'000;  ///< at 100 Hz, a snapshot comes every 10.24 s
+  static constexpr std::size_t kBeforeBytes = 32 << 20;  ///< compressed; at 2 kHz with 32 joints it is less than 12 s
+  static constexpr std::int64_t kRetryNs = 10'000'000'000;
+
+  /// Begins run.bag in `folder`, which lives longer. `quota` etc. are those of the folder. Throws LogError.
+  BagLog(LogFolder& folder, LogHeader header, const TelemetryParameters& parameters);
+
+  /// ROS time − stamps; 0 where stamps are ROS time (lockstep).
+  void set_time_offset(std::int64_t offset_ns) noexcept { offset_ns_ = offset_ns; }
+
+  /// Rows that were lost on the way here, since the beginning.
+  void set_lost(std::uint64_t rows) noexcept { lost_before_ = rows; }
+
+  /// Until it is taken back, everything is recorded.
+  void request(bool on) noexcept { requested_ = on; }
+
+  void write(const JoinedRow& row) override;
+
+  /// Before the row to which it belongs.
+  void write(const LawSnapshot& snapshot) override;
+
+  /// At 10 Hz, `now_ns` on any clock that runs: what is a second old goes to the disk, also where no row follows; after
+  /// an error another bag is tried. Throws LogError.
+  void poll(std::int64_t now_ns);
+
+  void close() override;
+
+  bool recording() const noexcept { return recording_; }
+  std::uint64_t rows() const noexcept { return rows_; }            ///< that the disk has taken
+  std::uint64_t unwritten() const noexcept { return unwritten_; }  ///< that it should have taken and has not
+  bool broken() const noexcept { return writer_ == nullptr; }      ///< no bag is open since the last error
+
+ private:
+  struct Held {
+    PackedChunk chunk;
+    std::int64_t begin_ns = 0;  ///< ROS time
+    std::uint64_t rows = 0;
+    bool snapshot = false;  ///< it holds some
+  };
+
+  std::int64_t ros_time(std::int64_t stamp_ns) noexcept;
+  void begin_bag();
+  void write_header(std::int64_t time_ns);
+  void end_chunk();
+  void write_held();
+  void hand_over(const Held& held);
+  void split_where_due(const Held& next);
+
+  LogFolder& folder_;
+  LogHeader header_;
+  TelemetryParameters parameters_;
+  std::unique_ptr<BagWriter> writer_;
+  std::int64_t bag_begin_ns_ = 0;  ///< ROS time of its first chunk; 0: it has none yet
+  ChunkBuilder chunk_;
+  std::uint64_t chunk_rows_ = 0;
+  bool chunk_wanted_ = false;      ///< the robot moved in it
+  bool chunk_snapshot_ = false;    ///< of a law, in it
+  std::int64_t split_due_ns_ = 0;  ///< ROS time since which the bag is as large or long as it may be; 0: it is not
+  std::string message_;
+  std::deque<Held> held_;
+  std::size_t held_bytes_ = 0;
+  MotionWatch motion_;
+  bool requested_ = false;
+  bool recording_ = false;
+  std::int64_t offset_ns_ = 0;
+  std::int64_t last_ns_ = 0;   ///< ROS time of the last message
+  std::int64_t flush_ns_ = 0;  ///< `now_ns` when the open chunk is due
+  std::int64_t retry_ns_ = 0;
+  std::uint64_t lost_before_ = 0;
+  std::uint64_t rows_ = 0;
+  std::uint64_t unwritten_ = 0;
+};
+
+}  // namespace robot_control

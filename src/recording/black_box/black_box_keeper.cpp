@@ -1,0 +1,126 @@
+#include "recording/black_box/black_box_keeper.h"
+
+#include <sys/resource.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "recording/black_box/saved_black_box.h"
+#include "signals/names.h"
+#include "telemetry/log_error.h"
+
+namespace robot_control {
+namespace {
+
+constexpr const char* kCrashed = "telemetry had not ended orderly";
+
+}  // namespace
+
+BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, std::uint64_t build,
+                               const LogHeader& header)
+    : folder_(folder, keep), keep_(keep), build_(build), bytes_(bytes), header_(header) {
+  folder_.put_ring_aside();
+  if (keep_ != 0) unsaved_ = folder_.unsaved();
+  try {
+    make_box();
+  } catch (const LogError&) {
+    if (unsaved_.empty()) throw;
+    // The ring of a telemetry that was killed may be what takes the room: saved, it is a third as large.
+    for (const std::string& ring : std::exchange(unsaved_, {})) note(save(ring, IncidentKind::kCrash, kCrashed));
+    make_box();
+  }
+}
+
+void BlackBoxKeeper::make_box() {
+  box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, build_, header_);
+}
+
+void BlackBoxKeeper::look_for_box(std::int64_t now_ns) {
+  constexpr std::int64_t kLookNs = 1'000'000'000;
+  if (now_ns < look_ns_) return;
+  look_ns_ = now_ns + kLookNs;
+  if (box_ != nullptr && box_->at_its_path()) return;
+  box_.reset();  // it still takes its room on the disk
+  try {
+    folder_.put_ring_aside();
+    make_box();
+    absent_ = false;
+    notes_.push_back(folder_.ring() + " was removed, and what it held with it; another one was begun");
+  } catch (const LogError& error) {
+    look_ns_ = now_ns + kRetryNs;
+    if (std::exchange(absent_, true)) return;
+    notes_.push_back(folder_.ring() +
+                     " was removed, and no other can be made, which is tried every 10 s: " + error.what());
+  }
+}
+
+void BlackBoxKeeper::look_at_size() {
+  if (size_looked_at_ || box_ == nullptr || box_->seconds_added() < kRateKnown) return;
+  size_looked_at_ = true;
+  const double held = box_->seconds_held();
+  if (held >= kPromised) return;
+  std::array<char, 200> text{};
+  std::snprintf(
+      text.data(), text.size(), "telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
+      static_cast<double>(bytes_) * 1e-9, held, kPromised, static_cast<double>(bytes_) * 1e-9 * 1.1 * kPromised / held);
+  notes_.emplace_back(text.data());
+}
+
+BlackBoxKeeper::~BlackBoxKeeper() = default;
+
+BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why) const {
+  try {
+    const SavedIncident saved = folder_.save(ring, kind, build_);
+    const std::string missing = saved.missing.empty() ? "" : "; " + saved.missing;
+    return {.saved = true, .note = "saved " + saved.bag + ": " + why + missing};
+  } catch (const EmptyBlackBox&) {
+    std::error_code ignored;
+    if (kind == IncidentKind::kCrash) std::filesystem::remove(ring, ignored);
+    return {};
+  } catch (const std::exception& error) {
+    return {.note = "not saved (" + why + "): " + error.what()};
+  }
+}
+
+void BlackBoxKeeper::begin(const std::string& ring, IncidentKind kind, const std::string& why) {
+  saving_ = std::async(std::launch::async, [this, ring, kind, why] {
+    constexpr int kLowest = 19;
+    setpriority(PRIO_PROCESS, 0, kLowest);  // of this thread
+    return save(ring, kind, why);
+  });
+}
+
+void BlackBoxKeeper::take_outcome() {
+  if (saving_.valid()) note(saving_.get());
+}
+
+void BlackBoxKeeper::note(Outcome outcome) {
+  if (outcome.saved) ++saved_;
+  if (!outcome.note.empty()) notes_.push_back(std::move(outcome.note));
+}
+
+void BlackBoxKeeper::poll(std::int64_t now_ns) {
+  look_for_box(now_ns);
+  look_at_size();
+  if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  take_outcome();
+  if (watch_.due(now_ns)) {
+    const std::uint64_t causes = watch_.take();
+    if (keep_ != 0) begin(folder_.ring(), IncidentKind::kStop, names_of(kStopCauseNames, causes, ", "));
+  } else if (!unsaved_.empty()) {
+    begin(unsaved_.front(), IncidentKind::kCrash, kCrashed);
+    unsaved_.erase(unsaved_.begin());
+  }
+}
+
+void BlackBoxKeeper::finish() {
+  take_outcome();
+  if (watch_.pending() && keep_ != 0) {
+    note(save(folder_.ring(), IncidentKind::kStop, names_of(kStopCauseNames, watch_.take(), ", ")));
+  }
+  if (box_ != nullptr) box_->mark_ended();
+}
+
+}  // namespace robot_control

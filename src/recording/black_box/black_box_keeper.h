@@ -1,0 +1,85 @@
+#pragma once
+/// The black box of a robot, and its incidents: what it holds some seconds after a latched stop is saved as a bag, and
+/// so is that of a telemetry that was killed. A thread of the lowest priority writes them, one at a time.
+
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recording/black_box/black_box.h"
+#include "recording/black_box/black_box_folder.h"
+#include "recording/black_box/incident_watch.h"
+
+namespace robot_control {
+
+class BlackBoxKeeper {
+ public:
+  static constexpr std::int64_t kRetryNs = 10'000'000'000;
+  static constexpr double kPromised = 60;   ///< s of rows; a smaller one is named
+  static constexpr double kRateKnown = 10;  ///< s of rows, after which it is known how many it holds
+
+  /// Of `bytes` in `folder`, with the newest `keep` incidents of each kind. Throws LogError.
+  BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, std::uint64_t build,
+                 const LogHeader& header);
+  ~BlackBoxKeeper();
+  BlackBoxKeeper(const BlackBoxKeeper&) = delete;
+  BlackBoxKeeper& operator=(const BlackBoxKeeper&) = delete;
+
+  /// As BlackBox::add; nothing where there is no ring just now.
+  template <class Record>
+  void add(const Record& record) noexcept {
+    if (box_ != nullptr) box_->add(record);
+  }
+  void add_state(std::int64_t time_offset_ns, std::uint64_t lost) noexcept {
+    if (box_ != nullptr) box_->add_state(time_offset_ns, lost);
+  }
+  std::string path() const { return folder_.ring(); }
+
+  /// Permit::causes of now; `now_ns` on any clock that runs.
+  void see(std::uint64_t causes, std::int64_t now_ns) noexcept { watch_.see(causes, now_ns); }
+
+  /// At 10 Hz: begins what is due. Where the ring is not at its path any more, another one is made, and tried again
+  /// every `kRetryNs`.
+  void poll(std::int64_t now_ns);
+
+  /// The end: saves a stop that waits for what follows, and marks the ring as ended orderly.
+  void finish();
+
+  std::uint64_t saved() const noexcept { return saved_; }
+
+  /// Sentences about what was saved, or could not be, since the last call.
+  std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
+
+ private:
+  struct Outcome {
+    bool saved = false;
+    std::string note;
+  };
+  void make_box();
+  void look_for_box(std::int64_t now_ns);
+  void look_at_size();
+  Outcome save(const std::string& ring, IncidentKind kind, const std::string& why) const;
+  void begin(const std::string& ring, IncidentKind kind, const std::string& why);
+  void take_outcome();
+  void note(Outcome outcome);
+
+  BlackBoxFolder folder_;
+  std::size_t keep_;
+  std::uint64_t build_;
+  std::size_t bytes_;
+  LogHeader header_;
+  std::unique_ptr<BlackBox> box_;  ///< null: it was removed, and no other could be made
+  IncidentWatch watch_;
+  std::vector<std::string> unsaved_;  ///< oldest first
+  std::future<Outcome> saving_;
+  std::int64_t look_ns_ = 0;  ///< when to look for the ring again
+  bool absent_ = false;       ///< and said
+  bool size_looked_at_ = false;
+  std::uint64_t saved_ = 0;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,79 @@
+#pragma once
+/// How a black box lies in its file (black_box_file.h): only for its writer and its reader.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "telemetry/log_error.h"
+
+namespace robot_control::black_box_layout {
+
+inline constexpr char kMagic[8] = {'R', 'C', 'B', 'L', 'A', 'C', 'K', '2'};
+
+struct Head {
+  char magic[8];
+  std::uint64_t head_bytes, segments, description_bytes;
+  std::uint64_t checksum;  // of these and of the description
+  std::uint64_t ended;
+};
+
+struct RecordHead {
+  std::uint64_t checksum = 0;  // of what follows and of the data
+  std::uint64_t sequence = 0;
+  std::int64_t time_ns = 0;
+  std::uint32_t kind = 0, length = 0;
+};
+
+inline constexpr std::size_t kAlignment = 8;
+
+inline std::size_t padded(std::size_t bytes) {
+  return (bytes + kAlignment - 1) & ~(kAlignment - 1);
+}
+
+/// Sum of words; each mixes into all bits.
+class Checksum {
+ public:
+  void mix(std::uint64_t word) {
+    sum_ = (sum_ ^ word) * 0x9E3779B97F4A7C15U;
+    sum_ ^= sum_ >> 29U;
+  }
+  void mix(std::string_view data) {
+    for (std::size_t i = 0; i < data.size(); i += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, data.data() + i, std::min<std::size_t>(8, data.size() - i));
+      mix(word);
+    }
+  }
+  std::uint64_t sum() const { return sum_; }
+
+ private:
+  std::uint64_t sum_ = 0xCBF29CE484222325U;
+};
+
+inline std::uint64_t checksum_of(const RecordHead& head, std::string_view data) {
+  Checksum sum;
+  sum.mix(head.sequence);
+  sum.mix(static_cast<std::uint64_t>(head.time_ns));
+  sum.mix((std::uint64_t{head.kind} << 32U) | head.length);
+  sum.mix(data);
+  return sum.sum();
+}
+
+inline std::uint64_t checksum_of(const Head& head, std::string_view description) {
+  Checksum sum;
+  sum.mix(head.head_bytes);
+  sum.mix(head.segments);
+  sum.mix(head.description_bytes);
+  sum.mix(description);
+  return sum.sum();
+}
+
+[[noreturn]] inline void fail(const std::string& path, const std::string& problem) {
+  throw LogError(path + ": " + problem);
+}
+
+}  // namespace robot_control::black_box_layout

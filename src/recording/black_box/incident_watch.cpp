@@ -1,0 +1,23 @@
+#include "recording/black_box/incident_watch.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace robot_control {
+
+bool IncidentWatch::see(std::uint64_t causes, std::int64_t now_ns) noexcept {
+  const bool stop = std::exchange(seen_, true) && causes_ == 0 && causes != 0;
+  causes_ = causes;
+  if (stop) {
+    if (!pending()) latest_ns_ = now_ns + kLongest;
+    due_ns_ = std::min(now_ns + kAfter, latest_ns_);
+  }
+  if (stop || pending()) causes_to_save_ |= causes;
+  return stop;
+}
+
+std::uint64_t IncidentWatch::take() noexcept {
+  return std::exchange(causes_to_save_, 0);
+}
+
+}  // namespace robot_control

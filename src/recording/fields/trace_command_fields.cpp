@@ -1,0 +1,76 @@
+#include "recording/fields/trace_field_groups.h"
+#include "recording/fields/trace_field_kinds.h"
+
+namespace robot_control {
+
+using namespace trace_words;
+
+void add_command(TraceFields& to) {
+  const auto number = [&](const char* name, const char* comment, auto get) {
+    to.push_back(field<C, u64>(name, comment, get));
+  };
+  to.push_back(
+      field<C, f64>("requested_linear", "m/s, base axes, as last received", MEMBER(command.twist_requested.linear)));
+  to.push_back(field<C, f64>("requested_angular", "rad/s, base axes", MEMBER(command.twist_requested.angular)));
+  to.push_back(field<C, f32>("limited_linear", "m/s, after limits", MEMBER(command.twist_limited.linear)));
+  to.push_back(field<C, f32>("limited_angular", "rad/s, after limits", MEMBER(command.twist_limited.angular)));
+  to.push_back(per_joint<C, f32>("effort_command", "N*m or N", ELEMENT(command.joints[i].effort)));
+  to.push_back(per_joint<C, f32>("velocity_command", "rad/s or m/s", ELEMENT(command.joints[i].velocity)));
+  to.push_back(
+      per_joint<C, f32>("velocity_measured", "rad/s, of the tracking loop", ELEMENT(command.velocity_measured[i])));
+  to.push_back(per_joint<C, u8>("mode_command", "JointMode", ELEMENT(command.joints[i].mode)));
+  number("command_state_cycle", "of the state used", MEMBER(command.state_cycle));
+  number("command_permit_cycle", "of the permit used", MEMBER(command.permit_cycle));
+  number("silent_cycles", "since the last message of any sender", MEMBER(command.silent_cycles));
+  number("command_joint_count", "", MEMBER(command.joint_count));
+  number("command_reasons", "CommandReason bits", MEMBER(command.reasons));
+  number("request_cycle", "in which the last command was received", MEMBER(command.request_cycle));
+  number("requests_received", "in this run", MEMBER(command.requests_received));
+  number("requests_refused", "in this run", MEMBER(command.requests_refused));
+  number("requests_stale", "of these, for their stamp", MEMBER(command.requests_stale));
+  number("requests_crowded", "of these, while more than one node sent", MEMBER(command.requests_crowded));
+  number("timeouts", "in this run", MEMBER(command.timeouts));
+  number("command_first_cycle", "of this process in this run", MEMBER(command.first_cycle));
+  number("zero_requests", "zero velocities accepted since then", MEMBER(command.zero_requests));
+  number("zero_requested", "1: nothing else since the last of them", MEMBER(command.zero_requested));
+  number("silence_needed", "cycles", MEMBER(command.silence_needed));
+}
+
+void add_tuning(TraceFields& to) {
+  const auto number = [&](const char* name, const char* unit, auto get) {
+    to.push_back(field<C, f64>(name, unit, get));
+  };
+  to.push_back(
+      field<C, u64>("tuning", "sets of live parameters accepted; what follows was in force", MEMBER(tuning.count)));
+  number("max_linear_speed", "m/s", MEMBER(tuning.linear.speed));
+  number("max_linear_acceleration", "m/s^2", MEMBER(tuning.linear.acceleration));
+  number("max_linear_deceleration", "m/s^2", MEMBER(tuning.linear.deceleration));
+  number("max_linear_emergency_deceleration", "m/s^2", MEMBER(tuning.linear.emergency_deceleration));
+  number("max_linear_jerk", "m/s^3, 0: none", MEMBER(tuning.linear.jerk));
+  number("linear_reverse_speed", "m/s, backwards", MEMBER(tuning.linear.reverse_speed));
+  number("max_linear_acceleration_reverse", "m/s^2", MEMBER(tuning.linear.reverse_acceleration));
+  number("max_linear_deceleration_reverse", "m/s^2", MEMBER(tuning.linear.reverse_deceleration));
+  number("max_angular_speed", "rad/s", MEMBER(tuning.angular.speed));
+  number("max_angular_acceleration", "rad/s^2", MEMBER(tuning.angular.acceleration));
+  number("max_angular_deceleration", "rad/s^2", MEMBER(tuning.angular.deceleration));
+  number("max_angular_emergency_deceleration", "rad/s^2", MEMBER(tuning.angular.emergency_deceleration));
+  number("max_angular_jerk", "rad/s^3, 0: none", MEMBER(tuning.angular.jerk));
+  number("angular_reverse_speed", "rad/s", MEMBER(tuning.angular.reverse_speed));
+  number("angular_reverse_acceleration", "rad/s^2", MEMBER(tuning.angular.reverse_acceleration));
+  number("angular_reverse_deceleration", "rad/s^2", MEMBER(tuning.angular.reverse_deceleration));
+  to.push_back(field<C, u64>("keep_curvature", "1: kept", MEMBER(tuning.keep_curvature)));
+  number("cmd_vel_timeout", "s, 0: never", MEMBER(tuning.cmd_vel_timeout));
+  number("tracking_bandwidth", "Hz", MEMBER(tuning.tracking_bandwidth));
+  number("feed_forward_mass", "kg", MEMBER(tuning.mass));
+  number("feed_forward_yaw_inertia", "kg*m^2", MEMBER(tuning.yaw_inertia));
+  to.push_back(per_wheel<C, f64>("pid_kp", "N*m*s/rad", ELEMENT(tuning.wheels[i].kp)));
+  to.push_back(per_wheel<C, f64>("pid_ki", "N*m/rad", ELEMENT(tuning.wheels[i].ki)));
+  to.push_back(per_wheel<C, f64>("pid_kd", "N*m*s^2/rad", ELEMENT(tuning.wheels[i].kd)));
+  to.push_back(
+      per_wheel<C, f64>("model_inertia", "kg*m^2, of the tracking loop", ELEMENT(tuning.wheels[i].model_inertia)));
+  to.push_back(per_wheel<C, f64>("feed_forward_inertia", "kg*m^2", ELEMENT(tuning.wheels[i].inertia)));
+  to.push_back(per_wheel<C, f64>("feed_forward_damping", "N*m*s/rad", ELEMENT(tuning.wheels[i].damping)));
+  to.push_back(per_wheel<C, f64>("feed_forward_friction", "N*m", ELEMENT(tuning.wheels[i].friction)));
+}
+
+}  // namespace robot_control

@@ -1,0 +1,172 @@
+#pragma once
+/// How a member of a row becomes a field of the message and back: only for the tables of fields, trace_*_fields.cpp.
+///
+/// `Get` is a stateless lambda that returns a reference to a member of one part of a row, as `MEMBER` makes it. `Wire`
+/// is the type in the message. Where the part is missing, numbers are NaN and integers 0.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "recording/fields/trace_fields.h"
+#include "recording/packed_chunk.h"
+#include "signals/rotation.h"
+
+namespace robot_control {
+
+/// The words in which the tables of fields are written: the parts of a row, and the types in the message.
+namespace trace_words {
+using D = DriverTrace;
+using E = EstimatorTrace;
+using C = ControllerTrace;
+using M = MonitorTrace;
+using f64 = double;
+using f32 = float;
+using u8 = std::uint8_t;
+using u64 = std::uint64_t;
+using i64 = std::int64_t;
+}  // namespace trace_words
+
+#define MEMBER(member)      \
+  [](auto& part) -> auto& { \
+    return part.member;     \
+  }
+/// Of element i of a list.
+#define ELEMENT(member)                    \
+  [](auto& part, std::size_t i) -> auto& { \
+    return part.member;                    \
+  }
+
+/// Also where an injected fault suppressed the frame: the law ran.
+template <class Part>
+const Part* part_of(const JoinedRow& row) {
+  if constexpr (std::is_same_v<Part, DriverTrace>) return row.driver;
+  if constexpr (std::is_same_v<Part, EstimatorTrace>) return row.laws.estimator;
+  if constexpr (std::is_same_v<Part, ControllerTrace>) return row.laws.controller;
+  if constexpr (std::is_same_v<Part, MonitorTrace>) return row.laws.monitor;
+}
+
+template <class Part>
+Part& part_of(TraceRow& row) {
+  if constexpr (std::is_same_v<Part, DriverTrace>) return row.driver;
+  if constexpr (std::is_same_v<Part, EstimatorTrace>) return row.estimator;
+  if constexpr (std::is_same_v<Part, ControllerTrace>) return row.controller;
+  if constexpr (std::is_same_v<Part, MonitorTrace>) return row.monitor;
+}
+
+template <class Wire>
+constexpr const char* wire_name() {
+  if constexpr (std::is_same_v<Wire, double>) return "float64";
+  if constexpr (std::is_same_v<Wire, float>) return "float32";
+  if constexpr (std::is_same_v<Wire, std::uint8_t>) return "uint8";
+  if constexpr (std::is_same_v<Wire, std::uint32_t>) return "uint32";
+  if constexpr (std::is_same_v<Wire, std::uint64_t>) return "uint64";
+  if constexpr (std::is_same_v<Wire, std::int64_t>) return "int64";
+}
+
+template <class Wire>
+constexpr Wire none() {
+  if constexpr (std::is_floating_point_v<Wire>) return std::numeric_limits<Wire>::quiet_NaN();
+  return Wire{};
+}
+
+template <class Wire>
+void put_number(std::string& to, Wire value) {
+  ByteSink(to).number(value);
+}
+
+template <class Value>
+struct ArraySize : std::integral_constant<std::size_t, 0> {};
+template <class Element, std::size_t N>
+struct ArraySize<std::array<Element, N>> : std::integral_constant<std::size_t, N> {};
+
+/// A number, or an array of fixed length.
+template <class Part, class Wire, class Get>
+TraceField field(std::string name, std::string comment, Get) {
+  using Value = std::decay_t<std::invoke_result_t<Get, Part&>>;
+  constexpr std::size_t kSize = ArraySize<Value>::value;
+  TraceField result{.name = std::move(name), .type = wire_name<Wire>(), .comment = std::move(comment)};
+  if constexpr (kSize == 0) {
+    result.put = [](const TraceSource& source, std::string& to) {
+      const Part* part = part_of<Part>(source.row);
+      put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
+    };
+    result.take = [](ByteSource& from, TraceRow& row) {
+      Get{}(part_of<Part>(row)) = static_cast<Value>(from.number<Wire>());
+      return true;
+    };
+  } else {
+    result.type += "[" + std::to_string(kSize) + "]";
+    result.put = [](const TraceSource& source, std::string& to) {
+      const Part* part = part_of<Part>(source.row);
+      for (std::size_t i = 0; i < kSize; ++i) {
+        put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
+      }
+    };
+    result.take = [](ByteSource& from, TraceRow& row) {
+      auto& values = Get{}(part_of<Part>(row));
+      for (auto& value : values) value = static_cast<std::decay_t<decltype(value)>>(from.number<Wire>());
+      return true;
+    };
+  }
+  return result;
+}
+
+/// A list: `Size` is a stateless lambda of a part (null: missing) and the number of joints; at most `Most` elements.
+template <class Part, class Wire, std::size_t Most, class Size, class Get>
+TraceField list(std::string name, std::string comment, Size, Get) {
+  using Value = std::decay_t<std::invoke_result_t<Get, Part&, std::size_t>>;
+  TraceField result{
+      .name = std::move(name), .type = std::string(wire_name<Wire>()) + "[]", .comment = std::move(comment)};
+  result.put = [](const TraceSource& source, std::string& to) {
+    const Part* part = part_of<Part>(source.row);
+    const std::size_t size = Size{}(part, source.joints);
+    put_number(to, static_cast<std::uint32_t>(size));
+    for (std::size_t i = 0; i < size; ++i) {
+      put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
+    }
+  };
+  result.take = [](ByteSource& from, TraceRow& row) {
+    const auto size = from.number<std::uint32_t>();
+    if (size > Most) return false;
+    for (std::size_t i = 0; i < size; ++i) {
+      Get{}(part_of<Part>(row), i) = static_cast<Value>(from.number<Wire>());
+    }
+    return true;
+  };
+  return result;
+}
+
+/// A value for each joint.
+template <class Part, class Wire, class Get>
+TraceField per_joint(std::string name, std::string comment, Get get) {
+  return list<Part, Wire, kMaxJoints>(
+      std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return joints; }, get);
+}
+
+/// A value for each joint that a wheel loop may drive.
+template <class Part, class Wire, class Get>
+TraceField per_wheel(std::string name, std::string comment, Get get) {
+  return list<Part, Wire, kTunedWheels>(
+      std::move(name), std::move(comment),
+      [](const Part*, std::size_t joints) { return std::min(joints, kTunedWheels); }, get);
+}
+
+/// For people alone: computed from the part, not read back.
+template <class Part, class Compute>
+TraceField shown(std::string name, std::string comment, Compute) {
+  TraceField result{.name = std::move(name), .type = wire_name<float>(), .comment = std::move(comment)};
+  result.put = [](const TraceSource& source, std::string& to) {
+    const Part* part = part_of<Part>(source.row);
+    put_number(to, part != nullptr ? static_cast<float>(Compute{}(*part)) : none<float>());
+  };
+  result.take = [](ByteSource& from, TraceRow&) {
+    from.number<float>();
+    return true;
+  };
+  return result;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,67 @@
+#include "recording/trace_reader.h"
+
+#include "recording/message_types.h"
+
+namespace robot_control {
+TraceReader::TraceReader(const std::string& path, const Use& use)
+    : path_(path), bag_(path, [&](BagReader& bag, const BagChunk& chunk) {
+        if (bag.chunks().size() == 1) find_header(bag, chunk);
+        if (!header_) return;
+        if (bag.chunks().size() == 1 && use.header) use.header(*header_);
+        take(bag, chunk, use);
+      }) {
+  if (!header_) {
+    throw TraceError(path + " is no log of robot_control: it does not begin with a TraceHeader" +
+                     (cut().empty() ? "" : "; " + cut()));
+  }
+}
+
+void TraceReader::find_header(BagReader& bag, const BagChunk& chunk) {
+  for (const auto& [number, connection] : bag.connections()) {
+    if (connection.type != trace_header_type().name) continue;
+    bag.read(chunk, [&, wanted = number, &definition = connection.definition](const BagMessage& message) {
+      if (message.connection == wanted && !header_) header_ = decode_header(message.data, definition);
+    });
+  }
+}
+
+void TraceReader::look_at_connections(const BagReader& bag, const Use& use) {
+  for (const auto& [number, connection] : bag.connections()) {
+    if (use.row && connection.type == trace_type().name && !rows_.contains(number)) {
+      rows_.emplace(number, connection.definition);
+    }
+    if (!use.snapshot || connection.type != snapshot_type().name || !snapshots_.insert(number).second) continue;
+    if (connection.md5sum != snapshot_type().md5) {
+      throw TraceError(path_ + ": its " + connection.type + " is that of another version of robot_control");
+    }
+  }
+}
+
+void TraceReader::take(BagReader& bag, const BagChunk& chunk, const Use& use) {
+  if (use.row || use.snapshot) {
+    look_at_connections(bag, use);
+    TraceRow row;
+    try {
+      bag.read(chunk, [&](const BagMessage& message) {
+        const auto decoder = rows_.find(message.connection);
+        if (use.row && decoder != rows_.end()) {
+          decoder->second.decode(message.data, row);
+          use.row(row, static_cast<std::int64_t>(message.time_ns));
+        } else if (use.snapshot && snapshots_.contains(message.connection)) {
+          use.snapshot(decode_snapshot(message.data));
+        }
+      });
+    } catch (const TraceError& error) {
+      throw TraceError(path_ + ", chunk at byte " + std::to_string(chunk.data.record) + ": " + error.what());
+    }
+  }
+  const std::uint64_t end = chunk.data.begin + chunk.data.packed;
+  if (use.chunk) use.chunk(static_cast<double>(end) / static_cast<double>(bag.size()));
+}
+
+void TraceReader::read(const Use& use) {
+  if (use.header) use.header(*header_);
+  for (const BagChunk& chunk : bag_.chunks()) take(bag_, chunk, use);
+}
+
+}  // namespace robot_control

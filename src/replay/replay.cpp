@@ -1,0 +1,381 @@
+#include "replay/replay.h"
+
+#include <deque>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "replay/frame_fields.h"
+#include "replay/owned_row.h"
+#include "replay/replicas.h"
+#include "runtime/cycles/monitor_cycle.h"
+#include "runtime/gate_setup.h"
+#include "runtime/safety_limits.h"
+#include "signals/gate_digest.h"
+
+namespace robot_control {
+namespace {
+
+constexpr std::size_t kMostDifferences = 1000;
+
+/// The sensor frame that a node used, as the driver published it or, as paused or ended, published it again.
+bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& of, std::uint64_t checksum,
+                SensorFrame& out) {
+  const SensorFrame* found = published.find(checksum);
+  const bool again = found == nullptr;
+  if (again) found = published.find(of.run, of.cycle);
+  if (found == nullptr) return false;
+  out = *found;
+  if (!again) return true;
+  for (const DriverState state : {DriverState::kPaused, DriverState::kEnded}) {
+    out.driver_state = state;
+    seal(out);
+    if (out.head.checksum == checksum) return true;
+  }
+  return false;
+}
+
+/// Which of the frames that a law used is neither in the log nor computed again; empty: none.
+struct Needed {
+  const char* name;
+  bool there;
+  std::uint64_t cycle;
+};
+std::string unknown(std::initializer_list<Needed> frames) {
+  for (const Needed& frame : frames) {
+    if (!frame.there)
+      return std::string("the ") + frame.name + " of cycle " + std::to_string(frame.cycle) +
+             ", which it used, is not known";
+  }
+  return {};
+}
+
+/// Of the frame that a law computes in the cycle of `head`.
+FrameHead own_head(const FrameHead& head) {
+  return {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns};
+}
+
+}  // namespace
+
+struct Replay::Parts {
+  Parts(const Parameters& parameters, const RobotModel& robot)
+      : gate{Gate(joint_limits(robot), gate_parameters(parameters), parameters.loop.period()),
+             Continuity(LawName::kGate, report)},
+        estimator{Estimator(parameters.estimator, robot, parameters.loop.period()),
+                  Continuity(LawName::kEstimator, report),
+                  {}},
+        controller{DriveController(parameters.controller, robot, parameters.loop.period()),
+                   Continuity(LawName::kController, report),
+                   {}},
+        monitor{SafetyMonitor(safety_limits(parameters, robot), robot, parameters.loop.period()),
+                Continuity(LawName::kMonitor, report),
+                {},
+                {},
+                {},
+                {},
+                {}} {}
+
+  void work_on(const OwnedRow& row);
+  void run(const OwnedRow& row, const DriverTrace& driver);
+  void run(const OwnedRow& row, const EstimatorTrace& trace);
+  void run(const OwnedRow& row, const ControllerTrace& trace);
+  void run(const OwnedRow& row, const MonitorTrace& trace);
+  std::string gate_input(const DriverTrace& driver, GateInput& input) const;
+  void apply(const OwnedRow& row, const MonitorTrace& trace);
+  void apply(const OwnedRow& row, const MonitorEvent& event);
+  void apply_early();
+  void judge_again(const OwnedRow& row, const MonitorEvent& event);
+
+  template <class Replica>
+  StateBefore before(Replica& replica, const LawRow& row) {
+    return replica.continuity.before(row, snapshots,
+                                     [&](const LawSnapshot& snapshot) { return restore_state(snapshot, replica.law); });
+  }
+
+  template <class Frame, class Replica>
+  void compare(const OwnedRow& row, Replica& replica, const LawRow& law, const Frame& logged,
+               FrameHistory<Frame>& published);
+  template <class Frame>
+  void publish(const LawRow& law, const Frame& logged, const Frame* computed, FrameHistory<Frame>& published);
+  template <class Replica>
+  void pass_over(const OwnedRow& row, Replica& replica) {
+    replica.continuity.pass_over(row.run(), row.cycle());
+  }
+  void differ(const OwnedRow& row, LawName law, const std::vector<FieldDifference>& fields);
+
+  ReplayReport report;
+  SnapshotStore snapshots;
+  PublishedFrames frames;
+  GateReplica gate;
+  EstimatorReplica estimator;
+  ControllerReplica controller;
+  MonitorReplica monitor;
+  std::deque<OwnedRow> rows;
+  std::unique_ptr<Variant> variant;
+  std::function<void(const VariedRow&)> watch;
+};
+
+Replay::Replay(const Parameters& parameters, const RobotModel& robot)
+    : parts_(std::make_unique<Parts>(parameters, robot)) {}
+Replay::~Replay() = default;
+
+void Replay::vary(const Parameters& parameters, const RobotModel& robot, std::function<void(const VariedRow&)> watch) {
+  parts_->variant = std::make_unique<Variant>(parameters, robot);
+  parts_->watch = std::move(watch);
+}
+
+void Replay::add(const LawSnapshot& snapshot) {
+  if (!parts_->snapshots.add(snapshot)) ++parts_->report.damaged_snapshots;
+}
+
+void Replay::add(const JoinedRow& row) {
+  parts_->rows.emplace_back(row);
+  if (parts_->rows.size() <= kAhead) return;
+  parts_->work_on(parts_->rows.front());
+  parts_->rows.pop_front();
+}
+
+void Replay::finish() {
+  for (; !parts_->rows.empty(); parts_->rows.pop_front()) parts_->work_on(parts_->rows.front());
+}
+
+const ReplayReport& Replay::report() const noexcept {
+  return parts_->report;
+}
+
+void Replay::Parts::work_on(const OwnedRow& row) {
+  apply_early();
+  if (row.driver() != nullptr) run(row, *row.driver());
+  if (row.estimator() != nullptr) run(row, *row.estimator());
+  if (row.controller() != nullptr) run(row, *row.controller());
+  if (row.monitor() != nullptr) run(row, *row.monitor());
+}
+
+void Replay::Parts::differ(const OwnedRow& row, LawName law, const std::vector<FieldDifference>& fields) {
+  ++report.laws[static_cast<std::size_t>(law)].different;
+  for (const FieldDifference& field : fields) {
+    if (report.differences.size() == kMostDifferences) return;
+    report.differences.push_back({law, row.run(), row.cycle(), field.field, field.logged, field.replayed});
+  }
+}
+
+/// The other laws may have used it: `computed`, or what a fault made of it.
+template <class Frame>
+void Replay::Parts::publish(const LawRow& law, const Frame& logged, const Frame* computed,
+                            FrameHistory<Frame>& published) {
+  if (logged.head.kind != FrameKind::kFrame) return;
+  if (intact(logged)) {
+    published.add(logged.head.checksum, logged);
+  } else if (computed != nullptr && logged.head.checksum == law.output) {
+    published.add(law.output, *computed);
+  }
+}
+
+template <class Frame, class Replica>
+void Replay::Parts::compare(const OwnedRow& row, Replica& replica, const LawRow& law, const Frame& logged,
+                            FrameHistory<Frame>& published) {
+  replica.continuity.compare();
+  Frame& computed = replica.output;
+  computed.head = own_head(logged.head);
+  seal(computed);
+  if (computed.head.checksum != law.output) {
+    std::vector<FieldDifference> fields;
+    if (logged.head.checksum == law.output && intact(logged)) fields = differences(logged, computed);
+    if (fields.empty()) {
+      fields = {{"digest", std::to_string(law.output), std::to_string(computed.head.checksum)}};
+    }
+    differ(row, replica.continuity.law(), fields);
+  }
+  publish(law, logged, &computed, published);
+}
+
+/// Returns what is missing.
+std::string Replay::Parts::gate_input(const DriverTrace& driver, GateInput& input) const {
+  static const Permit kNoPermit;
+  static const CommandFrame kNoCommand;
+  const GateCalls& calls = driver.calls;
+  const Permit* permit = frames.permit.find(calls.permit.checksum);
+  const CommandFrame* command = frames.command.find(calls.command.checksum);
+  if (calls.permit.found != Lookup::kFrame) permit = &kNoPermit;
+  if (calls.command.found != Lookup::kFrame) command = &kNoCommand;
+  input = {.run = driver.sensors.head.run,
+           .cycle = driver.sensors.head.cycle,
+           .permit_found = calls.permit.found,
+           .permit = permit,
+           .command_found = calls.command.found,
+           .command = command,
+           .sensors = &driver.sensors};
+  return unknown({{"sensor frame", intact(driver.sensors), driver.sensors.head.cycle},
+                  {"permit", permit != nullptr, calls.permit.cycle},
+                  {"command", command != nullptr, calls.command.cycle}});
+}
+
+void Replay::Parts::run(const OwnedRow& row, const DriverTrace& driver) {
+  const LawRow& law = driver.calls.law;
+  if (intact(driver.sensors)) frames.sensors.add(driver.sensors.head.checksum, driver.sensors);
+  const StateBefore state = before(gate, law);
+  if (state == StateBefore::kUnknown) return pass_over(row, gate);
+  GateInput input;
+  const std::string missing = gate_input(driver, input);
+  if (!missing.empty()) {
+    gate.continuity.lose(missing);
+    return pass_over(row, gate);
+  }
+  if (state == StateBefore::kContinued && law.new_run != 0) gate.law.enter_run();
+  const std::span<const JointCommand> commands = gate.law.step(input);
+  gate.continuity.compare();
+  if (digest_of(commands, gate.law.report()) == law.output) return;
+  std::vector<FieldDifference> fields = differences(driver.gate, gate.law.report());
+  if (fields.empty()) fields = {{"commands", "others", "what the state and the inputs give"}};
+  differ(row, LawName::kGate, fields);
+}
+
+void Replay::Parts::run(const OwnedRow& row, const EstimatorTrace& trace) {
+  const EstimatorCalls& calls = trace.calls;
+  const StateBefore state = before(estimator, calls.law);
+  SensorFrame sensors;
+  const bool has_sensors = sensors_of(frames.sensors, trace.state.head, calls.law.sensors, sensors);
+  const std::string missing = unknown({{"sensor frame", has_sensors, row.cycle()}});
+  if (state != StateBefore::kUnknown && !missing.empty()) estimator.continuity.lose(missing);
+  if (!estimator.continuity.known()) {
+    publish<StateFrame>(calls.law, trace.state, nullptr, frames.state);
+    return pass_over(row, estimator);
+  }
+  if (state == StateBefore::kContinued && calls.law.new_run != 0) estimator.law.enter_run();
+  if (calls.pose_set != 0) estimator.law.set_pose(calls.pose);
+  const StateFrame* varied = variant == nullptr ? nullptr : variant->step(calls, sensors);
+  estimator.law.step(sensors, estimator.output);
+  estimator.output.first_cycle = calls.first_cycle;
+  compare(row, estimator, calls.law, trace.state, frames.state);
+  if (varied == nullptr) return;
+  watch({.run = row.run(), .cycle = row.cycle(), .state = &estimator.output, .varied_state = varied});
+}
+
+void Replay::Parts::run(const OwnedRow& row, const ControllerTrace& trace) {
+  const ControllerCalls& calls = trace.calls;
+  const StateBefore state = before(controller, calls.law);
+  SensorFrame sensors;
+  const bool permitted = calls.permit.found == Lookup::kFrame;
+  const ControlInput input{.sensors = &sensors,
+                           .state = frames.state.find(calls.state),
+                           .permit = permitted ? frames.permit.find(calls.permit.checksum) : nullptr,
+                           .request = calls.request};
+  const bool has_sensors = sensors_of(frames.sensors, trace.command.head, calls.law.sensors, sensors);
+  const std::string missing = unknown({{"sensor frame", has_sensors, row.cycle()},
+                                       {"state", input.state != nullptr, row.cycle()},
+                                       {"permit", !permitted || input.permit != nullptr, calls.permit.cycle}});
+  if (state != StateBefore::kUnknown && !missing.empty()) controller.continuity.lose(missing);
+  if (!controller.continuity.known()) {
+    publish<CommandFrame>(calls.law, trace.command, nullptr, frames.command);
+    return pass_over(row, controller);
+  }
+  if (state == StateBefore::kContinued && calls.law.new_run != 0) {
+    controller.law.enter_run(calls.inbox, calls.with_zero != 0);
+  }
+  if (calls.tuned != 0) controller.law.tune(trace.tuning);
+  const CommandFrame* varied = variant == nullptr ? nullptr : variant->step(calls, input, controller.law);
+  controller.law.step(input, controller.output);
+  compare(row, controller, calls.law, trace.command, frames.command);
+  if (varied == nullptr) return;
+  watch({.run = row.run(), .cycle = row.cycle(), .command = &controller.output, .varied_command = varied});
+}
+
+void Replay::Parts::run(const OwnedRow& row, const MonitorTrace& trace) {
+  const MonitorCalls& calls = trace.calls;
+  const bool applied = monitor.applied_process == calls.law.process && monitor.applied_number == calls.law.number + 1;
+  const StateBefore state = before(monitor, calls.law);
+  if (state == StateBefore::kContinued && !applied) apply(row, trace);
+  const bool has_sensors = sensors_of(frames.sensors, trace.permit.head, calls.law.sensors, monitor.sensors);
+  const bool commanded = calls.command.found == Lookup::kFrame;
+  const CommandFrame* command = commanded ? frames.command.find(calls.command.checksum) : nullptr;
+  const std::string missing = unknown(
+      {{"sensor frame", has_sensors, row.cycle()}, {"command", !commanded || command != nullptr, calls.command.cycle}});
+  if (monitor.continuity.known() && !missing.empty()) monitor.continuity.lose(missing);
+  if (!monitor.continuity.known()) {
+    publish<Permit>(calls.law, trace.permit, nullptr, frames.permit);
+    return pass_over(row, monitor);
+  }
+  if (commanded) monitor.command = *command;
+  monitor.input = {.sensors = &monitor.sensors,
+                   .command = commanded ? &monitor.command : nullptr,
+                   .state_seen = calls.state_seen != 0,
+                   .state_first_cycle = calls.state_first_cycle,
+                   .corrupt = calls.corrupt != 0,
+                   .operator_input = calls.operator_input};
+  monitor.head = own_head(trace.permit.head);
+  const Permit* varied = variant == nullptr ? nullptr : variant->step(calls, monitor.input);
+  monitor.law.step(monitor.input, monitor.output);
+  compare(row, monitor, calls.law, trace.permit, frames.permit);
+  if (varied == nullptr) return;
+  watch({.run = row.run(), .cycle = row.cycle(), .permit = &monitor.output, .varied_permit = varied});
+}
+
+/// What happened between two rows of the monitor stands in the second one: it is looked for among those to come.
+void Replay::Parts::apply_early() {
+  if (!monitor.continuity.known()) return;
+  for (const OwnedRow& row : rows) {
+    if (row.monitor() == nullptr) continue;
+    const LawRow& law = row.monitor()->calls.law;
+    if (monitor.applied_process == law.process && monitor.applied_number == law.number + 1) return;
+    if (!monitor.continuity.follows(law)) continue;
+    apply(row, *row.monitor());
+    return;
+  }
+}
+
+void Replay::Parts::apply(const OwnedRow& row, const MonitorTrace& trace) {
+  const MonitorCalls& calls = trace.calls;
+  monitor.applied_process = calls.law.process;
+  monitor.applied_number = calls.law.number + 1;
+  if (calls.events_lost != 0) return monitor.continuity.lose("more happened between two cycles than a row holds");
+  for (std::size_t i = 0; i < calls.event_count && i < kMonitorEvents; ++i) apply(row, calls.events[i]);
+}
+
+void Replay::Parts::apply(const OwnedRow& row, const MonitorEvent& event) {
+  SafetyMonitor& law = monitor.law;
+  switch (event.call) {
+    case MonitorCall::kEnterRun:
+      return law.enter_run(event.operator_input);
+    case MonitorCall::kBegin:
+      return law.begin(event.argument);
+    case MonitorCall::kDriverLost:
+      return law.driver_lost();
+    case MonitorCall::kDriverEnded:
+      return law.driver_ended();
+    case MonitorCall::kSensorsCorrupt:
+      return law.sensors_corrupt();
+    case MonitorCall::kEmergencyStop:
+      law.note_emergency_stop(event.operator_input);
+      return;
+    case MonitorCall::kRefuseReset:
+      return law.refuse_reset(event.operator_input, static_cast<ResetRefusal>(event.argument));
+    case MonitorCall::kStepAgain:
+    case MonitorCall::kStepWithoutSensors:
+      return judge_again(row, event);
+  }
+}
+
+/// A permit that was published once more.
+void Replay::Parts::judge_again(const OwnedRow& row, const MonitorEvent& event) {
+  Permit& permit = monitor.output;
+  if (event.call == MonitorCall::kStepAgain) {
+    monitor.sensors.driver_state = static_cast<DriverState>(event.argument);
+    monitor.input.operator_input = event.operator_input;
+    monitor.law.step(monitor.input, permit);
+    permit.head = monitor.head;
+  } else {
+    monitor.law.step_without_sensors(event.operator_input, permit);
+    permit.head = {.run = MonitorCycle::kRunBeforeDriver};
+  }
+  seal(permit);
+  if (permit.head.checksum != event.output) {
+    differ(
+        row, LawName::kMonitor,
+        {{"digest of a permit published again", std::to_string(event.output), std::to_string(permit.head.checksum)}});
+  }
+  frames.permit.add(event.output, permit);
+}
+
+}  // namespace robot_control

@@ -1,0 +1,57 @@
+#pragma once
+/// Runs the laws of a log again, from its rows and snapshots alone, and compares every bit of what they give.
+///
+///   snapshot ─► state of a law
+///   rows     ─► its inputs: sensors, requests, and which frames of the other laws it used, by checksum
+///            ─► step ─► checksum of the output, compared with that in the row; the output is what the others used
+///
+/// A law whose state is not known (before its first snapshot, after rows that are missing, in another process) is not
+/// compared until its next snapshot; neither is one that used a frame that is neither in the log nor computed again.
+/// What was published instead of a law's output, because a fault was injected, is in the log, and is what the others
+/// used.
+///
+/// The permit that a monitor publishes again while the driver stands is an event in its next row. Therefore rows are
+/// worked on kAhead rows late, and the events of the monitor's next row as soon as its last step is done.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "parameters/parameters.h"
+#include "replay/report.h"
+#include "replay/variant.h"
+#include "robot/robot_model.h"
+#include "signals/law_snapshot.h"
+#include "telemetry/joined_row.h"
+
+namespace robot_control {
+
+class Replay {
+ public:
+  static constexpr std::size_t kAhead = 8;  ///< rows; no law uses a permit that is older
+
+  /// `parameters` and `robot` of the log. Throws as the laws do.
+  Replay(const Parameters& parameters, const RobotModel& robot);
+  ~Replay();
+
+  /// The laws with other parameters beside those of the log, before the first row; `watch` gets each cycle of each.
+  void vary(const Parameters& parameters, const RobotModel& robot, std::function<void(const VariedRow&)> watch);
+
+  /// In any order, before the row that it belongs to. Throws ReplayError: it is of another build.
+  void add(const LawSnapshot& snapshot);
+
+  /// In the order of the log.
+  void add(const JoinedRow& row);
+
+  /// After the last row.
+  void finish();
+
+  const ReplayReport& report() const noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,60 @@
+#pragma once
+/// What a replay found.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "signals/law_snapshot.h"
+
+namespace robot_control {
+
+/// "gate", or the law's node.
+std::string_view name_of(LawName law) noexcept;
+
+/// One number that the law computes differently from the log.
+struct ReplayDifference {
+  LawName law = LawName::kGate;
+  std::int64_t run = 0;  ///< JoinedRow::run
+  std::uint64_t cycle = 0;
+  std::string field;  ///< "joints[1].effort"; "digest" where the log holds no more than the frame's checksum
+  std::string logged;
+  std::string replayed;
+};
+
+/// Cycles of one law for one reason.
+struct ReplayGap {
+  LawName law = LawName::kGate;
+  std::int64_t run = 0;
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  std::uint64_t rows = 0;
+  std::string reason;
+};
+
+struct LawReport {
+  std::uint64_t compared = 0;      ///< rows
+  std::uint64_t different = 0;     ///< of these
+  std::uint64_t not_compared = 0;  ///< rows
+  std::uint64_t restored = 0;      ///< snapshots that the law was set to
+};
+
+struct ReplayReport {
+  std::array<LawReport, kLaws> laws;
+  std::vector<ReplayDifference> differences;  ///< of the first rows that differ, in their order
+  std::vector<ReplayGap> gaps;
+  std::uint64_t damaged_snapshots = 0;  ///< whose checksum is wrong: not used
+
+  /// Every row that could be compared was computed again, bit for bit, and there was at least one.
+  bool exact() const noexcept;
+};
+
+/// "diff_drive_controller, run 0, cycle 1234: joints[1].effort is 0.5, logged as 0.25"
+std::string sentence(const ReplayDifference& difference);
+
+/// "safety_monitor, run 0, cycles 10 … 29 (20 rows): rows are missing"
+std::string sentence(const ReplayGap& gap);
+
+}  // namespace robot_control

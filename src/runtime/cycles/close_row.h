@@ -1,0 +1,32 @@
+#pragma once
+/// What a law is given is noted from row to row (signals/law_calls.h).
+
+#include <cstdint>
+
+#include "signals/law_calls.h"
+
+namespace robot_control {
+
+/// Number of a process that gave itself none: alone on its channels.
+inline constexpr std::uint64_t kOnlyProcess = 1;
+
+/// Of a law that has not run yet.
+template <class Calls>
+Calls first_row() noexcept {
+  Calls calls;
+  calls.law.process = kOnlyProcess;
+  return calls;
+}
+
+/// `noted` goes into `row`, and the notes of the next one begin.
+template <class Calls>
+void close_row(Calls& noted, std::uint64_t sensors, std::uint64_t output, Calls& row) noexcept {
+  row = noted;
+  row.law.sensors = sensors;
+  row.law.output = output;
+  noted = {};
+  noted.law.process = row.law.process;
+  noted.law.number = row.law.number + 1;
+}
+
+}  // namespace robot_control

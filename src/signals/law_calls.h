@@ -1,0 +1,101 @@
+#pragma once
+/// What each law was given in one cycle, beside the frames that the rows of the other nodes hold. With those rows it is
+/// enough to run the law again, bit for bit.
+///
+/// A frame that a law used is named by its checksum: a node may publish twice in one cycle, and another process may
+/// publish in its place. Where an injected fault changed a frame, `LawRow::output` is that of the healthy one, and the
+/// row holds the published one.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "signals/frame_head.h"
+#include "signals/geometry.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+/// A frame that was looked up.
+struct UsedFrame {
+  Lookup found = Lookup::kMissing;
+  std::uint64_t cycle = 0;     ///< where it was found
+  std::uint64_t checksum = 0;  ///< FrameHead::checksum, where it was found
+};
+
+template <class Frame>
+UsedFrame used(Lookup found, const Frame& frame) noexcept {
+  if (found != Lookup::kFrame) return {.found = found};
+  return {.found = found, .cycle = frame.head.cycle, .checksum = frame.head.checksum};
+}
+
+/// One row of a law.
+struct LawRow {
+  std::uint64_t process = 0;  ///< random number of the process whose law it is
+  std::uint64_t number = 0;   ///< rows of this process before this one; a gap: rows were lost
+  std::uint64_t output = 0;   ///< checksum of what the law computed, under the head of its cycle
+  std::uint64_t sensors = 0;  ///< checksum of the sensor frame of this cycle
+  std::uint64_t new_run = 0;  ///< 1: `enter_run` was called since the row before
+};
+
+struct GateCalls {
+  LawRow law;  ///< `output`: digest_of(commands, report)
+  UsedFrame command;
+  UsedFrame permit;
+};
+
+struct EstimatorCalls {
+  LawRow law;
+  std::uint64_t first_cycle = 0;  ///< StateFrame::first_cycle
+  std::uint64_t pose_set = 0;     ///< 1: set_pose(pose) was called before the step
+  Vector3 pose{};                 ///< x [m], y [m], yaw [rad]
+};
+
+/// The permit is one that had not expired.
+struct ControllerCalls {
+  LawRow law;
+  std::uint64_t with_zero = 0;  ///< of `enter_run`
+  std::uint64_t tuned = 0;      ///< 1: tune(ControllerTrace::tuning) was called before the step
+  VelocityCommand inbox;        ///< of `enter_run`
+  VelocityCommand request;
+  std::uint64_t state = 0;  ///< checksum of the state frame of this cycle
+  UsedFrame permit;
+};
+
+/// What else may be called on the monitor.
+enum class MonitorCall : std::uint64_t {
+  kEnterRun = 1,            ///< enter_run(operator_input)
+  kBegin = 2,               ///< begin(argument)
+  kStepAgain = 3,           ///< step with the inputs of the step before, but DriverState(argument) and operator_input
+  kDriverLost = 4,          ///< driver_lost()
+  kDriverEnded = 5,         ///< driver_ended()
+  kSensorsCorrupt = 6,      ///< sensors_corrupt()
+  kEmergencyStop = 7,       ///< note_emergency_stop(operator_input), with anything new on e-stop topic or service
+  kRefuseReset = 8,         ///< refuse_reset(operator_input, ResetRefusal(argument))
+  kStepWithoutSensors = 9,  ///< step_without_sensors(operator_input)
+};
+
+struct MonitorEvent {
+  MonitorCall call{};
+  std::uint64_t argument = 0;
+  std::uint64_t output = 0;  ///< of a step: as LawRow::output
+  OperatorInput operator_input;
+};
+
+/// Room for a new run in a monitor's first row, and for two requests in a pause.
+inline constexpr std::size_t kMonitorEvents = 8;
+
+/// First the events in their order, then the step of this cycle.
+struct MonitorCalls {
+  LawRow law;
+  std::uint64_t event_count = 0;
+  std::uint64_t events_lost = 0;  ///< for which there was no room
+  std::array<MonitorEvent, kMonitorEvents> events{};
+  UsedFrame command;  ///< of the cycle before
+  std::uint64_t state_seen = 0;
+  std::uint64_t state_first_cycle = 0;
+  std::uint64_t corrupt = 0;
+  OperatorInput operator_input;
+};
+
+}  // namespace robot_control

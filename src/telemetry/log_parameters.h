@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace robot_control {
+
+/// Which cycles run.bag holds.
+enum class RecordMode {
+  kMotion,   ///< while the robot moves, with what came before (recording/bag_log.h)
+  kAlways,   ///< all
+  kRequest,  ///< from a call of the service until it is taken back
+  kOff,      ///< there is no run.bag
+};
+
+struct TelemetryParameters {
+  std::string directory;  ///< where runs are written; empty or relative: from where the node was started
+  bool csv = true;        ///< write run.csv beside run.bag
+  RecordMode record = RecordMode::kMotion;
+  double split_size = 1;         ///< GB (10⁹ bytes), of one run.bag; 0: no limit
+  double split_time = 3600;      ///< s, of one run.bag; 0: no limit
+  double quota = 5;              ///< GB of all runs in `directory` together; 0: no limit
+  double black_box = 0.2;        ///< GB of the ring file in `directory`/black_box, wall clock only; 0: there is none
+  std::uint64_t incidents = 10;  ///< of each kind, the newest that are kept (recording/black_box); 0: none is saved
+};
+
+}  // namespace robot_control

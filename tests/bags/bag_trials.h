@@ -1,0 +1,24 @@
+#pragma once
+/// Damaged bags, one per seed: bits flipped, lengths overwritten, bytes removed or inserted, records exchanged,
+/// repeated or removed, cut off, foreign. What BagReader makes of it is right if
+///   refused    with byte and field
+///   accepted   every connection, time and length of a message is that of the undamaged bag; so is its content, but in
+///              uncompressed chunks, which have no checksum
+///   cut        the same of what is read, which is the begin of the undamaged bag; the last chunk, whose index may be
+///              lost, is excepted where it is uncompressed
+/// within a processor time and a memory that follow from the file's size.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace robot_control {
+
+struct BagFigures {
+  std::uint64_t refused = 0, cut = 0, whole = 0;
+};
+
+/// What is wrong with the verdict on the bag of `seed`; none: nothing. Adds to `figures`.
+std::optional<std::string> bag_violation(std::uint64_t seed, BagFigures& figures);
+
+}  // namespace robot_control

@@ -1,0 +1,133 @@
+"""What a black box holds after SIGKILL of all nodes: four nodes and a telemetry as processes on the wall clock, without
+ROS, killed at a random moment, again and again.
+
+Judged are trials whose black box cannot be read or has a gap, and what is missing: of each node, the cycles from its
+newest row in the black box to the newest frame that it has published, which is still in shared memory.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from robot_control._robot_control import RunLogError, save_black_box
+from robot_control.common.run_log import read_log
+from robot_control.installed_files import share_file
+
+from lab.log_bench import NODES, row, script
+
+ALL_TRIALS = 100
+MOST_MISSING = 10.0  # ms
+LONGEST = 2.0  # s from the first second in run.bag to the kill
+START_LIMIT = 30.0  # s until that second is there
+A_SECOND = 100_000  # bytes, less than one of run.bag
+PROCESSES = ("mujoco_plant", *NODES)
+
+
+def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+    """The table of `trials` from seed `first` on, and whether all figures are as they have to be."""
+    missing: list[float] = []
+    bad = 0
+    with tempfile.TemporaryDirectory(prefix="blackbox-") as name:
+        folder = Path(name)
+        (folder / "script.csv").write_text(script(60_000))
+        try:
+            for seed in range(first, first + trials):
+                nodes = start(programs, folder)
+                try:
+                    missing.append(trial(nodes, folder, programs, seed))
+                except (RunLogError, RuntimeError) as error:
+                    bad += 1
+                    say(f"seed {seed}: {error}")
+                finally:
+                    for node in nodes:
+                        node.kill()
+                        node.wait()
+        finally:
+            for path in Path("/dev/shm").glob(f"robot_control.*.{bus()}.*"):
+                path.unlink(missing_ok=True)
+    figures = sorted(missing) or [float("inf")]
+    rows = [
+        row("black boxes not readable or with a gap", bad, "of " + str(trials), 0),
+        row("missing, median", figures[len(figures) // 2], "ms", 0),
+        row("missing, most", figures[-1], "ms", MOST_MISSING),
+        row("with more missing than that", sum(each > MOST_MISSING for each in figures), "of " + str(trials), 0),
+    ]
+    return {"bench": "blackbox", "rows": rows}, bad == 0 and figures[-1] <= MOST_MISSING
+
+
+def bus() -> str:
+    """The same for all trials: what the killed nodes leave in shared memory is used again."""
+    return f"blackbox-{os.getpid()}"
+
+
+def start(programs: Path, folder: Path) -> list[subprocess.Popen[bytes]]:
+    """All nodes, in one process group."""
+    (folder / "run.bag").unlink(missing_ok=True)
+    program = programs.parent / "support" / "rc_participant"
+    settings = {
+        "robot.command_script": folder / "script.csv",
+        "robot.wait_for_nodes": "true",
+        "robot.wait_for_telemetry": "true",
+        "telemetry.directory": folder,
+        "telemetry.csv": "false",
+        "telemetry.record": "always",
+        "telemetry.black_box": 0.03,
+        "telemetry.incidents": 0,
+    }
+    pairs = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+    arguments = ["--bus", bus(), "--params", str(share_file("config/robot_params.yaml")), *pairs]
+    nodes: list[subprocess.Popen[bytes]] = []
+    for node in PROCESSES:
+        group = nodes[0].pid if nodes else 0
+        nodes.append(
+            subprocess.Popen(
+                [program, node, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, process_group=group
+            )
+        )
+    return nodes
+
+
+def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, seed: int) -> float:
+    """Kills all nodes at the same moment; ms of cycles that are missing of the node of which most are.
+
+    Raises:
+        RuntimeError: a node ended before, or the black box has a gap.
+        RunLogError: it cannot be read.
+    """
+    end = time.monotonic() + START_LIMIT
+    while not (log := folder / "run.bag").exists() or log.stat().st_size < A_SECOND:
+        if time.monotonic() > end:
+            raise RuntimeError("no second of rows was written")
+        time.sleep(0.05)
+    time.sleep(np.random.default_rng(seed).uniform(0, LONGEST))
+    ended = [name for name, node in zip(PROCESSES, nodes, strict=True) if node.poll() is not None]
+    os.killpg(nodes[0].pid, signal.SIGKILL)
+    for node in nodes:
+        node.wait(START_LIMIT)
+    if ended:
+        raise RuntimeError(f"{', '.join(ended)} ended by itself")
+    out = folder / f"trial-{seed}"
+    newest_ns: list[int]
+    rows, newest_ns, missing = save_black_box(str(folder / "black_box" / "ring"), str(out / "run.bag"))
+    if missing:
+        raise RuntimeError(missing)
+    cycles = read_log(out / "run.bag", ["cycle"])["cycle"]
+    if rows == 0 or np.any(np.diff(cycles) != 1):
+        raise RuntimeError(f"{rows} cycles, with gaps")
+    missing_ns = [published - stored for published, stored in zip(newest_stamps(programs), newest_ns, strict=True)]
+    return max(missing_ns) * 1e-6
+
+
+def newest_stamps(programs: Path) -> list[int]:
+    """Of the newest frame that each node has published, ns."""
+    program = programs.parent / "support" / "rc_newest_stamps"
+    answer = subprocess.run([program, "--bus", bus()], capture_output=True, text=True, check=True)
+    return [int(line) for line in answer.stdout.split()]

@@ -1,0 +1,72 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "black_box_fixture.h"
+#include "replay/replay.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// As bits: every message of a log.
+std::vector<std::string> messages_of(const std::string& bag) {
+  std::vector<std::string> messages;
+  BagReader reader(bag);
+  for (const BagChunk& chunk : reader.chunks()) {
+    reader.read(chunk, [&](const BagMessage& message) { messages.emplace_back(message.data); });
+  }
+  return messages;
+}
+
+TEST_F(ABlackBox, BecomesTheLogThatTelemetryWouldHaveWritten) {
+  BlackBox box(path("ring"), kBytes, build_id(), header());
+  drive_on(box, 2000);
+  log->close();
+  EXPECT_EQ(save().rows, 2000u);
+  auto written = messages_of(path("log/run.bag")), saved = messages_of(path("saved/run.bag"));
+  ASSERT_EQ(saved.size(), written.size());
+  EXPECT_TRUE(std::equal(saved.begin() + 1, saved.end(), written.begin() + 1)) << "beside the header";
+}
+
+TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirstSnapshotOn) {
+  BlackBox box(path("ring"), 8 << 20, build_id(), header());
+  drive_on(box, 12000);
+  save();
+  const std::vector<std::uint64_t> cycles = cycles_of(path("saved/run.bag"));
+  ASSERT_FALSE(cycles.empty());
+  EXPECT_GT(cycles.front(), 0u) << "it is full";
+  EXPECT_EQ(cycles.back(), 11999u);
+  EXPECT_EQ(cycles.size(), cycles.back() - cycles.front() + 1) << "no gap";
+
+  Replay replay(drive_parameters(), loop.robot());
+  TraceReader reader(path("saved/run.bag"));
+  reader.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(reader.header().period)); },
+               .snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+  replay.finish();
+  for (const LawReport& law : replay.report().laws) {
+    EXPECT_EQ(law.different, 0u);
+    const std::uint64_t first = (cycles.front() + kSnapshotCycles - 1) / kSnapshotCycles * kSnapshotCycles;
+    EXPECT_EQ(law.compared, 12'000u - first) << "from the first snapshot on";
+  }
+}
+
+TEST_F(ABlackBox, OfAnotherBuildIsRefusedByItsName) {
+  BlackBox box(path("ring"), kBytes, 0x0123456789abcdefU, header());
+  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("by the build 0123456789abcdef")));
+  EXPECT_FALSE(std::filesystem::exists(path("saved")));
+}
+
+TEST_F(ABlackBox, IsNoOtherFile) {
+  folder.write("ring", std::string(5 << 20, 'x'));
+  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
+  folder.write("ring", "");
+  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,174 @@
+/// What happens to nodes in real time, in random order: late and skipped cycles, pauses, silence, corrupt frames,
+/// restarts, new runs, and requests in the middle of all that. What they did is computed again, bit for bit.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "replay/recorded.h"
+#include "runtime/cycle_fixture.h"
+#include "signals/names.h"
+#include "telemetry/join.h"
+
+namespace robot_control {
+namespace {
+
+class RandomNodes {
+ public:
+  explicit RandomNodes(unsigned seed) : random_(seed) {}
+
+  /// One cycle, and perhaps something before it.
+  void cycle() {
+    if (chance(0.02)) act();
+    loop_.driver.step();
+    constexpr double kLate = 0.03;
+    const bool estimated = !chance(kLate) && loop_.estimator->step();
+    const bool controlled = !chance(kLate) && loop_.controller->step();
+    const bool monitored = !chance(kLate) && loop_.monitor->step();
+    add(loop_.driver);
+    if (estimated) add(*loop_.estimator);
+    if (controlled) add(*loop_.controller);
+    if (monitored) add(*loop_.monitor);
+  }
+
+  ReplayReport replay() {
+    join_.finish();
+    return recording.replay(parameters(), loop_.robot);
+  }
+
+  /// States that an estimator with the same parameters would have given otherwise than the log's.
+  int varied_otherwise() {
+    join_.finish();
+    int otherwise = 0;
+    Replay again(parameters(), loop_.robot);
+    again.vary(parameters(), loop_.robot, [&](const VariedRow& row) {
+      if (row.state == nullptr) return;
+      otherwise += row.varied_state->pose_odom.position != row.state->pose_odom.position ? 1 : 0;
+    });
+    for (const LawSnapshot& snapshot : recording.snapshots) again.add(snapshot);
+    for (const RecordedRow& row : recording.rows) again.add(row.joined());
+    again.finish();
+    return otherwise;
+  }
+
+  Recording recording;
+
+ private:
+  static Parameters parameters() {
+    Parameters found;
+    found.loop.rate = 1 / kPeriod;
+    return found;
+  }
+
+  template <class Cycle>
+  void add(const Cycle& cycle) {
+    recording.add(cycle.snapshot());
+    join_.add(cycle.trace());
+  }
+
+  bool chance(double probability) { return std::uniform_real_distribution<>()(random_) < probability; }
+
+  void act() {
+    switch (std::uniform_int_distribution<>(0, 11)(random_)) {
+      case 0:
+        loop_.controller->inbox().store({.twist = chance(0.5) ? kForward : Twist{}, .count = ++count_});
+        return;
+      case 1:
+        loop_.estimator->request_pose({1, -2, 0.5 * static_cast<double>(++count_)});
+        return;
+      case 2:
+        loop_.driver.begin_run(loop_.driver.run() + 1);
+        return;
+      case 3:
+        loop_.restart_estimator();
+        loop_.estimator->set_process(++processes_);
+        return;
+      case 4:
+        loop_.restart_controller();
+        loop_.controller->set_process(++processes_);
+        return;
+      case 5:
+        loop_.restart_monitor();
+        loop_.monitor->set_process(++processes_);
+        requests_ = {};
+        return;
+      case 6:
+        return pause();
+      case 7:
+        loop_.monitor->silence();
+        return ask();
+      case 8:
+        return corrupt();
+      case 9:
+        loop_.machine.faults = {};
+        return;
+      case 10:
+        set_fault(loop_.machine.faults, "monitor", chance(0.5) ? "intermittent" : "garbage");
+        return;
+      default:
+        return ask();
+    }
+  }
+
+  /// An emergency stop or a reset, in time or while nothing comes.
+  void ask() {
+    if (chance(0.3)) {
+      ++requests_.e_stop_services;
+    } else {
+      ++requests_.resets;
+    }
+    loop_.monitor->inbox().store(requests_);
+    if (chance(0.5)) loop_.monitor->idle();
+  }
+
+  void pause() {
+    for (int i = 0; i < 3; ++i) {
+      loop_.driver.publish_paused();
+      if (chance(0.5)) ask();
+      if (loop_.monitor->step()) add(*loop_.monitor);
+    }
+  }
+
+  void corrupt() {
+    if (loop_.driver.next_cycle() == 0) return;
+    SensorFrame broken = loop_.driver.trace().sensors;
+    broken.head.cycle += 1;
+    broken.head.checksum = 0;
+    loop_.sensors.writer.store(broken);
+    for (int i = 0; i < 3; ++i) {
+      if (loop_.monitor->step()) add(*loop_.monitor);
+    }
+  }
+
+  std::mt19937 random_;
+  Join join_{kPeriod, [this](const JoinedRow& row) { recording.rows.emplace_back(row); }};
+  Loop loop_{Nodes::kWithFaults};
+  std::uint64_t count_ = 0;
+  std::uint64_t processes_ = 1;
+  OperatorInput requests_;
+};
+
+TEST(ReplayedNodes, AreComputedAgainBitForBitWhateverHappens) {
+  constexpr unsigned kSeeds = 20;
+  constexpr int kCycles = 2000;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    RandomNodes nodes(seed);
+    for (int k = 0; k < kCycles; ++k) nodes.cycle();
+    const ReplayReport report = nodes.replay();
+    EXPECT_TRUE(report.exact()) << "seed " << seed << "\n" << text_of(report);
+    EXPECT_TRUE(report.gaps.empty()) << "seed " << seed << "\n" << text_of(report);
+  }
+}
+
+TEST(ReplayedNodes, WithTheSameParametersKeepTheirPoseOverRestarts) {
+  constexpr unsigned kSeeds = 5;
+  constexpr int kCycles = 2000;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    RandomNodes nodes(seed);
+    for (int k = 0; k < kCycles; ++k) nodes.cycle();
+    EXPECT_EQ(nodes.varied_otherwise(), 0) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace robot_control

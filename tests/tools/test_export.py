@@ -1,0 +1,105 @@
+"""export.py: one log in other formats."""
+
+import importlib
+import os
+
+import numpy as np
+import pytest
+from robot_control import ClosedLoop
+from robot_control.common.pypi import use_packages
+from robot_control.common.run_log import read_log, read_run
+from robot_control.export.main import main
+from robot_control.export.topics import odom_frame, root_link
+
+SECONDS = 2.0
+MUST_RUN = bool(os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"))
+
+
+@pytest.fixture(scope="module")
+def run_bag(tmp_path_factory):
+    """A drive whose request changes once."""
+    folder = tmp_path_factory.mktemp("log")
+    loop = ClosedLoop(seed=5)
+    loop.log_into(folder)
+    loop.command(0.0, 0.0)
+    loop.run(SECONDS / 2)
+    loop.command(0.4, 0.3)
+    loop.run(SECONDS / 2)
+    loop.end_log()
+    return folder / "run.bag"
+
+
+def test_a_csv_reads_as_the_bag_does(run_bag, tmp_path):
+    main([str(run_bag), "--csv", str(tmp_path / "run.csv")])
+    bag, table = read_log(run_bag), read_log(tmp_path / "run.csv")
+    assert list(table) == list(bag)
+    for name, values in bag.items():
+        np.testing.assert_array_equal(table[name], values, err_msg=name)
+
+
+def test_without_an_output_nothing_is_done_silently(run_bag, capsys):
+    with pytest.raises(SystemExit) as end:
+        main([str(run_bag)])
+    assert end.value.code == 2
+    assert "--csv, --mcap or --topics" in capsys.readouterr().err
+
+
+def test_a_bag_that_was_cut_off_is_exported_up_to_there_and_that_is_said(run_bag, tmp_path, capsys):
+    cut = tmp_path / "cut.bag"
+    cut.write_bytes(run_bag.read_bytes()[: run_bag.stat().st_size * 2 // 3])
+    main([str(cut), "--csv", str(tmp_path / "run.csv")])
+    assert "the bag has no end" in capsys.readouterr().err
+
+
+def test_topics_are_those_of_a_robot_at_its_rates(run_bag, tmp_path):
+    rosbag = pytest.importorskip("rosbag")
+    main([str(run_bag), "--topics", str(tmp_path / "drive.bag")])
+    log = read_run(run_bag)
+    with rosbag.Bag(str(tmp_path / "drive.bag")) as bag:
+        messages = {}
+        for topic, message, stamp in bag.read_messages():
+            messages.setdefault(topic, []).append((message, stamp.to_sec()))
+    assert sorted(messages) == ["cmd_vel", "joint_states", "odom", "tf"]
+    assert len(messages["odom"]) == len(messages["tf"]) == SECONDS * 50
+    assert len(messages["joint_states"]) == SECONDS * 100
+    requested = [(message.linear.x, message.angular.z) for message, _ in messages["cmd_vel"]]
+    assert requested[0] == (0.0, 0.0)
+    assert requested[-1] == (0.4, 0.3)
+    odometry, time = messages["odom"][-1]
+    row = int(np.argmin(np.abs(log.ros_time - time)))
+    assert odometry.pose.pose.position.x == log.columns["estimate_x"][row]
+    assert odometry.pose.covariance[35] == log.columns["estimate_yaw_variance"][row]
+    assert odometry.child_frame_id == "base_link"
+    assert messages["tf"][-1][0].transforms[0].header.frame_id == "odom"
+
+
+def mcap_reader():
+    """PyPI's mcap.reader, which is optional but for .ci/nightly."""
+    use_packages("export")
+    if MUST_RUN:
+        return importlib.import_module("mcap.reader")
+    return pytest.importorskip("mcap.reader", reason="mcap is not installed: scripts/setup --export")
+
+
+def test_an_mcap_holds_every_message_as_it_is(run_bag, tmp_path):
+    reader = mcap_reader()
+    rosbag = pytest.importorskip("rosbag")
+    main([str(run_bag), "--mcap", str(tmp_path / "run.mcap")])
+    with rosbag.Bag(str(run_bag)) as bag:
+        expected = [(topic, message[1]) for topic, message, _ in bag.read_messages(raw=True)]
+    with (tmp_path / "run.mcap").open("rb") as file:
+        found = [(channel.topic, message.data) for _, channel, message in reader.make_reader(file).iter_messages()]
+    assert sorted(found) == sorted(expected)
+
+
+def test_what_is_no_log_is_refused_and_nothing_is_written(tmp_path):
+    (tmp_path / "text").write_text("no bag")
+    with pytest.raises(SystemExit, match="is no ROS bag"):
+        main([str(tmp_path / "text"), "--csv", str(tmp_path / "out.csv")])
+    assert not (tmp_path / "out.csv").exists()
+
+
+def test_frames_are_those_of_the_robot():
+    urdf = '<robot><link name="a"/><link name="b"/><joint><parent link="b"/><child link="a"/></joint></robot>'
+    assert root_link(urdf) == "b"
+    assert odom_frame("state_estimator: {odom_frame: robot/odom}") == "robot/odom"
