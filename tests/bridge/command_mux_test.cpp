@@ -43,7 +43,7 @@ class CommandMuxTest : public testing::Test {
   double result() const { return mux_.value().twist.linear[0]; }
 
   ArrivalTime now_{.ros_ns = 1'700'000'000 * kSecond, .loop_ns = 5000 * kSecond};
-  CommandMux mux_{shipped(), false};
+  CommandMux mux_{shipped(), 1.25, false};
 };
 
 TEST_F(CommandMuxTest, TheLiveSourceOfTheHighestPriorityCommands) {
@@ -77,9 +77,8 @@ TEST_F(CommandMuxTest, WhereNoneIsLiveTheResultIsZeroAndNeverSilence) {
   pass(kSecond);
   EXPECT_EQ(result(), 0);
   EXPECT_EQ(mux_.winner(), "");
-  EXPECT_EQ(mux_.value().contested, 0u);
   CommandWatch watch(1.25, 0.001);
-  watch.reset();
+  watch.enter_run();
   for (std::uint64_t cycle = 0; cycle < 5000; ++cycle) {
     if (cycle % 20 == 0) pass(kSecond / 50);
     watch.step(mux_.value(), cycle);
@@ -87,8 +86,9 @@ TEST_F(CommandMuxTest, WhereNoneIsLiveTheResultIsZeroAndNeverSilence) {
       ASSERT_EQ(watch.reasons(), 0u);
     }
   }
-  EXPECT_TRUE(watch.zero_requested());
   EXPECT_EQ(watch.timeouts(), 0u);
+  EXPECT_EQ(watch.zero_requests(), 0u) << "that zero is no sender's";
+  EXPECT_EQ(watch.silent_cycles(4999), 4999u);
 }
 
 TEST_F(CommandMuxTest, ALockMakesItZeroForSourcesOfALowerPriority) {
@@ -106,7 +106,7 @@ TEST_F(CommandMuxTest, ALockMakesItZeroForSourcesOfALowerPriority) {
 TEST_F(CommandMuxTest, ALockLetsAHigherOrEqualPriorityPass) {
   CommandSourceList list = shipped();
   list.locks = {{"no_programs", "no_programs", 0, 30}};
-  mux_ = CommandMux(list, false);
+  mux_ = CommandMux(list, 1.25, false);
   mux_.receive_lock(0, true, now_.loop_ns);
   receive(kCmd, 0.2);
   EXPECT_EQ(result(), 0);
@@ -117,7 +117,7 @@ TEST_F(CommandMuxTest, ALockLetsAHigherOrEqualPriorityPass) {
 TEST_F(CommandMuxTest, ALockWithATimeoutLocksWhileItIsSilent) {
   CommandSourceList list = shipped();
   list.locks = {{"watchdog", "watchdog", 1.0, 255}};
-  mux_ = CommandMux(list, false);
+  mux_ = CommandMux(list, 1.25, false);
   receive(kKey, 0.3);
   EXPECT_EQ(result(), 0) << "it has never said anything";
   mux_.receive_lock(0, false, now_.loop_ns);
@@ -129,11 +129,60 @@ TEST_F(CommandMuxTest, ALockWithATimeoutLocksWhileItIsSilent) {
   EXPECT_EQ(result(), 0);
 }
 
-TEST_F(CommandMuxTest, AZeroOfTheWinnerIsNotContestedByWhatItMasks) {
+TEST_F(CommandMuxTest, AZeroOfTheWinnerIsContestedByWhatItMasks) {
   receive(kPath, 0.4);
   receive(kKey, 0);
   EXPECT_EQ(result(), 0);
+  EXPECT_EQ(mux_.value().contested, 1u) << "the robot would move when key_vel is silent";
+  receive(kPath, 0);
   EXPECT_EQ(mux_.value().contested, 0u);
+  receive(kPath, 0.4);
+  EXPECT_EQ(mux_.value().contested, 1u) << "what is masked may begin later, too";
+}
+
+TEST_F(CommandMuxTest, AZeroIsContestedByAMaskedSenderWhoseMessagesAreRefused) {
+  mux_.receive(kPath, {.sender = "/late", .twist = {}, .stamp_ns = now_.ros_ns - kSecond}, now_);
+  receive(kKey, 0);
+  EXPECT_EQ(mux_.value().contested, 1u);
+  receive(kCmd, std::numeric_limits<double>::quiet_NaN());
+  pass(kSecond);
+  receive(kKey, 0);
+  EXPECT_EQ(mux_.value().contested, 1u);
+  pass(kSecond);
+  receive(kKey, 0);
+  EXPECT_EQ(mux_.value().contested, 0u);
+}
+
+TEST_F(CommandMuxTest, AnOldZeroThatTakesOverIsNoMessage) {
+  receive(kCmd, 0);
+  receive(kKey, 0);
+  pass(kSecond * 3 / 4);
+  EXPECT_EQ(mux_.winner(), "cmd_vel");
+  EXPECT_EQ(mux_.value().contested, kNoMessage);
+}
+
+TEST_F(CommandMuxTest, AMessageIsNotReplacedBeforeTheControllerHasReadIt) {
+  mux_.receive_lock(kPause, true, now_.loop_ns);
+  pass(kSecond);
+  EXPECT_EQ(mux_.value().contested, kNoMessage);
+  receive(kCmd, 0);
+  pass(kSecond / 200);
+  EXPECT_EQ(mux_.value().contested, 0u);
+  pass(kSecond / 200);
+  EXPECT_EQ(mux_.value().contested, kNoMessage);
+}
+
+TEST_F(CommandMuxTest, AMaskedSenderEndsTheSilence) {
+  mux_.receive_lock(kPause, true, now_.loop_ns);
+  CommandWatch watch(1.25, 0.001);
+  watch.enter_run();
+  for (std::uint64_t cycle = 0; cycle < 3000; ++cycle) {
+    if (cycle % 20 == 0) pass(kSecond / 50);
+    if (cycle % 500 == 0) receive(kCmd, 0.2);
+    watch.step(mux_.value(), cycle);
+    ASSERT_LT(watch.silent_cycles(cycle), 501u);
+  }
+  EXPECT_EQ(watch.zero_requests(), 0u);
 }
 
 TEST_F(CommandMuxTest, TwoNodesOnOneSourceContestAsWithoutAList) {
@@ -155,7 +204,7 @@ TEST_F(CommandMuxTest, NaNOfTheWinnerReachesTheControllerWhichRefusesIt) {
   receive(kCmd, 0.2);
   receive(kKey, std::numeric_limits<double>::quiet_NaN());
   CommandWatch watch(1.25, 0.001);
-  watch.reset();
+  watch.enter_run();
   EXPECT_EQ(watch.step(mux_.value(), 0).linear[0], 0);
   EXPECT_EQ(watch.refused(), 1u);
 }

@@ -89,6 +89,12 @@ TEST_F(CommandReportTest, ReportsTheWheelSpeedsOfTheArticlesCommand) {
   EXPECT_THAT(lines[0].text, HasSubstr("left 0.45 m/s, right 0.55 m/s"));
 }
 
+TEST_F(CommandReportTest, RoundsWhatASendersArithmeticLeft) {
+  const auto lines = receive(0.5, 1.04854e-14);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].text, "left 0.50 m/s, right 0.50 m/s (cmd_vel 0.5 m/s, 0 rad/s)");
+}
+
 TEST_F(CommandReportTest, ReportsTheSpeedsAfterTheLimits) {
   // 3 m/s is thrice the limit, so both axes are divided by 3: 1 ∓ 0.4 · 0.5 / 2
   EXPECT_THAT(receive(3, 1.2)[0].text, HasSubstr("left 0.90 m/s, right 1.10 m/s (cmd_vel 3 m/s, 1.2 rad/s, "

@@ -106,6 +106,26 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
   EXPECT_EQ(value_of(report(kSlipSideways), "slip_lately"), "sideways");
 }
 
+TEST_F(StateReport, WarnsOfAPoseThatDoesWithoutACorrection) {
+  state_.flags = kStateValid | kStateDegraded;
+  state_.degraded = kDegradedPosition;
+  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_THAT(report().message().message, HasSubstr("the correction of a slide was not believable"));
+  EXPECT_EQ(value_of(report(), "degraded"), "position");
+  EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("look at the IMU's mounting"));
+}
+
+TEST_F(StateReport, ReportsHowWellSlipIsNoticed) {
+  for (const auto& [level, words] : {std::pair{0.0, "unknown: nothing was compared yet"},
+                                     {1.2, "on"},
+                                     {12.0, "slow: residuals 12 x the sensors' noise"},
+                                     {60.0, "off: residuals 60 x the sensors' noise"}}) {
+    state_.residual_level = level;
+    EXPECT_EQ(value_of(report(), "slip_detection"), words);
+    EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::OK)) << "the floor is as it is";
+  }
+}
+
 TEST_F(StateReport, ReportsHowFarEachSensorAgrees) {
   state_.confidence[kGyro] = 0.5;
   state_.nis[kLateralContact] = 1.25;

@@ -12,6 +12,7 @@ namespace {
 
 using testing::Each;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 class MotionMessagesTest : public testing::Test {
  protected:
@@ -87,6 +88,24 @@ TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {
     EXPECT_EQ(message.pose.covariance[i], static_cast<double>(i));
     EXPECT_EQ(message.twist.covariance[i], -static_cast<double>(i));
   }
+}
+
+TEST_F(MotionMessagesTest, GivenDiagonalsReplaceTheCovariancesOfOdometryAndAreNamedAtStart) {
+  state_.pose_covariance.fill(7);
+  state_.twist_covariance.fill(8);
+  msg::Odometry message = odometry(state_, "odom", "base_link", stamp_);
+  ReportParameters given;
+  EXPECT_EQ(covariance_note(given), "");
+  state_covariances(given, message);
+  EXPECT_THAT(message.pose.covariance, Each(7));
+  EXPECT_THAT(message.twist.covariance, Each(8));
+  given.pose_covariance_diagonal = {1, 2, 3, 4, 5, 6};
+  state_covariances(given, message);
+  for (std::size_t i = 0; i < 36; ++i) {
+    EXPECT_EQ(message.pose.covariance[i], i % 7 == 0 ? static_cast<double>(i / 7 + 1) : 0) << i;
+  }
+  EXPECT_THAT(message.twist.covariance, Each(8)) << "not given";
+  EXPECT_THAT(covariance_note(given), HasSubstr("odom: pose_covariance_diagonal given"));
 }
 
 TEST_F(MotionMessagesTest, TransformIsTheOdometrysPose) {

@@ -81,6 +81,24 @@ class CommandSourcesTest(RobotTestCase):
             self.pause.publish(Bool(False))
         wait_for("0.5 m/s again", self.robot.driving, every=lambda: self.robot.send(0.5, 0.0))
 
+    def test_a_reset_is_refused_while_a_masked_source_requests_motion_and_names_its_sender(self) -> None:
+        def send() -> None:
+            self.robot.send(0.5, 0.0)
+            self.send_key(0.0)
+
+        self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)
+        self.robot.call("e_stop_trigger")
+        wait_for("cmd_vel is masked", lambda: "cmd_vel: masked by key_vel" in self.state.sources, every=send)
+        wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=send)
+        end = time.monotonic() + 2.0
+        while time.monotonic() < end:
+            send()
+            answer = self.robot.call("e_stop_reset")
+            self.assertFalse(answer.success)
+            time.sleep(0.02)
+        self.assertIn(rospy.get_name(), answer.message)
+        self.robot.release()
+
     def test_cmd_vel_stamped_is_no_source_of_this_list(self) -> None:
         publisher = rospy.Publisher("cmd_vel_stamped", TwistStamped, queue_size=1)
         time.sleep(1.0)
@@ -135,7 +153,7 @@ class CommandSourcesTest(RobotTestCase):
             path = Program("drive_path.py", "--topic", "plan")
             self.addCleanup(path.end)
             self.assertEqual(path.wait(), code, path.output)
-            self.assertIn("done; at most" if code == 0 else "only 'odom' is known", path.output)
+            self.assertIn("done; at most" if code == 0 else "tf does not connect", path.output)
 
     def pose(self) -> tuple[float, float, float]:
         pose = self.robot.odom.pose.pose

@@ -106,6 +106,17 @@ class IdentifyTest(RobotTestCase):
         forward = yaml.safe_load(self.output.read_text())["diff_drive_controller"]["feed_forward"]
         self.assertAlmostEqual(forward["wheel_friction"], FRICTION, delta=0.2 * FRICTION)
 
+    @nightly
+    def test_reads_the_bag_of_a_telemetry_that_keeps_the_black_box_alone(self) -> None:
+        telemetry = Program("telemetry", f"_directory:={self.output.parent}", "_csv:=false", "_record:=request")
+        self.addCleanup(rospy.delete_param, "telemetry")
+        self.addCleanup(telemetry.end)
+        wait_for("its log", lambda: self.output.with_name("run.bag").exists())
+        self.measured()
+        self.assertEqual(list(self.output.parent.glob("run*.csv")), [], "no second log")
+        forward = yaml.safe_load(self.output.read_text())["diff_drive_controller"]["feed_forward"]
+        self.assertAlmostEqual(forward["wheel_friction"], FRICTION, delta=0.2 * FRICTION)
+
     @contextlib.contextmanager
     def in_motion(self) -> Iterator[Program]:
         """While it drives. A stalling machine may stop the robot before: then it ends, and is started again."""

@@ -14,8 +14,10 @@ import rosbag
 import rosgraph
 import rospy
 import rostest
+from robot_control.msg import SafetyStatus
 from robot_control.record.main import TOPICS
-from system_support import LIMIT, MONITOR, refusal, repository, wait_for
+from system_support import ESTIMATOR, LIMIT, MONITOR, Robot, init_test_node, refusal, repository, wait_for
+from tf2_msgs.msg import TFMessage
 
 SILENT = {"cmd_vel", "cmd_vel_stamped", "e_stop", "heartbeat", "clearance", "tf_static", "/clock", "/rosout"}
 """Topics without messages, certainly or perhaps: no node commands, no transform is static, /clock is of lockstep alone,
@@ -117,7 +119,7 @@ class LaunchTest(unittest.TestCase):
 
         wait_for("a message of every topic at the recorder", received, LAUNCH_LIMIT)
         launch.end()
-        bags = list((self.out / namespace).glob("*.bag"))
+        bags = [path for path in (self.out / namespace).glob("*.bag") if path.name != "run.bag"]  # that is the log
         self.assertEqual(len(bags), 1, launch.output)
         with rosbag.Bag(str(bags[0])) as bag:
             topics = set(bag.get_type_and_topic_info().topics)
@@ -169,6 +171,35 @@ class LaunchTest(unittest.TestCase):
         self.assertNotIn("/odom", topics)
         self.assertTrue((self.out / "robot2" / "run.csv").is_file())
         self.assertFalse((self.out / "run.csv").exists())
+
+    def test_in_a_namespace_by_argument_a_killed_node_is_started_again(self) -> None:
+        init_test_node("launch_test")
+        launch = Launch("ns:=robot3", "respawn:=true", f"bus:={self.bus}")
+        self.addCleanup(launch.end)
+        robot = Robot("robot3")
+        robot.await_ready()
+        frames: set[str] = set()
+        for topic in ("tf", "tf_static"):
+            rospy.Subscriber(
+                f"/robot3/{topic}", TFMessage, lambda m: frames.update(t.child_frame_id for t in m.transforms)
+            )
+        wait_for("transforms inside the robot", lambda: {"imu_link", "left_wheel_link"} <= frames)
+        name = f"/robot3/{ESTIMATOR}"
+        first = pid_of(name)
+        os.kill(first, signal.SIGKILL)
+        wait_for("another process", lambda: pid_of(name) not in {0, first})
+        wait_for("the latched stop", lambda: robot.state == SafetyStatus.STOPPED)
+        robot.release()
+        robot.drive_until("0.5 m/s", robot.driving)
+        self.assertTrue(launch.running, launch.output)
+
+
+def pid_of(node: str) -> int:
+    """0: there is none."""
+    try:
+        return int(ServerProxy(rosgraph.Master("/launch_test").lookupNode(node)).getPid("/launch_test")[2])
+    except (rosgraph.MasterException, OSError):
+        return 0
 
 
 if __name__ == "__main__":

@@ -53,9 +53,10 @@ class LoopbackTest(unittest.TestCase):
         bare = {name: value for name, value in os.environ.items() if name not in {"ROS_IP", "ROS_HOSTNAME"}}
         bare["ROS_MASTER_URI"] = f"http://127.0.0.1:{urlparse(os.environ['ROS_MASTER_URI']).port}"
         bus = f"loopback{os.getpid()}.{time.monotonic_ns()}"
-        with tempfile.TemporaryFile("w+") as output:
+        with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryDirectory() as folder:
+            sim = str(repository() / "launch" / "sim.launch")
             launch = subprocess.Popen(
-                ["roslaunch", str(repository() / "launch" / "sim.launch"), f"bus:={bus}", *arguments],
+                ["roslaunch", sim, f"bus:={bus}", f"out:={folder}", *arguments],
                 env={**bare, **environment},
                 stdin=subprocess.DEVNULL,
                 stdout=output,

@@ -5,8 +5,9 @@ import os
 from dataclasses import dataclass
 
 import pytest
+from robot_control.common.command import Command
 from robot_control.pad.device import EV_ABS, EV_KEY, FIRST_BUTTON, GAMEPAD, Device, is_pad
-from robot_control.pad.law import ZEROS, Command, Pad, PadParameters
+from robot_control.pad.law import ZEROS, Pad, PadParameters
 
 GIVEN = PadParameters()
 PERIOD = 0.02  # s

@@ -1,12 +1,14 @@
 """Paths: their points, their pieces and the law, without a robot."""
 
 import math
+from pathlib import Path
 
 import pytest
 from robot_control.path.follower import Follower, FollowParameters, Motion, Pose, State
+from robot_control.path.main import main
 from robot_control.path.pieces import route, turned
 from robot_control.path.shapes import SHAPES
-from robot_control.path.waypoints import PathError, Waypoint, checked, from_poses, placed, read_csv
+from robot_control.path.waypoints import PathError, Waypoint, checked, from_poses, placed, read_csv, shortened
 
 STRAIGHT = [Waypoint(0.0, 0.0), Waypoint(4.0, 0.0)]
 PERIOD = 0.02  # s
@@ -84,7 +86,7 @@ def test_a_csv_file(tmp_path):
     [
         ("0,0\n1,0\n", "first line must be x,y"),
         ("", "first line must be x,y"),
-        ("x,y,z\n0,0,0\n", "'x,y,z'"),
+        ("x,y,z\n0,0,0\n", "'x, y, z'"),
         ("x,y\n0,0\n1,one\n", "path.csv:3: not a point"),
         ("x,y\n0\n", "path.csv:2: not a point"),
         ("x,y\n0,0,0\n", "path.csv:2: not a point"),
@@ -98,24 +100,37 @@ def test_a_csv_file_that_is_none_is_refused_with_its_line(tmp_path, text, words)
     assert words in str(error.value)
 
 
+def test_what_is_no_text_is_refused(tmp_path):
+    path = tmp_path / "path.csv"
+    path.write_bytes(bytes(range(128, 256)))
+    with pytest.raises(PathError, match="first line must be x,y"):
+        read_csv(path)
+    with pytest.raises(PathError, match="is a device; only a regular file is read"):
+        read_csv(Path("/dev/zero"))
+
+
+def test_a_file_that_is_not_there_is_named_beside_the_shapes(monkeypatch, tmp_path):
+    monkeypatch.setattr("sys.argv", ["drive_path.py", str(tmp_path / "sqare")])
+    with pytest.raises(SystemExit) as error:
+        main()
+    assert error.value.code == (
+        f"drive_path.py: {tmp_path / 'sqare'} cannot be opened or written: No such file or directory; "
+        "the shapes are square, circle, eight"
+    )
+
+
 NO_ORIENTATION, LEFT = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, math.sin(math.pi / 4), math.cos(math.pi / 4))
 
 
 def test_a_path_message_without_orientations_is_driven_along_itself():
-    points = from_poses("odom", "odom", [(0.0, 0.0, NO_ORIENTATION), (1.0, 0.0, LEFT)])
+    points = from_poses([(0.0, 0.0, NO_ORIENTATION), (1.0, 0.0, LEFT)])
     assert points == [Waypoint(0.0, 0.0), Waypoint(1.0, 0.0, yaw=pytest.approx(math.pi / 2))]
-    thrice = from_poses("/odom", "odom", [(0.0, 0.0, tuple(3 * part for part in LEFT))])
+    thrice = from_poses([(0.0, 0.0, tuple(3 * part for part in LEFT))])
     assert thrice[0].yaw == pytest.approx(math.pi / 2)
 
 
-def test_a_path_in_an_unknown_frame_is_refused():
-    with pytest.raises(PathError) as error:
-        from_poses("map", "odom", [])
-    assert str(error.value) == "the path lies in the frame 'map'; only 'odom' is known: publish it in that frame"
-
-
 def test_an_orientation_that_is_not_finite_is_refused():
-    points = from_poses("odom", "odom", [(0.0, 0.0, (math.nan,) * 4), (1.0, 0.0, NO_ORIENTATION)])
+    points = from_poses([(0.0, 0.0, (math.nan,) * 4), (1.0, 0.0, NO_ORIENTATION)])
     assert "not finite" in refusal(points)
 
 
@@ -153,6 +168,26 @@ def test_a_placed_path_begins_at_the_pose():
     points = placed([Waypoint(0.0, 0.0), Waypoint(1.0, 0.0, yaw=0.5)], 2.0, 3.0, math.pi / 2)
     assert (points[0].x, points[0].y) == (2.0, 3.0)
     assert (points[1].x, points[1].y, points[1].yaw) == pytest.approx((2.0, 4.0, 0.5 + math.pi / 2))
+
+
+def test_a_path_that_is_begun_farther_along_is_its_rest():
+    points = [Waypoint(0.0, 0.0, speed=0.2), Waypoint(1.0, 0.0), Waypoint(1.0, 2.0, yaw=1.0)]
+    assert shortened(points, 0.0) == points
+    assert shortened(points, 0.25) == [Waypoint(0.25, 0.0, speed=0.2), *points[1:]]
+    assert shortened(points, 1.5) == [Waypoint(1.0, 0.5, speed=0.2), points[2]]
+
+
+def test_a_part_that_is_begun_farther_along_stays_one_that_is_driven_backwards():
+    there_and_back = [Waypoint(0.0, 0.0, 0.0), Waypoint(1.0, 0.0, 0.0), Waypoint(0.0, 0.0, 0.0)]
+    assert [piece.sign for piece in route(shortened(there_and_back, 1.5)).pieces] == [-1]
+
+
+@pytest.mark.parametrize("begin_at", [-0.1, 4.0, math.nan, math.inf])
+def test_a_path_is_not_begun_beyond_its_ends(begin_at):
+    with pytest.raises(PathError) as error:
+        shortened(STRAIGHT, begin_at)
+    assert f"begin_at is {begin_at:g} m" in str(error.value)
+    assert "4.00 m" in str(error.value)
 
 
 @pytest.mark.parametrize("angle", [0.0, 3.0, math.pi, -3.0, 7.0, -math.pi])
@@ -193,6 +228,14 @@ def test_a_speed_of_the_path_holds_from_its_point_on():
     follower, robot = Follower(route(points)), Ideal()
     assert max(command.linear for command in drive(follower, robot, 4.9)) == 0.2
     assert max(command.linear for command in drive(follower, robot, 4.0)) == 0.4
+
+
+def test_ten_thousand_points_are_followed_like_few():
+    points = [Waypoint(0.0004 * n, 0.0) for n in range(10_001)]
+    follower, robot = Follower(route(points)), Ideal()
+    drive(follower, robot, 12.0)
+    assert follower.state is State.DONE
+    assert follower.distance == pytest.approx(4.0)
 
 
 def test_a_paused_path_stands_and_goes_on_after_resume_alone():

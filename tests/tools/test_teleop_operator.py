@@ -1,12 +1,13 @@
 """From keys to commands, in virtual time."""
 
 import pytest
+from robot_control.common.command import Command
 from robot_control.teleop.key_map import ARROWS, CLASSIC, KEY_MAPS
 from robot_control.teleop.keyboard import Event, Key
-from robot_control.teleop.operator import RESET_PAUSE, RESET_WINDOW, ZEROS, Command, Operator, Request
+from robot_control.teleop.operator import RESET_PAUSE, RESET_WINDOW, ZEROS, Limits, Operator, Request
 
 LINEAR, ANGULAR = 0.4, 0.8
-CHOSEN, LIMITS = Command(LINEAR, ANGULAR), Command(1.0, 2.0)
+CHOSEN, LIMITS = Command(LINEAR, ANGULAR), Limits(1.0, 2.0, reverse=1.0)
 
 
 @pytest.fixture
@@ -166,8 +167,8 @@ def test_chosen_speeds_have_the_robots_limits_as_a_bound_also_when_those_change(
     for number in range(200):
         operator.key(Key("+"), float(number))
         operator.key(Key("."), number + 0.5)
-    assert operator.chosen == LIMITS
-    operator.limit(Command(0.2, 0.3))
+    assert operator.chosen == Command(LIMITS.linear, LIMITS.angular)
+    operator.limit(Limits(0.2, 0.3, reverse=0.2))
     assert operator.chosen == Command(0.2, 0.3)
     operator.key(Key("-"), 300.0)
     assert operator.chosen == Command(pytest.approx(0.9 * 0.2), 0.3)
@@ -176,8 +177,17 @@ def test_chosen_speeds_have_the_robots_limits_as_a_bound_also_when_those_change(
 def test_a_speed_of_the_command_line_above_the_limits_of_the_file_counts_once_the_robots_are_received():
     operator = Operator(ARROWS, Command(1.5, 1.0), LIMITS)
     assert operator.chosen == Command(LIMITS.linear, 1.0)
-    operator.limit(Command(2.0, 2.0))
+    operator.limit(Limits(2.0, 2.0, reverse=2.0))
     assert operator.chosen == Command(1.5, 1.0)
+
+
+@pytest.mark.parametrize(("key", "turn"), [("s", 0.0), ("z", -ANGULAR)])
+def test_backwards_the_robots_limit_of_reverse_is_a_bound_and_a_first_press_half_of_it(operator, key, turn):
+    operator.limit(Limits(1.0, 2.0, reverse=0.1))
+    operator.key(Key(key), 0.0)
+    assert operator.command(0.0) == Command(-0.05, turn / 2)
+    assert operator.command(hold(operator, key, 1.0, 2.0)) == Command(-0.1, turn)
+    assert operator.command(hold(operator, "w", 4.0, 2.0)) == Command(LINEAR, 0.0)
 
 
 @pytest.mark.parametrize(("keys", "first", "second"), [(ARROWS, "w", "up"), (ARROWS, "left", "a")])

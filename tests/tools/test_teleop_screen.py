@@ -1,8 +1,8 @@
 """The screen of teleop.py."""
 
 import pytest
+from robot_control.common.command import Command
 from robot_control.teleop.key_map import CLASSIC, KEY_MAPS, SAFETY_HELP
-from robot_control.teleop.operator import Command
 from robot_control.teleop.screen import HEIGHT, WIDTH, View, render
 from robot_control.why.diagnosis import CONTROLLER, LOOP, Cause, Facts, Report, Safety
 

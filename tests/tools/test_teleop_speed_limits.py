@@ -7,7 +7,7 @@ import pytest
 import rospy
 import yaml
 from robot_control.installed_files import share_file
-from robot_control.teleop.operator import Command
+from robot_control.teleop.operator import Limits
 from robot_control.teleop.speed_limits import SpeedLimits
 
 
@@ -24,13 +24,25 @@ def config(**values):
 
 def test_until_the_controller_reports_its_limits_those_of_the_file_hold(subscribed):
     controller = yaml.safe_load(Path(share_file("config/robot_params.yaml")).read_text())["diff_drive_controller"]
-    assert SpeedLimits().newest() == Command(controller["max_linear_speed"], controller["max_angular_speed"])
+    linear, angular = controller["max_linear_speed"], controller["max_angular_speed"]
+    assert SpeedLimits().newest() == Limits(linear, angular, reverse=linear)
 
 
 def test_what_the_controller_reports_holds(subscribed):
     limits = SpeedLimits()
     receive = subscribed["diff_drive_controller/parameter_updates"]
     receive(config(pid_kp=9.0, max_linear_speed=0.3, max_angular_speed=0.7))
-    assert limits.newest() == Command(0.3, 0.7)
+    assert limits.newest() == Limits(0.3, 0.7, reverse=0.3)
     receive(config(max_linear_speed=0.4))
-    assert limits.newest() == Command(0.4, 0.7)
+    assert limits.newest() == Limits(0.4, 0.7, reverse=0.4)
+
+
+def test_a_slower_reverse_is_a_limit_of_its_own_and_never_above_the_forward_one(subscribed):
+    limits = SpeedLimits()
+    receive = subscribed["diff_drive_controller/parameter_updates"]
+    receive(config(max_linear_speed=0.8, max_angular_speed=0.7, min_linear_speed=-0.2))
+    assert limits.newest() == Limits(0.8, 0.7, reverse=0.2)
+    receive(config(max_linear_speed=0.1))
+    assert limits.newest().reverse == 0.1
+    receive(config(min_linear_speed=0.0))
+    assert limits.newest().reverse == 0.0

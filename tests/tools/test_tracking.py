@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from robot_control.common.signal_names import mask_of
 from robot_control.demo.tracking import EXCUSED_CYCLES, SETTLE, NotSteadyError, commanded_path, judge, steady_rows
 from synthetic_run import ANGULAR, BEGIN, END, LINEAR, PERIOD, RAMP, brake_at, healthy_run, with_truth
 
@@ -81,7 +82,7 @@ def test_a_deviation_before_or_long_after_a_brake_is_not_excused(run, after):
 
 
 def test_a_brake_that_the_monitor_ordered_excuses_nothing(run):
-    brake_at(run, MIDDLE, reasons=1 << 3)  # kGatePermitBrake
+    brake_at(run, MIDDLE, reasons=mask_of("GateReason", "permit_brake"))
     run["truth_linear"][MIDDLE + 1] *= 0.8
     assert failed(run) == {"worst steady cycle, linear"}
 

@@ -5,7 +5,9 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
+import rospy
 import yaml
+from robot_control.inspect.description import describe
 from robot_control.view.scene import (
     AMBER,
     GREEN,
@@ -17,27 +19,35 @@ from robot_control.view.scene import (
     force_arrows,
     limits_of,
     status_text,
-    wheels_of,
 )
+from robot_control.view.wheels import running_wheels, wheels_of
 
 ROOT = Path(__file__).parents[2]
-URDF = (ROOT / "urdf/diffbot.urdf").read_text()
+URDF = ROOT / "urdf/diffbot.urdf"
 
 
 def test_the_wheels_of_our_robot_are_found_where_they_are():
-    wheels = wheels_of(URDF)
+    wheels = wheels_of(describe(URDF))
     assert set(wheels) == {"left_wheel_joint", "right_wheel_joint"}
     assert wheels["left_wheel_joint"].position == (0.0, 0.25, 0.0)
     assert wheels["left_wheel_joint"].radius == 0.1
 
 
 @pytest.mark.parametrize("text", ["", "<robot", "<robot/>", "<robot><joint name='a' type='continuous'/></robot>"])
-def test_a_description_without_wheels_shows_none(text):
-    assert wheels_of(text) == {}
+def test_a_description_without_wheels_shows_none(monkeypatch, text):
+    monkeypatch.setattr(rospy, "get_param", {"robot_description": text}.get)
+    assert running_wheels() == {}
+
+
+def test_the_wheels_of_a_running_robot_are_read_as_its_nodes_read_them(monkeypatch):
+    robot = {"left_wheel_joints": ["left_wheel_joint"], "right_wheel_joints": ["right_wheel_joint"], "bus": ""}
+    server = {"robot_description": URDF.read_text(), "robot": robot}
+    monkeypatch.setattr(rospy, "get_param", server.get)
+    assert running_wheels() == wheels_of(describe(URDF))
 
 
 def test_an_arrow_is_as_long_as_its_force_and_points_where_it_pushes():
-    wheels = wheels_of(URDF)
+    wheels = wheels_of(describe(URDF))
     arrows = force_arrows(wheels, ["left_wheel_joint", "right_wheel_joint", "other"], [1.0, -2.0, 3.0])
     lengths = [end[0] - begin[0] for begin, end in arrows]
     assert lengths == pytest.approx([0.2, -0.4])
@@ -77,7 +87,7 @@ def test_the_path_driven_is_bounded_and_begins_again_after_a_jump():
 
 
 def test_every_part_of_our_robot_that_is_seen_has_a_material():
-    visuals = ET.fromstring(URDF).findall("link/visual")
+    visuals = ET.fromstring(URDF.read_text()).findall("link/visual")
     assert visuals
     assert all(visual.find("material") is not None for visual in visuals)
 

@@ -372,6 +372,12 @@ def test_slip_is_shown_with_the_wheel_and_lost_sensors_by_what_is_left(driving):
     assert "disagree" not in shown
 
 
+def test_slip_detection_is_shown_where_the_floor_makes_it_slow(driving):
+    assert "slip detection" not in text(saying(driving, ESTIMATOR, slip_detection="on"))
+    slow = "slow: residuals 12 x the sensors' noise"
+    assert f"slip detection is {slow}" in " ".join(text(saying(driving, ESTIMATOR, slip_detection=slow)).split())
+
+
 @pytest.mark.parametrize("width", [40, 80, 132])
 def test_no_line_is_wider_than_the_screen(driving, width):
     facts = stopped(replace(driving, senders=("/send_cmd", "/teleop")), E_STOP, FAST)

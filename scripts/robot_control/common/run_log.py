@@ -1,15 +1,20 @@
-"""A run's log as arrays: reads the run.csv that the node `telemetry` writes."""
+"""A run's log as arrays: reads the run.bag and run.csv that the node `telemetry` writes."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robot_control._robot_control import BagError, TraceError, read_run_bag, read_run_header
 from robot_control.common.files import LARGEST_TABLE, check_input, printable
+
+BAG_MAGIC = b"#ROSBAG"
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -23,12 +28,83 @@ class LogError(ValueError):
     """The file is not a log, or holds no rows."""
 
 
-def read_log(path: Path) -> dict[str, FloatArray]:
-    """All rows of the last run in the file.
+@dataclass(frozen=True)
+class RunLog:
+    """A log with what stands around its rows."""
+
+    columns: dict[str, FloatArray]
+    """Of the last run; as `Log`."""
+    ros_time: FloatArray | None
+    """s, of each row; None: a CSV, which does not hold it."""
+    header: Mapping[str, Any]
+    """Of run.bag: robot, joints, wheels, period, clock, record, part, parameters, urdf, scene, calibration, version,
+    build, host, kernel, processor, libraries, missing, as msg/TraceHeader.msg says; empty of a CSV."""
+    runs: int
+    """In the file."""
+    lost: int
+    """Rows that telemetry counted as lost before the last one in the file; 0 of a CSV, which does not hold it."""
+    cut: str
+    """Which part of a file that was not completed could be read; empty: it is whole."""
+
+    @property
+    def notes(self) -> list[str]:
+        """Sentences: which part of the file is here, where it is not all of it."""
+        parts = [part for part in (self.header.get("missing"), self.cut) if part]
+        return [*parts, *notes_on_runs(self.runs)]
+
+
+def notes_on_runs(runs: int) -> list[str]:
+    """For a file that holds so many, of which the last one was read."""
+    return [f"{runs} runs in the file; this is the last one"] if runs > 1 else []
+
+
+def is_bag(path: Path) -> bool:
+    """Whether the file begins as a ROS bag does.
+
+    Raises:
+        InputFileError, OSError: it is no file to read.
+    """
+    check_input(path, LARGEST_TABLE)
+    with path.open("rb") as file:
+        return file.read(len(BAG_MAGIC)) == BAG_MAGIC
+
+
+def is_run_log(path: Path) -> bool:
+    """Whether the file is a run.bag: a ROS bag that begins with a TraceHeader."""
+    if not is_bag(path):
+        return False
+    try:
+        read_run_header(str(path))
+    except (BagError, TraceError):
+        return False
+    return True
+
+
+def read_log(path: Path, columns: Sequence[str] = ()) -> dict[str, FloatArray]:
+    """All rows of the last run in the file, run.bag or run.csv; `columns`: only these, where they are there.
 
     A last line that was cut short, because its writer was killed, is left out.
     """
-    check_input(path, LARGEST_TABLE)
+    return read_run(path, columns).columns
+
+
+def read_run(path: Path, columns: Sequence[str] = ()) -> RunLog:
+    """As `read_log`, with what stands around the rows."""
+    return _read_bag(path, columns) if is_bag(path) else _read_csv(path, columns)
+
+
+def _read_bag(path: Path, columns: Sequence[str]) -> RunLog:
+    try:
+        read = read_run_bag(str(path), list(columns))
+    except (BagError, TraceError, RuntimeError) as error:
+        raise LogError(f"{path}: {error}") from None
+    table = read["columns"]
+    if not read["runs"]:
+        raise LogError(f"{path}: no rows" + (f"; {read['cut']}" if read["cut"] else ""))
+    return RunLog(table, read["ros_time"], read["header"], read["runs"], read["lost"], read["cut"])
+
+
+def _read_csv(path: Path, columns: Sequence[str]) -> RunLog:
     with path.open(newline="", errors="replace") as file:
         try:
             lines = csv.reader(file)
@@ -46,7 +122,8 @@ def read_log(path: Path) -> dict[str, FloatArray]:
         raise LogError(f"{path}: {error}") from None
     run = table[:, header.index("run")]
     table = table[run == run.max()]
-    return {name: table[:, i] for i, name in enumerate(header)}
+    wanted = {name: table[:, i] for i, name in enumerate(header) if not columns or name in columns}
+    return RunLog(wanted, None, {}, len(np.unique(run)), 0, "")
 
 
 def joint_names(log: Log) -> list[str]:

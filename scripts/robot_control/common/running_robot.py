@@ -12,6 +12,7 @@ import rosgraph
 import rospy
 
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
+from robot_control.common.ros_node import begin_node
 from robot_control.common.settings import Settings
 from robot_control.common.topic_sender import Signals
 from robot_control.installed_files import share_file
@@ -40,7 +41,7 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
             f"no ROS master at {rosgraph.get_master_uri()}: start the robot (roslaunch robot_control sim.launch), "
             f"{without_master}"
         )
-    rospy.init_node(tool, anonymous=True)
+    begin_node(tool, anonymous=True)
     if rospy.get_param("/use_sim_time", default=False):
         raise RefusedError(
             "the robot runs in simulated time, where a wall-clock second is many: use clock wall, " + in_simulated_time

@@ -1,8 +1,8 @@
 """A node that sends on a topic and ends properly: its last message is one that stops the robot, and it leaves.
 
     publish      queues; a thread of each connection writes later, and a node that ends closes its connections at once
-    a signal     rospy shuts the node down inside the handler, in the midst of what the main thread does. If that is a
-                 call to the master (every loginfo is one), it waits for that call's lock: for itself, for ever
+    a signal     rospy shuts the node down inside the handler, while the main thread is in any call. If that is a call
+                 to the master (every loginfo is one), the handler waits for that call's lock, which is never released
 
 Hence a signal is only noted here, the main thread ends the node, and the end waits until the last message is written.
 """
@@ -91,7 +91,7 @@ class Signals:
 
 @contextlib.contextmanager
 def ended_by_signals() -> Iterator[Signals]:
-    """After init_node, in the main thread: the node lives as long as the block, and has said its last word after it."""
+    """After init_node, in the main thread: the node lives as long as the block; then its last message is sent."""
     signals = Signals()
     try:
         yield signals
@@ -110,7 +110,7 @@ def written(publisher: Publisher) -> dict[int, int]:
 def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) -> int:
     """Publishes and waits until all present subscribers were sent it; how many were not, within `limit` seconds.
 
-    Said twice: the first message written from now on may be one that a connection's thread had already taken from its
+    Published twice: the first message written from now on may be one that a connection's thread had taken from its
     queue, the second is this one.
     """
     end = time.monotonic() + limit

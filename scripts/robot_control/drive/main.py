@@ -8,6 +8,7 @@ from collections import deque
 import rospy
 from geometry_msgs.msg import Twist
 
+from robot_control.common.ros_node import begin_node
 from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
 from robot_control.drive.release import Line, Phase, Release, Status
 from robot_control.drive.send_plan import SendPlan, parse_plan
@@ -45,7 +46,7 @@ def _say_last(missed: int) -> None:
 
 
 class SafetyWatch:
-    """What safety_status says, every message of it: a stop that was followed by a release at once is none the less."""
+    """What safety_status says, every message of it: a stop that is followed by a release at once is a stop, too."""
 
     def __init__(self) -> None:
         self._received: deque[tuple[Status, float]] = deque()
@@ -89,7 +90,7 @@ def status_of(message: SafetyStatus) -> Status:
 def send(plan: SendPlan, signals: Signals) -> int:
     """Sends until the plan ends or the node shall; the last message is always a zero.
 
-    The pace is wall-clock time: with simulated time a sleeping sender would depend on who publishes /clock.
+    The pace is wall-clock time: with simulated time a sleeping sender would depend on the publisher of /clock.
 
     Returns:
         The exit code: 1 when a stop ended the command.
@@ -125,7 +126,7 @@ def send(plan: SendPlan, signals: Signals) -> int:
 def main() -> None:
     """Entry point of scripts/send_cmd.py."""
     plan = parse_plan(rospy.myargv(sys.argv)[1:])
-    rospy.init_node("send_cmd")
+    begin_node("send_cmd")
     with ended_by_signals() as signals:
         code = send(plan, signals)
     sys.exit(code)

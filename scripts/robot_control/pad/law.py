@@ -13,6 +13,8 @@ receiver that has lost its pad goes on reporting what it saw last.
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
+from robot_control.common.command import Command
+
 ZEROS = 1.0
 """s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
 LONGEST = 256
@@ -39,14 +41,6 @@ class PadParameters:
     def names(cls) -> tuple[str, ...]:
         """Of the private ROS parameters."""
         return tuple(field.name for field in fields(cls))
-
-
-@dataclass(frozen=True)
-class Command:
-    """A velocity to send."""
-
-    linear: float = 0.0  # m/s
-    angular: float = 0.0  # rad/s
 
 
 class Pad:

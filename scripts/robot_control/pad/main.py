@@ -11,8 +11,10 @@ from typing import Any
 import rospy
 from sensor_msgs.msg import Joy
 
+from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_master import require_master
+from robot_control.common.ros_node import begin_node
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.pad.device import PACKAGE, Device, open_device
 from robot_control.pad.law import Pad, PadParameters
@@ -20,8 +22,6 @@ from robot_control.pad.law import Pad, PadParameters
 SOURCE = "joy_vel"
 PERIOD = 0.02
 """s between two looks at the device"""
-SEND_PERIOD = 0.05
-"""s between two commands, and two messages on joy"""
 SEARCH_PERIOD = 1.0
 """s between two looks for a device"""
 
@@ -101,15 +101,11 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
     pad, topic = Pad(parameters()), CommandTopic(SOURCE)
     source = Source(pad, given.device, topic=given.joy)
     pad.start(time.monotonic())
-    sent, sent_at, said = None, -math.inf, ""
+    pace, said = Pace(topic.send), ""
     while signals.going_on():
         now = time.monotonic()
         source.look(now)
-        command = pad.command(now)
-        if command is not None and (command != sent or now - sent_at >= SEND_PERIOD):
-            topic.send(command.linear, command.angular)
-            sent_at = now
-        sent = command
+        pace.look(pad.command(now), now)
         if pad.state(now) != said:
             said = pad.state(now)
             rospy.loginfo(said)
@@ -134,7 +130,7 @@ def main() -> None:
     """Entry point of scripts/pad.py."""
     given = arguments(rospy.myargv(sys.argv)[1:])
     require_master()
-    rospy.init_node("pad")
+    begin_node("pad")
     try:
         with ended_by_signals() as signals:
             drive(given, signals)

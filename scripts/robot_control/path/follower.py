@@ -101,9 +101,14 @@ class Follower:
         return self._state in {State.DONE, State.FAILED}
 
     @property
+    def distance(self) -> float:
+        """m along the path that were reached."""
+        return min(max(0.0, self._driven + self._along), self._route.length)
+
+    @property
     def remaining(self) -> float:
         """m"""
-        return max(0.0, self._route.length - self._driven - self._along)
+        return self._route.length - self.distance
 
     @property
     def progress(self) -> float:

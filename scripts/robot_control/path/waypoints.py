@@ -7,9 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from robot_control.common.files import InputFileError, check_input, listed
+
 COLUMNS = ("x", "y", "yaw", "speed")
 MOST = 100_000
 """points"""
+LARGEST_FILE = 1 << 24
+"""bytes of a CSV file"""
 JUMP, JUMP_RATIO, ENOUGH = 1.0, 20.0, 10
 """m, times the median distance, points: what exceeds both in a path of so many is no part of it"""
 
@@ -20,7 +24,7 @@ class PathError(ValueError):
 
 @dataclass(frozen=True)
 class Waypoint:
-    """A point of a path in the frame odom."""
+    """A point of a path."""
 
     x: float  # m
     y: float  # m
@@ -67,16 +71,10 @@ def _refuse_jumps(points: list[Waypoint]) -> None:
 Quaternion = tuple[float, float, float, float]
 
 
-def from_poses(frame: str, known: str, poses: Sequence[tuple[float, float, Quaternion]]) -> list[Waypoint]:
-    """The points of a nav_msgs/Path: x, y [m] and the orientation x, y, z, w of each, in `frame`.
-
-    An orientation of four zeros is none: along the path.
-
-    Raises:
-        PathError: the path lies in another frame than the `known` one.
+def from_poses(poses: Sequence[tuple[float, float, Quaternion]]) -> list[Waypoint]:
+    """The points of a nav_msgs/Path: x, y [m] and the orientation x, y, z, w of each. An orientation of four zeros is
+    none: along the path.
     """
-    if frame.lstrip("/") != known:
-        raise PathError(f"the path lies in the frame {frame!r}; only {known!r} is known: publish it in that frame")
     return [Waypoint(x, y, _yaw(orientation)) for x, y, orientation in poses]
 
 
@@ -85,6 +83,27 @@ def _yaw(orientation: Quaternion) -> float | None:
     if not any(orientation):
         return None
     return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def shortened(points: Sequence[Waypoint], begin_at: float) -> list[Waypoint]:
+    """What remains of a path from `begin_at` m on.
+
+    Raises:
+        PathError: it is not that long, or the length is none.
+    """
+    length = sum(math.hypot(b.x - a.x, b.y - a.y) for a, b in itertools.pairwise(points))
+    if not 0 <= begin_at < length:
+        raise PathError(f"begin_at is {begin_at:g} m: it must be from 0 to below the path's length, {length:.2f} m")
+    speed, start = None, 0.0
+    for number, (a, b) in enumerate(itertools.pairwise(points)):
+        speed = a.speed if a.speed is not None else speed
+        size = math.hypot(b.x - a.x, b.y - a.y)
+        if begin_at < start + size:
+            share = (begin_at - start) / size
+            first = replace(a, x=a.x + share * (b.x - a.x), y=a.y + share * (b.y - a.y), speed=speed)
+            return [first, *points[number + 1 :]]
+        start += size
+    return list(points[-2:])  # the rounding of the sum
 
 
 def placed(points: Sequence[Waypoint], x: float, y: float, yaw: float) -> list[Waypoint]:
@@ -108,13 +127,15 @@ def read_csv(path: Path) -> list[Waypoint]:
         PathError: naming file and line.
         OSError: the file cannot be read.
     """
-    with path.open(newline="") as file:
+    try:
+        check_input(path, LARGEST_FILE)
+    except InputFileError as error:
+        raise PathError(str(error)) from None
+    with path.open(newline="", encoding="utf-8", errors="replace") as file:
         rows = csv.DictReader(file)
         names = [name.strip() for name in rows.fieldnames or []]
         if not {"x", "y"} <= set(names) <= set(COLUMNS) or len(set(names)) < len(names):
-            raise PathError(
-                f"{path}: the first line must be x,y or x,y,yaw or x,y,yaw,speed; it is {','.join(names)!r}"
-            )
+            raise PathError(f"{path}: the first line must be x,y or x,y,yaw or x,y,yaw,speed; it is '{listed(names)}'")
         rows.fieldnames = names
         points = []
         for row in rows:

@@ -10,8 +10,10 @@ import time
 import rospy
 from std_msgs.msg import Empty
 
+from robot_control.common.command import Command, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_master import require_master
+from robot_control.common.ros_node import begin_node
 from robot_control.common.safety_states import DRIVABLE
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.drive.send_plan import positive
@@ -19,7 +21,7 @@ from robot_control.teleop.backlog import Backlog
 from robot_control.teleop.dead_man import HoldParameters
 from robot_control.teleop.key_map import KEY_MAPS
 from robot_control.teleop.keyboard import Decoder, Event
-from robot_control.teleop.operator import Command, Operator, Request
+from robot_control.teleop.operator import Operator, Request
 from robot_control.teleop.screen import View, render
 from robot_control.teleop.services import Services, in_words
 from robot_control.teleop.speed_limits import SpeedLimits
@@ -30,8 +32,6 @@ from robot_control.why.listener import MASTER_PERIOD, Listener
 SOURCE = "key_vel"
 LOOK = 0.02
 """s between two looks at keys and holds; a key is read at once"""
-SEND_PERIOD = 0.05
-"""s between two commands; a change is sent at once"""
 HEARTBEAT_PERIOD = 0.1
 """s"""
 FRAME = 0.1
@@ -52,8 +52,7 @@ class Teleop:
         self._services = Services()
         self._topic = CommandTopic(SOURCE)
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
-        self._sent: Command | None = None
-        self._sent_at: float | None = None
+        self._pace = Pace(self._topic.send)
         self._beat_at = self._drawn_at = float("-inf")
         self._answer = ""
         self._releases = False
@@ -73,7 +72,7 @@ class Teleop:
             fresh = safety is not None and safety.age < SILENCE
             self._operator.permit(safety.state in DRIVABLE if safety is not None and fresh else None, now)
             self._operator.limit(self._limits.newest())
-            self._send(now)
+            self._pace.look(self._operator.command(now), now)
             self._take_answers()
             if now - self._beat_at >= HEARTBEAT_PERIOD:
                 self._beat_at = now
@@ -99,14 +98,6 @@ class Teleop:
                 self._services.reset()
         return False
 
-    def _send(self, now: float) -> None:
-        command = self._operator.command(now)
-        due = self._sent_at is None or now - self._sent_at >= SEND_PERIOD
-        if command is not None and (due or command != self._sent):
-            self._topic.send(command.linear, command.angular)
-            self._sent_at = now
-        self._sent = command
-
     def _take_answers(self) -> None:
         for answer in self._services.look():
             self._answer = in_words(answer, self._listener.facts())
@@ -120,9 +111,9 @@ class Teleop:
             topic=self._topic.name,
             own_name=rospy.get_name(),
             chosen=self._operator.chosen,
-            requested=self._sent,
+            requested=self._pace.last,
             held="" if held is None else f"key {held.key}" + (", slow until it repeats" if held.share < 1 else ""),
-            sent_age=None if self._sent_at is None else now - self._sent_at,
+            sent_age=None if self._pace.sent_at is None else now - self._pace.sent_at,
             message=self._operator.message(now),
             answer=self._answer,
             releases=self._releases,
@@ -186,7 +177,7 @@ def main() -> None:
     require_master()
     try:
         with Terminal() as terminal:
-            rospy.init_node("teleop", anonymous=True)
+            begin_node("teleop", anonymous=True)
             with ended_by_signals() as signals:
                 Teleop(given, terminal).run(signals)
     except NoTerminalError as error:

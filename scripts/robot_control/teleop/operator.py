@@ -11,6 +11,7 @@ what the robot drives, and a held key changes them once per press.
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from robot_control.common.command import Command
 from robot_control.teleop.dead_man import DeadMan, Held, HoldParameters
 from robot_control.teleop.key_map import E_STOPS, KeyMap
 from robot_control.teleop.keyboard import Event, Key
@@ -33,17 +34,18 @@ class Request(Enum):
 
 
 @dataclass(frozen=True)
-class Command:
-    """A velocity to send."""
+class Limits:
+    """Of the robot."""
 
-    linear: float = 0.0  # m/s
-    angular: float = 0.0  # rad/s
+    linear: float  # m/s
+    angular: float  # rad/s
+    reverse: float  # m/s, backwards
 
 
 class Operator:
     """What the person at the keyboard commands and requests."""
 
-    def __init__(self, keys: KeyMap, chosen: Command, limits: Command, hold: HoldParameters | None = None) -> None:
+    def __init__(self, keys: KeyMap, chosen: Command, limits: Limits, hold: HoldParameters | None = None) -> None:
         """`chosen`: the speeds at first; `limits`: the robot's."""
         self._keys = keys
         self._chosen, self._limits = chosen, limits
@@ -97,7 +99,7 @@ class Operator:
         """The speeds of a held key, within the robot's limits."""
         return Command(min(self._chosen.linear, self._limits.linear), min(self._chosen.angular, self._limits.angular))
 
-    def limit(self, limits: Command) -> None:
+    def limit(self, limits: Limits) -> None:
         """The robot's limits are these now."""
         self._limits = limits
 
@@ -121,7 +123,8 @@ class Operator:
         if held is not None:
             self._zeros_until = now + ZEROS
             motion, chosen = self._keys.motions[held.key], self.chosen
-            return Command(motion.linear * held.share * chosen.linear, motion.angular * held.share * chosen.angular)
+            linear = max(motion.linear * chosen.linear, -self._limits.reverse)
+            return Command(held.share * linear, motion.angular * held.share * chosen.angular)
         return Command() if now < self._zeros_until or self._e_stopped else None
 
     def held(self, now: float) -> Held | None:

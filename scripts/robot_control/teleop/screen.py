@@ -4,8 +4,8 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from robot_control.common.command import Command
 from robot_control.teleop.key_map import KeyMap
-from robot_control.teleop.operator import Command
 from robot_control.why.diagnosis import CONTROLLER, Facts, Verdict, judge
 
 WIDTH, HEIGHT = 80, 24

@@ -11,9 +11,11 @@ from nav_msgs.msg import Odometry, Path
 from visualization_msgs.msg import Marker, MarkerArray
 
 from robot_control.common.ros_master import require_master
+from robot_control.common.ros_node import begin_node
 from robot_control.common.topic_sender import ended_by_signals
 from robot_control.msg import DriveState, SafetyStatus
-from robot_control.view.scene import Trail, force_arrows, limits_of, status_text, wheels_of
+from robot_control.view.scene import Trail, Wheel, force_arrows, limits_of, status_text
+from robot_control.view.wheels import running_wheels
 
 PERIOD = 0.1
 """s between two sets of markers"""
@@ -29,7 +31,7 @@ class View:
         self._drive = DriveState()
         self._odometry: Odometry | None = None
         self._trail = Trail()
-        self._wheels = wheels_of(rospy.get_param("robot_description", ""))
+        self._wheels: dict[str, Wheel] = {}
         self._markers = rospy.Publisher("view/markers", MarkerArray, queue_size=1)
         self._path = rospy.Publisher("view/path_driven", Path, queue_size=1, latch=True)
         rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety)
@@ -42,7 +44,7 @@ class View:
         if odometry is None:
             return
         if not self._wheels:
-            self._wheels = wheels_of(rospy.get_param("robot_description", ""))
+            self._wheels = running_wheels()
         position = odometry.pose.pose.position
         if self._trail.add(position.x, position.y):
             self._path.publish(self._path_message(odometry.header.frame_id))
@@ -108,7 +110,7 @@ def main() -> None:
         "on view/markers, the path driven on view/path_driven.",
     ).parse_args(rospy.myargv(sys.argv)[1:])
     require_master()
-    rospy.init_node("view_markers")
+    begin_node("view_markers")
     with ended_by_signals() as signals:
         view = View()
         while signals.going_on():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import textwrap
-import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -32,32 +31,6 @@ class Wheel:
 
     position: Point  # m, its centre
     radius: float  # m
-
-
-def wheels_of(urdf: str) -> dict[str, Wheel]:
-    """By joint: those that hang directly on the root link and end in a link with a cylinder or a sphere."""
-    try:
-        robot = ET.fromstring(urdf)
-    except ET.ParseError:
-        return {}
-    children = {child.get("link") for child in robot.findall("joint/child")}
-    roots = {link.get("name") for link in robot.findall("link")} - children
-    radii = {}
-    for link in robot.findall("link"):
-        shapes = [shape for kind in ("cylinder", "sphere") for shape in link.findall(f"collision/geometry/{kind}")]
-        if shapes:
-            radii[link.get("name")] = float(shapes[0].get("radius", "0"))
-    wheels = {}
-    for joint in robot.findall("joint"):
-        parent, child, origin = joint.find("parent"), joint.find("child"), joint.find("origin")
-        name = joint.get("name")
-        if name is None or parent is None or child is None or joint.get("type") != "continuous":
-            continue
-        if parent.get("link") in roots and child.get("link") in radii:
-            numbers = (origin.get("xyz", "0 0 0") if origin is not None else "0 0 0").split()
-            x, y, z = (float(number) for number in numbers)
-            wheels[name] = Wheel((x, y, z), radii[child.get("link")])
-    return wheels
 
 
 def force_arrows(wheels: dict[str, Wheel], names: Sequence[str], efforts: Sequence[float]) -> list[tuple[Point, Point]]:

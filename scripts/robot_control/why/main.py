@@ -11,6 +11,7 @@ import rosgraph
 import rospy
 
 from robot_control.common.ros_master import Master
+from robot_control.common.ros_node import begin_node
 from robot_control.why.diagnosis import Facts, Verdict, judge
 from robot_control.why.listener import MASTER_PERIOD, Listener
 from robot_control.why.screen import Look, render
@@ -69,7 +70,7 @@ def _master_is_there(screen: Screen | None) -> bool:
 
 
 def _listen() -> Listener:
-    rospy.init_node("why", anonymous=True)
+    begin_node("why", anonymous=True)
     listener = Listener()
     end = time.monotonic() + TIMEOUT
     while time.monotonic() < end and not rospy.is_shutdown():

@@ -164,7 +164,10 @@ def _circumstances(facts: Facts) -> Rows:
         yield "odometry", "; ".join(lost), "33"
     degraded = facts.reasons(ESTIMATOR, "degraded").values()
     if degraded:
-        yield "odometry", f"by wheels and gyro alone: {'; '.join(degraded)}", "33"
+        yield "odometry", f"degraded: {'; '.join(degraded)}", "33"
+    detection = facts.value(ESTIMATOR, "slip_detection")
+    if detection.startswith(("slow", "off")):
+        yield "odometry", f"slip detection is {detection}", ""
     if not facts.master_answers and facts.received() is not None:
         yield (
             "master",

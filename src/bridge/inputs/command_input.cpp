@@ -34,7 +34,11 @@ void CommandInput::set_timeout(double timeout) {
   timeout_ = timeout;
   timeout_ns_ = nanoseconds(timeout);
   senders_.set_window(nanoseconds(std::max(timeout, kSenderWindow)));
-  moving_.set_window(timeout > 0 ? timeout_ns_ : nanoseconds(1));
+  set_silence(silence_needed(timeout));
+}
+
+void CommandInput::set_silence(double silence) {
+  moving_.set_window(nanoseconds(silence));
 }
 
 void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& time) {
@@ -58,7 +62,7 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
   } else {
     moving_.add(arrived.sender, time.loop_ns);
   }
-  value_.contested = zero(arrived.twist) && moving_.count(time.loop_ns) > 0 ? 1 : 0;
+  value_.contested = zero(arrived.twist) && motion_requested(time.loop_ns) ? 1 : 0;
   value_.twist = arrived.twist;
   value_.age_ns = stamp.age_ns;
   ++value_.count;

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "bridge/inputs/command_intake.h"
 #include "bridge/inputs/command_senders.h"
 #include "bridge/inputs/command_stamp.h"
 #include "bridge/reports/command_report.h"
@@ -46,27 +47,28 @@ struct ArrivalTime {
   std::int64_t loop_ns = 0;  ///< stamp of the newest sensor frame; 0 before the first
 };
 
-class CommandInput {
+class CommandInput final : public CommandIntake {
  public:
   /// `timeout`: cmd_vel_timeout, s; 0: never.
   CommandInput(double timeout, bool one_sender);
 
   /// Another timeout, s, from the next message on.
-  void set_timeout(double timeout);
+  void set_timeout(double timeout) override;
+
+  /// Seconds for which a sender's last message requests motion, > 0, where that is not `timeout`.
+  void set_silence(double silence);
 
   void receive(const ArrivedCommand& arrived, const ArrivalTime& time);
 
   /// If nothing arrived: removes senders that have become silent. True if that changed the value of the inbox.
-  bool look(std::int64_t loop_ns);
+  bool look(std::int64_t loop_ns) override;
 
-  /// The value for the inbox.
-  const VelocityCommand& value() const noexcept { return value_; }
+  const VelocityCommand& value() const noexcept override { return value_; }
+  std::vector<ReportLine> lines() override;
+  std::vector<std::string> senders(std::int64_t loop_ns) override { return senders_.at(loop_ns); }
 
-  /// The new reports since the last call.
-  std::vector<ReportLine> lines();
-
-  /// Sorted by name.
-  std::vector<std::string> senders(std::int64_t loop_ns) { return senders_.at(loop_ns); }
+  /// A sender requests motion, as above.
+  bool motion_requested(std::int64_t loop_ns) { return moving_.count(loop_ns) > 0; }
 
  private:
   void refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns);

@@ -8,6 +8,8 @@
 namespace robot_control {
 namespace {
 
+constexpr std::int64_t kLongestCycle = 10'000'000;  // ns, robot.rate is 100 Hz at least
+
 /// A time that turned back by more than a timeout (a new simulation) leaves nothing live.
 bool recent(const std::optional<std::int64_t>& last_ns, double timeout, std::int64_t now_ns) {
   if (!last_ns) return false;
@@ -16,7 +18,7 @@ bool recent(const std::optional<std::int64_t>& last_ns, double timeout, std::int
 
 }  // namespace
 
-CommandMux::CommandMux(const CommandSourceList& list, bool one_sender) {
+CommandMux::CommandMux(const CommandSourceList& list, double timeout, bool one_sender) {
   for (const CommandSource& source : list.sources) {
     sources_.push_back(
         {.given = source, .input = CommandInput(source.timeout, one_sender), .last_ns = {}, .live = false, .lock = {}});
@@ -24,6 +26,11 @@ CommandMux::CommandMux(const CommandSourceList& list, bool one_sender) {
   for (const CommandLock& lock : list.locks) {
     locks_.push_back({.given = lock, .last_ns = {}, .set = false, .locks = false});
   }
+  CommandMux::set_timeout(timeout);
+}
+
+void CommandMux::set_timeout(double timeout) {
+  for (Source& source : sources_) source.input.set_silence(std::max(silence_needed(timeout), source.given.timeout));
 }
 
 void CommandMux::receive(std::size_t source, const ArrivedCommand& arrived, const ArrivalTime& time) {
@@ -32,9 +39,9 @@ void CommandMux::receive(std::size_t source, const ArrivedCommand& arrived, cons
   from.input.receive(arrived, time);
   const bool accepted = from.input.value().count != before;
   if (accepted) from.last_ns = time.loop_ns;
-  const bool changed = select(time.loop_ns);
-  if (winner_ && (changed || (accepted && *winner_ == source))) take(sources_[*winner_], time.loop_ns);
-  add_refusals();
+  select(time.loop_ns);
+  message_ns_ = time.loop_ns;
+  take_result(time.loop_ns, true);
 }
 
 void CommandMux::receive_lock(std::size_t lock, bool set, std::int64_t loop_ns) {
@@ -47,18 +54,8 @@ bool CommandMux::look(std::int64_t loop_ns) {
   bool changed = false;
   for (Source& source : sources_) changed |= source.input.look(loop_ns);
   changed |= select(loop_ns);
-  add_refusals();
-  if (winner_) {
-    if (changed) take(sources_[*winner_], loop_ns);
-    return changed;
-  }
-  const bool asked = std::ranges::any_of(
-      sources_, [](const Source& source) { return source.live && !zero(source.input.value().twist); });
-  value_.twist = {};
-  value_.age_ns = 0;
-  value_.many_senders = 0;
-  value_.contested = asked ? 1 : 0;
-  ++value_.count;
+  if (!changed && (winner_ || unread(loop_ns))) return false;
+  take_result(loop_ns, false);
   return true;
 }
 
@@ -83,13 +80,29 @@ bool CommandMux::select(std::int64_t loop_ns) {
   return true;
 }
 
-void CommandMux::take(const Source& source, std::int64_t loop_ns) {
-  const VelocityCommand& command = source.input.value();
-  value_.twist = command.twist;
-  value_.age_ns = command.age_ns + std::max<std::int64_t>(0, loop_ns - source.last_ns.value_or(loop_ns));
-  value_.many_senders = command.many_senders;
-  value_.contested = command.contested;
+void CommandMux::take_result(std::int64_t loop_ns, bool message) {
+  value_.twist = {};
+  value_.age_ns = 0;
+  value_.many_senders = 0;
+  if (winner_) {
+    const Source& source = sources_[*winner_];
+    const VelocityCommand& command = source.input.value();
+    value_.twist = command.twist;
+    value_.age_ns = command.age_ns + std::max<std::int64_t>(0, loop_ns - source.last_ns.value_or(loop_ns));
+    value_.many_senders = command.many_senders;
+  }
+  const bool pending = std::ranges::any_of(
+      sources_, [](const Source& source) { return source.live && !zero(source.input.value().twist); });
+  const bool requested =
+      pending || std::ranges::any_of(sources_, [&](Source& source) { return source.input.motion_requested(loop_ns); });
+  value_.contested = zero(value_.twist) && requested ? 1 : 0;
+  if (zero(value_.twist) && !message && !pending) value_.contested = unread(loop_ns) ? 1 : kNoMessage;
   ++value_.count;
+  add_refusals();
+}
+
+bool CommandMux::unread(std::int64_t loop_ns) const {
+  return message_ns_ && std::abs(loop_ns - *message_ns_) < kLongestCycle;
 }
 
 void CommandMux::add_refusals() {

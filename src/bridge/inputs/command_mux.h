@@ -2,15 +2,18 @@
 /// Several sources of commands → the controller's inbox: the words and rules of twist_mux. Pure.
 ///
 ///   live      its last accepted message is no older than the source's timeout (0: never too old)
-///   locked    a lock of a higher priority is set: its last message said true, or with a timeout it is silent, or has
-///             never said anything
+///   locked    a lock of a higher priority is set: its last message was true, or it has a timeout and its
+///             last message is older, or none was received
 ///   winner    the live source of the highest priority that is not locked
 ///
 /// The result is the winner's command, with the checks of CommandInput. Where there is no winner it is a zero velocity,
 /// renewed at every look, so that nothing times out and the robot is at rest by command. When the winner changes, the
-/// new one's last command takes effect at once; the controller's S-curve leads from one to the other. The evidence of a
-/// zero request (safety/latch/motion_release.h) is that of the result; a zero because of a lock is contested while a
-/// live source asks for motion, which would otherwise begin with the end of the lock.
+/// new one's last command takes effect at once; the controller's S-curve leads from one to the other.
+///
+/// Evidence that no motion is requested (safety/latch/motion_release.h) counts the messages of all sources: a zero
+/// result is contested while any of them requests motion, masked or locked as it may be, because that motion would
+/// begin with the silence of the winner or the end of the lock. The zero where there is no winner is no message
+/// (kNoMessage), unless a locked source still requests motion.
 ///
 /// Time is that of the loop's frames.
 
@@ -24,32 +27,31 @@
 
 namespace robot_control {
 
-class CommandMux {
+class CommandMux final : public CommandIntake {
  public:
-  CommandMux(const CommandSourceList& list, bool one_sender);
+  /// `timeout`: cmd_vel_timeout, s; 0: never.
+  CommandMux(const CommandSourceList& list, double timeout, bool one_sender);
+
+  /// Sources have timeouts of their own; this is that of the evidence.
+  void set_timeout(double timeout) override;
 
   /// `source`: index in the list, which is sorted by priority.
   void receive(std::size_t source, const ArrivedCommand& arrived, const ArrivalTime& time);
   void receive_lock(std::size_t lock, bool set, std::int64_t loop_ns);
 
   /// Follows timeouts and locks. True if the value of the inbox changed.
-  bool look(std::int64_t loop_ns);
+  bool look(std::int64_t loop_ns) override;
 
-  /// The value for the inbox.
-  const VelocityCommand& value() const noexcept { return value_; }
-
-  /// The new reports since the last call.
-  std::vector<ReportLine> lines();
-
-  /// Sorted by name.
-  std::vector<std::string> senders(std::int64_t loop_ns);
+  const VelocityCommand& value() const noexcept override { return value_; }
+  std::vector<ReportLine> lines() override;
+  std::vector<std::string> senders(std::int64_t loop_ns) override;
 
   /// Name of the winner at the last look or message; empty: none.
-  std::string winner() const;
+  std::string winner() const override;
 
   /// One text per source, by priority: "joy_vel: silent", "key_vel: commands", "cmd_vel: masked by key_vel",
   /// "path_vel: locked by pause".
-  std::vector<std::string> states() const;
+  std::vector<std::string> states() const override;
 
  private:
   struct Source {
@@ -68,12 +70,16 @@ class CommandMux {
 
   /// True if the winner changed.
   bool select(std::int64_t loop_ns);
-  void take(const Source& source, std::int64_t loop_ns);
+  /// `message`: because of one that arrived.
+  void take_result(std::int64_t loop_ns, bool message);
+  /// A message arrived within the last cycle: the controller may not have read it yet.
+  bool unread(std::int64_t loop_ns) const;
   void add_refusals();
 
   std::vector<Source> sources_;
   std::vector<Lock> locks_;
   std::optional<std::size_t> winner_;
+  std::optional<std::int64_t> message_ns_;  ///< when the last message arrived, of whatever source
   VelocityCommand value_;
   std::vector<ReportLine> lines_;
 };

@@ -77,6 +77,25 @@ msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, c
   return message;
 }
 
+void state_covariances(const ReportParameters& given, msg::Odometry& message) {
+  const auto replace = [](const std::optional<CovarianceDiagonal>& diagonal, auto& covariance) {
+    if (!diagonal) return;
+    covariance.fill(0);
+    for (std::size_t i = 0; i < diagonal->size(); ++i) covariance[i * (diagonal->size() + 1)] = (*diagonal)[i];
+  };
+  replace(given.pose_covariance_diagonal, message.pose.covariance);
+  replace(given.twist_covariance_diagonal, message.twist.covariance);
+}
+
+std::string covariance_note(const ReportParameters& given) {
+  const bool pose = given.pose_covariance_diagonal.has_value();
+  const bool twist = given.twist_covariance_diagonal.has_value();
+  if (!pose && !twist) return "";
+  const std::string keys = std::string(pose ? "pose_covariance_diagonal" : "") + (pose && twist ? " and " : "") +
+                           (twist ? "twist_covariance_diagonal" : "");
+  return "odom: " + keys + " given: constant, whatever the estimate's uncertainty is. Leave out to publish that";
+}
+
 msg::TransformStamped transform(const msg::Odometry& odometry) {
   msg::TransformStamped message;
   message.header = odometry.header;

@@ -7,6 +7,7 @@
 
 #include "bridge/messages/messages.h"
 #include "estimation/estimator_parameters.h"
+#include "parameters/parameters.h"
 #include "robot/robot_model.h"
 #include "signals/command_frame.h"
 #include "signals/sensor_frame.h"
@@ -27,6 +28,12 @@ msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state
 /// Pose in `odom_frame`, twist in `base_frame`; both covariances complete (REP 105, nav_msgs/Odometry).
 msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
                        ros::Time stamp);
+
+/// Replaces covariances by the diagonals that the user gave, for programs that need constant ones.
+void state_covariances(const ReportParameters& given, msg::Odometry& message);
+
+/// The log line about it at start; empty: nothing was given.
+std::string covariance_note(const ReportParameters& given);
 
 /// odom_frame → base_frame.
 msg::TransformStamped transform(const msg::Odometry& odometry);
@@ -67,7 +74,7 @@ msg::JointState joint_targets(const CommandFrame& command, const RobotModel& rob
 msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp);
 
 /// `plan`: the command two cycles before `command`, whose targets are what an ideal wheel does now (wheel_loop.h).
-/// `reasons`: CommandReason bits. The brake wants standstill.
+/// `reasons`: CommandReason bits. While the brake acts, the reported target is standstill.
 msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
                             const RobotModel& robot, ros::Time stamp);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Hash and type of a service, in the two forms in which roscpp asks its request and its response for them. The
-/// generated service headers that would say them cannot be included in C++20, see messages.h.
+/// Hash and type of a service, in the two forms in which roscpp reads them from its request and its response. The
+/// generated service headers that contain them cannot be included in C++20, see messages.h.
 
 #include <ros/service_traits.h>
 

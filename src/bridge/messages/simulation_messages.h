@@ -1,6 +1,6 @@
 #pragma once
 /// The services of a simulated machine as messages: std_srvs/SetBool, robot_control/Step, robot_control/InjectFault.
-/// Their own headers (SetBool.h …) cannot be included in C++20, see messages.h; below is what they say.
+/// Their own headers (SetBool.h …) cannot be included in C++20, see messages.h; below is what they contain.
 
 #include <robot_control/InjectFaultRequest.h>
 #include <robot_control/InjectFaultResponse.h>

@@ -20,7 +20,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kExhaustedPause = 10'000'000;  // ns; roscpp asks again at once, and logs each time
+constexpr std::int64_t kExhaustedPause = 10'000'000;  // ns; roscpp calls accept again at once, and logs each time
 
 std::atomic<std::uint64_t> evicted{0};
 
@@ -72,7 +72,7 @@ class OpenSockets {
     ino_t inode = 0;
     std::int64_t since_ns = 0;
 
-    /// The number may belong to something else by now.
+    /// The number may belong to another descriptor by now.
     bool is_open() const { return inode_of(descriptor) == inode; }
   };
 

@@ -97,7 +97,7 @@ bool parse(ros::M_string& values, std::string_view rest, std::string& problem) {
   return true;
 }
 
-/// One for each level of a logger. rosconsole keeps the address of each for ever.
+/// One for each level of a logger. rosconsole keeps the address of each until the process ends.
 struct LoggerProbe {
   std::string name;
   std::array<ros::console::LogLocation, ros::console::levels::Count> levels;

@@ -1,5 +1,5 @@
 #pragma once
-/// Keeps what state_estimator learns in its file: every 30 s when there is more to say, and at the end. Called from the
+/// Keeps what state_estimator learns in its file: every 30 s when more was learned, and at the end. Called from the
 /// ordinary thread, which also publishes: a disk may take a second, so a thread of its own waits for it.
 
 #include <cstdint>

@@ -36,7 +36,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
         command_report_(robot(), parameters().controller) {
     if (parameters().command_sources.empty()) return;
     list_ = read_command_sources(parameters().command_sources);
-    mux_.emplace(list_, parameters().controller.one_sender);
+    mux_.emplace(list_, parameters().controller.cmd_vel_timeout, parameters().controller.one_sender);
+    intake_ = &*mux_;
   }
 
   void connect(ros::NodeHandle& handle) override {
@@ -92,11 +93,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
     const std::uint64_t lately = std::exchange(since_report_, 0);
-    if (mux_) {
-      report_command(report, command_, lately, mux_->senders(loop_ns()), mux_->states());
-    } else {
-      report_command(report, command_, lately, input_.senders(loop_ns()));
-    }
+    report_command(report, command_, lately, intake_->senders(loop_ns()), intake_->states());
   }
 
  private:
@@ -151,13 +148,12 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
   void add_sources(msg::DriveState& message) {
     const std::lock_guard lock(input_mutex_);
-    if (!mux_) return;
-    message.commander = mux_->winner();
-    const std::vector<std::string> states = mux_->states();
+    message.commander = intake_->winner();
+    const std::vector<std::string> states = intake_->states();
     message.sources.assign(states.begin(), states.end());
   }
 
-  /// A command that arrives before the loop runs moves nothing later: said once, until the loop has run.
+  /// A command that arrives before the loop runs moves nothing later: one warning, until the loop has run.
   void log_dropped(const std::string& sender) {
     SensorFrame sensors;
     CommandFrame command;
@@ -238,7 +234,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   /// What beside the controller goes by its limits.
   void follow(const DriveControllerParameters& parameters) {
     const std::lock_guard lock(input_mutex_);
-    input_.set_timeout(parameters.cmd_vel_timeout);
+    intake_->set_timeout(parameters.cmd_vel_timeout);
     report_outdated_.store(true);
   }
 
@@ -246,13 +242,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     std::vector<ReportLine> lines;
     {
       const std::lock_guard lock(input_mutex_);
-      if (mux_) {
-        if (mux_->look(loop_ns())) process().cycle().inbox().store(mux_->value());
-        lines = mux_->lines();
-      } else {
-        if (input_.look(loop_ns())) process().cycle().inbox().store(input_.value());
-        lines = input_.lines();
-      }
+      if (intake_->look(loop_ns())) process().cycle().inbox().store(intake_->value());
+      lines = intake_->lines();
     }
     write_log(lines);
   }
@@ -279,11 +270,12 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   ros::ServiceServer set_parameter_map_;
   ros::Publisher descriptions_;
   ros::Publisher updates_;
-  std::mutex tuning_mutex_;                   ///< one set at a time; only ever tried
-  std::atomic<bool> report_outdated_{false};  ///< other limits hold than `command_report_` knows
+  std::mutex tuning_mutex_;                   ///< one set at a time; locked by try_lock alone
+  std::atomic<bool> report_outdated_{false};  ///< `command_report_` still holds earlier limits
   std::mutex input_mutex_;
   CommandInput input_;
-  std::optional<CommandMux> mux_;  ///< where there is a list of sources; then `input_` receives nothing
+  std::optional<CommandMux> mux_;    ///< where there is a list of sources; then `input_` receives nothing
+  CommandIntake* intake_ = &input_;  ///< the one of the two that receives
   std::int64_t loop_ns_ = 0;
   bool dropped_told_ = false;
   Pacer pace_;

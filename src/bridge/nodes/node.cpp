@@ -69,7 +69,7 @@ class WaitingNote {
   std::int64_t since_ns_ = monotonic_ns();
 };
 
-/// Without a master no parameter could be read: waits for it, and says so once. False when interrupted.
+/// Without a master no parameter could be read: waits for it, which is logged once. False when interrupted.
 bool await_master(const std::string& name) {
   constexpr std::int64_t kRetry = 200'000'000;  // ns
   for (bool reported = false; !ros::master::check(); reported = true) {
@@ -146,7 +146,7 @@ class NodeLoop {
     log_refusals(node_.realtime_messages());
   }
 
-  /// In one line: every node says it.
+  /// In one line: every node logs it.
   void log_refusals(const std::vector<std::string>& refusals) {
     if (refusals_told_ || refusals.empty()) return;
     refusals_told_ = true;

@@ -13,6 +13,7 @@
 #include "bridge/reports/diagnostics.h"
 #include "bridge/reports/stop_log.h"
 #include "files/ascii.h"
+#include "parameters/command_sources.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "runtime/processes/monitor_process.h"
@@ -31,7 +32,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   using ProcessNode::ProcessNode;
 
   void connect(ros::NodeHandle& handle) override {
-    command_topics_ = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
+    for (const std::string& topic : command_topics()) command_topics_.push_back(handle.resolveName(topic));
     status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
     // A malformed message stops the robot, too: its sender may have meant a stop.
     e_stop_.connect(
@@ -78,6 +79,18 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   /// A permit of this process. What an earlier one left is none.
   bool seen(Permit& permit) {
     return process().output().newest(permit) == Lookup::kFrame && permit.head.run == process().cycle().published_run();
+  }
+
+  /// On which the controller listens. A list that it refuses keeps it from starting.
+  std::vector<std::string> command_topics() {
+    std::vector<std::string> topics;
+    try {
+      const std::string path = parameters_of("diff_drive_controller").command_sources;
+      if (path.empty()) return {"cmd_vel", "cmd_vel_stamped"};
+      for (const CommandSource& source : read_command_sources(path).sources) topics.push_back(source.topic);
+    } catch (const ParameterError&) {
+    }
+    return topics;
   }
 
   void note_latch_file(msg::SafetyStatus& status) {

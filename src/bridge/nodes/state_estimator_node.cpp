@@ -43,6 +43,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     if (report().publish_tf) tf_ = handle.advertise<msg::TFMessage>("tf", 100);
     reset_ = handle.advertiseService("reset_odometry", &StateEstimatorNode::reset_odometry, this);
     set_ = handle.advertiseService("set_odometry", &StateEstimatorNode::set_odometry, this);
+    if (const std::string note = covariance_note(report()); !note.empty()) ROS_INFO("%s", note.c_str());
   }
 
   std::int64_t tick_ns() const override {
@@ -81,7 +82,8 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
  private:
   void publish_odometry() {
     const ros::Time stamp = time().at(state_.head.stamp_ns);
-    const msg::Odometry message = odometry(state_, report().odom_frame, report().base_frame, stamp);
+    msg::Odometry message = odometry(state_, report().odom_frame, report().base_frame, stamp);
+    state_covariances(report(), message);
     odom_.publish(message);
     wheel_odom_.publish(wheel_odometry(state_, report().odom_frame, report().base_frame, stamp));
     if (!tf_) return;

@@ -2,38 +2,77 @@
 
 #include <ros/ros.h>
 
+#include <atomic>
 #include <filesystem>
 #include <numeric>
+#include <utility>
 
+#include "bridge/messages/simulation_messages.h"
 #include "bridge/reports/diagnostics.h"
+#include "bridge/startup/setup.h"
+#include "files/ascii.h"
+#include "rt/thread_priority.h"
 #include "runtime/processes/telemetry_process.h"
 
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kDrainPeriod = 10'000'000;         // ns; a ring holds 1 s at 2 kHz
+constexpr std::int64_t kDrainPeriod = 2'000'000;          // ns; what the black box may miss after a crash
 constexpr std::int64_t kLockstepDrainPeriod = 1'000'000;  // ns; there, a full ring holds the loop up
+
+/// The header of a log holds what every node has read: its private parameters, too. Of one whose parameters are
+/// refused, which does not start, those that this node has read.
+Parameters with_blocks_of_other_nodes(Parameters parameters) {
+  const auto take = [](const char* node, auto put) {
+    try {
+      put(parameters_of(node));
+    } catch (const ParameterError&) {
+      ROS_WARN("the parameters of %s are refused; the header of the log holds others", node);
+    }
+  };
+  take("mujoco_plant", [&](const Parameters& read) { parameters.plant = read.plant; });
+  take("state_estimator", [&](const Parameters& read) { parameters.estimator = read.estimator; });
+  take("diff_drive_controller", [&](const Parameters& read) {
+    parameters.controller = read.controller;
+    parameters.command_sources = read.command_sources;
+  });
+  take("safety_monitor", [&](const Parameters& read) { parameters.safety = read.safety; });
+  return parameters;
+}
 
 class TelemetryNode final : public Node {
  public:
   explicit TelemetryNode(const Setup& setup)
       : lockstep_(setup.parameters.loop.clock == ClockMode::kLockstep),
+        precedes_(!lockstep_ && setup.parameters.loop.realtime != RealtimePolicy::kOff),
         quota_(setup.parameters.telemetry.quota),
-        process_(setup.parameters, setup.robot, setup.bus) {}
+        process_(with_blocks_of_other_nodes(setup.parameters), setup.robot, setup.bus) {}
 
   void connect(ros::NodeHandle& /*handle*/) override {
-    const std::string path = std::filesystem::absolute(process_.path()).lexically_normal().string();
-    ROS_INFO("writing %s; telemetry.quota = %g GB", path.c_str(), quota_);
+    for (const std::string& path : {process_.csv_path(), process_.bag_path()}) {
+      if (!path.empty()) ROS_INFO("log: %s; telemetry.quota = %g GB", absolute(path).c_str(), quota_);
+    }
+    if (const std::string& path = process_.black_box_path(); !path.empty()) {
+      ROS_INFO("black box: %s", absolute(path).c_str());
+    }
+    ros::NodeHandle own("~");
+    record_ = own.advertiseService("record", &TelemetryNode::record, this);
   }
   void poll() override { process_.poll(); }
   void publish() override {
+    // From the first call on: what other programs hold up is missing in the black box after a crash.
+    if (std::exchange(precedes_, false)) precede_ordinary_threads();
     process_.drain();
     for (const std::string& path : process_.take_removed()) {
       ROS_WARN("removed %s, the oldest log: telemetry.quota = %g GB", path.c_str(), quota_);
     }
-    if (process_.problem().empty() || reported_) return;
-    reported_ = true;
-    ROS_ERROR("%s. The loop goes on, its rows are counted and lost", process_.problem().c_str());
+    for (const std::string& note : process_.take_notes()) ROS_WARN("black box: %s", note.c_str());
+    process_.request_recording(requested_.load());
+    const std::string problem = process_.problem();
+    if (problem == reported_) return;
+    if (!problem.empty()) ROS_ERROR("%s. The loop goes on, its rows are counted and lost", problem.c_str());
+    if (problem.empty()) ROS_INFO("the disk takes the log again");
+    reported_ = problem;
   }
   std::int64_t tick_ns() const override { return lockstep_ ? kLockstepDrainPeriod : kDrainPeriod; }
   bool finished() const override { return false; }
@@ -42,30 +81,66 @@ class TelemetryNode final : public Node {
 
   void stop() override {
     process_.finish();
+    for (const std::string& note : process_.take_notes()) ROS_WARN("black box: %s", note.c_str());
     const TelemetryCounts counts = process_.counts();
-    ROS_INFO("%llu rows in %s, %llu dropped, %llu overwritten", static_cast<unsigned long long>(counts.join.emitted),
-             process_.path().c_str(), static_cast<unsigned long long>(counts.dropped),
-             static_cast<unsigned long long>(counts.overwritten));
+    const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    if (!process_.csv_path().empty()) {
+      ROS_INFO("%llu rows in %s, %llu dropped, %llu overwritten, %llu not taken by the disk",
+               number(counts.join.emitted - counts.unwritten), process_.csv_path().c_str(), number(counts.dropped),
+               number(counts.overwritten), number(counts.unwritten));
+    }
+    if (!process_.bag_path().empty()) {
+      ROS_INFO("%llu rows in %s, %llu not taken by the disk", number(counts.bag_rows), process_.bag_path().c_str(),
+               number(counts.bag_unwritten));
+    }
   }
 
   void diagnose(DiagnosticReport& report) override {
     const TelemetryCounts counts = process_.counts();
     const auto sum = [](const auto& nodes) { return std::accumulate(nodes.begin(), nodes.end(), std::uint64_t{0}); };
-    if (counts.dropped + counts.overwritten != 0) report.warn("rows were lost");
+    if (counts.dropped + counts.overwritten + counts.unwritten + counts.bag_unwritten != 0)
+      report.warn("rows were lost");
     if (!process_.problem().empty()) report.error(process_.problem());
-    report.value("log", std::filesystem::absolute(process_.path()).string());  // identify.py reads it
+    if (!process_.csv_path().empty()) report.value("log", absolute(process_.csv_path()));  // identify.py reads it
+    if (!process_.bag_path().empty()) report.value("bag", absolute(process_.bag_path()));
+    if (!process_.black_box_path().empty()) {
+      report.value("black_box", absolute(process_.black_box_path()));
+      report.value("incidents", counts.incidents);
+    }
+    report.value("recording", std::uint64_t{process_.recording()});
     report.value("rows", counts.join.emitted);
+    report.value("bag_rows", counts.bag_rows);
     report.value("absent", sum(counts.join.absent));
     report.value("late", sum(counts.join.late));
     report.value("dropped", counts.dropped);
     report.value("overwritten", counts.overwritten);
-    report.value("unwritten", process_.problem().empty() ? 0 : counts.unwritten);
+    report.value("unwritten", counts.unwritten);
+    report.value("bag_unwritten", counts.bag_unwritten);
   }
 
  private:
+  static std::string absolute(const std::string& path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
+  }
+
+  bool record(msg::SetBoolRequest& request, msg::SetBoolResponse& response) {
+    const bool on = request.data != 0;
+    const bool there = !process_.bag_path().empty();
+    response.success = static_cast<std::uint8_t>(there);
+    const std::string answer = !there ? "telemetry.record is off: there is no run.bag"
+                               : on   ? "run.bag holds every cycle from now on"
+                                      : "run.bag holds what telemetry.record says";
+    response.message = ascii(answer);
+    requested_.store(on);
+    return true;
+  }
+
   bool lockstep_;
-  double quota_;  ///< GB
-  bool reported_ = false;
+  bool precedes_;         ///< this thread shall, and does not yet
+  double quota_;          ///< GB
+  std::string reported_;  ///< problem
+  std::atomic<bool> requested_{false};
+  ros::ServiceServer record_;
   TelemetryProcess process_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// telemetry: every cycle of the four nodes → run.csv. No topics but /diagnostics.
+/// telemetry: every cycle of the four nodes → run.bag and run.csv. No topics but /diagnostics; service ~record.
 
 #include <memory>
 

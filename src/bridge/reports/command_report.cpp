@@ -21,6 +21,13 @@ std::string format(const char* pattern, Values... values) {
   return text.data();
 }
 
+/// What a sender's arithmetic left of a zero is one.
+std::string requested_text_of(const PlanarTwist& requested) {
+  constexpr double kRounding = 1e-6;  // m/s and rad/s
+  const auto shown = [](double speed) { return std::abs(speed) < kRounding ? 0.0 : speed; };
+  return format("cmd_vel %.4g m/s, %.4g rad/s", shown(requested.linear), shown(requested.angular));
+}
+
 PlanarTwist requested_twist(const CommandFrame& command) {
   return {command.twist_requested.linear[0], command.twist_requested.angular[2]};
 }
@@ -61,7 +68,7 @@ bool CommandReport::same(const Report& one, const Report& other) {
 
 std::string CommandReport::text(const Report& report, const CommandFrame& command) const {
   const PlanarTwist requested = requested_twist(command);
-  std::string requested_text = format("cmd_vel %g m/s, %g rad/s", requested.linear, requested.angular);
+  std::string requested_text = requested_text_of(requested);
   if ((report.hindrance & kNoEffect) != 0) {
     const std::uint64_t why = report.hindrance & kNoEffect;
     return requested_text + " has no effect: " + sentences_of(kCommandReasonNames, why & (~why + 1));

@@ -7,6 +7,7 @@
 #include "bridge/reports/name_list.h"
 #include "files/ascii.h"
 #include "signals/names.h"
+#include "signals/slip_detection.h"
 
 namespace robot_control {
 namespace {
@@ -87,12 +88,13 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
     report.warn("slip: wheels and inertial sensors disagree");
   }
   if ((state.flags & kStateDegraded) != 0) {
-    report.warn("degraded to wheels and gyro: " + sentences_of(kDegradedReasonNames, state.degraded));
+    report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.degraded));
   }
   report.value("cycle", state.head.cycle);
   report.value("flags", names_of(kStateFlagNames, state.flags));
   report.value("degraded", names_of(kDegradedReasonNames, state.degraded));
   report.value("residual_level", state.residual_level);
+  report.value("slip_detection", slip_detection(state.residual_level));
   report.value("distance_m", state.distance);
   report.value("skipped", state.skipped);
   report.value("slip", names_of(kSlipReasonNames, state.slip));

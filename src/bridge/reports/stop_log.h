@@ -18,20 +18,19 @@
 
 #include "bridge/messages/messages.h"
 #include "bridge/reports/report_line.h"
+#include "signals/velocity_command.h"
 
 namespace robot_control {
 
 class StopLog {
  public:
   static constexpr double kRepeat = 10;  ///< s
-  /// s, beyond `cmd_vel_timeout` (kZeroSilence where that is 0), until INIT is reported to wait for a zero.
+  /// s, beyond the silence that counts as a zero request, until INIT is reported to wait for a zero.
   static constexpr double kReserve = 0.25;
-  static constexpr double kNoSpeed = 0.01;     ///< m/s; a speed limit below it is none to drive with
-  static constexpr double kZeroSilence = 1.0;  ///< s, where cmd_vel_timeout is 0
+  static constexpr double kNoSpeed = 0.01;  ///< m/s; a speed limit below it is none to drive with
 
   /// `period` of the loop and `cmd_vel_timeout` [s]: a silence of that length counts as a zero request.
-  StopLog(double period, double cmd_vel_timeout)
-      : period_(period), zero_silence_(cmd_vel_timeout > 0 ? cmd_vel_timeout : kZeroSilence) {}
+  StopLog(double period, double cmd_vel_timeout) : period_(period), zero_silence_(silence_needed(cmd_vel_timeout)) {}
 
   /// Every status that is published, in that order.
   std::vector<ReportLine> look(const msg::SafetyStatus& status);
@@ -48,7 +47,7 @@ class StopLog {
   bool stopping_ = false;
   bool starting_ = true;  ///< INIT since the last "ready"
   std::uint64_t run_ = 0;
-  double awaiting_since_ = -1;  ///< s of this run; negative: it does not wait, or that was said
+  double awaiting_since_ = -1;  ///< s of this run; negative: it does not wait, or that was logged
   bool awaiting_ = false;
   std::set<std::string> present_;           ///< warnings of the last status
   std::map<std::string, double> reported_;  ///< s of this run, by warning

@@ -3,35 +3,12 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <sstream>
+
+#include "parameters/parameters_text.h"
 
 namespace robot_control {
 namespace {
-
-std::string number(double value) {
-  if (std::isnan(value)) return ".nan";
-  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
-/// As a YAML scalar that is a text whatever stands in it: the server knows types.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (c == '\n') {
-      result += "\\n";
-    } else {
-      result += c;
-    }
-  }
-  return result + "\"";
-}
 
 std::string text_of(XmlRpc::XmlRpcValue value) {
   switch (value.getType()) {
@@ -40,16 +17,16 @@ std::string text_of(XmlRpc::XmlRpcValue value) {
     case XmlRpc::XmlRpcValue::TypeInt:
       return std::to_string(static_cast<int>(value));
     case XmlRpc::XmlRpcValue::TypeDouble:
-      return number(static_cast<double>(value));
+      return yaml_number(static_cast<double>(value));
     case XmlRpc::XmlRpcValue::TypeString:
-      return quoted(static_cast<std::string>(value));
+      return yaml_quoted(static_cast<std::string>(value));
     case XmlRpc::XmlRpcValue::TypeArray: {
       std::string text = "[";
       for (int i = 0; i < value.size(); ++i) text.append(i == 0 ? "" : ", ").append(text_of(value[i]));
       return text.append("]");
     }
     default:
-      return quoted(value.toXml());  // what no parameter is: the schema refuses it
+      return yaml_quoted(value.toXml());  // what no parameter is: the schema refuses it
   }
 }
 

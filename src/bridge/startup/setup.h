@@ -1,5 +1,5 @@
 #pragma once
-/// Everything a node knows before it takes its locks: parameters, robot, name of the bus.
+/// Everything a node reads before it takes its locks: parameters, robot, name of the bus.
 ///
 /// Read after ros::init and before the first NodeHandle, because a NodeHandle registers this node's name and ROS
 /// would then shut a running node of that name down.
@@ -13,7 +13,7 @@
 
 namespace robot_control {
 
-/// All that stands against starting, one problem a line.
+/// Every reason not to start, one problem a line.
 class SetupError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,0 +1,34 @@
+"""A velocity that a program commands, and the pace at which it is sent. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+SEND_PERIOD = 0.05
+"""s between two messages of the same command; a change is sent at once"""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A velocity."""
+
+    linear: float = 0.0  # m/s
+    angular: float = 0.0  # rad/s
+
+
+class Pace:
+    """Sends a command when it changes, and again every SEND_PERIOD."""
+
+    def __init__(self, send: Callable[[float, float], None]) -> None:
+        self._send = send
+        self.last: Command | None = None  # of the last look; None: there was nothing to send
+        self.sent_at: float | None = None  # s, as `now`
+
+    def look(self, command: Command | None, now: float) -> None:
+        """What is commanded now; None: nothing."""
+        due = self.sent_at is None or now - self.sent_at >= SEND_PERIOD
+        if command is not None and (due or command != self.last):
+            self._send(command.linear, command.angular)
+            self.sent_at = now
+        self.last = command

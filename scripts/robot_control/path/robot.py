@@ -1,0 +1,113 @@
+"""The robot as a path's program sees it: odometry, permit, and whether its commands reach the wheels."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import rospy
+from nav_msgs.msg import Odometry
+
+from robot_control.common.command_topic import CommandTopic
+from robot_control.common.orientation import yaw_of
+from robot_control.common.safety_states import DRIVABLE
+from robot_control.msg import DriveState, SafetyStatus
+from robot_control.path.follower import Pose
+
+SOURCE = "path_vel"
+SILENCE = 0.5
+"""s without odometry; it comes at 50 Hz"""
+SAFETY_SILENCE = 3.0
+"""s without safety_status; it comes once per second"""
+PATIENCE = 10.0
+"""s to wait for odometry and the permit to drive"""
+
+
+def pose_of(odometry: Odometry) -> Pose:
+    """Of the robot, in the frame odom."""
+    pose = odometry.pose.pose
+    return Pose(pose.position.x, pose.position.y, yaw_of(pose.orientation))
+
+
+class Robot:
+    """The last of each message."""
+
+    def __init__(self) -> None:
+        self.odometry: Odometry | None = None
+        self.odometry_at = -math.inf
+        self.safety: SafetyStatus | None = None
+        self._safety_at = -math.inf
+        self.commands = False  # what is sent here reaches the wheels
+        self.masked_by = ""
+        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
+
+    @property
+    def frames(self) -> tuple[str, str]:
+        """Of odometry and of the robot; empty before the first odometry."""
+        return (self.odometry.header.frame_id, self.odometry.child_frame_id) if self.odometry is not None else ("", "")
+
+    @property
+    def drivable(self) -> bool:
+        """The monitor permits to drive."""
+        return self.safety is not None and self.safety.state_name in DRIVABLE
+
+    @property
+    def stopped(self) -> bool:
+        """Only a reset ends what stands against motion."""
+        return self.safety is not None and self.safety.state_name in {"STOPPING", "STOPPED", "FAULT"}
+
+    @property
+    def speed_limit(self) -> float:
+        """m/s, of safety_status: `clearance` and warnings."""
+        return math.inf if self.safety is None else float(self.safety.speed_limit)
+
+    def against_driving(self, now: float) -> str:
+        """Why a path that is driven has to end; empty: nothing."""
+        if now - self.odometry_at > SILENCE:
+            return f"odom is silent for {SILENCE:g} s"
+        if now - self._safety_at > SAFETY_SILENCE:
+            return f"safety_status is silent for {SAFETY_SILENCE:g} s"
+        return "" if self.drivable else self.stop_in_words()
+
+    def stop_in_words(self) -> str:
+        """Why it may not drive."""
+        if self.safety is None:
+            return "no safety_status: safety_monitor does not run"
+        why = "; ".join(self.safety.sentences) or "it is not ready"
+        return f"{self.safety.state_name}: {why}. Call e_stop_reset, then start the path again"
+
+    def await_drivable(self, topic: CommandTopic, going_on: Callable[[], bool]) -> str:
+        """With zeros until it may drive; why it may not, within PATIENCE, or empty.
+
+        The end of a stop is not waited for: a path that was requested before a reset does not begin with it.
+        """
+        end = time.monotonic() + PATIENCE
+        while going_on() and time.monotonic() < end:
+            if self.stopped:
+                return self.stop_in_words()
+            if self.drivable and self.odometry is not None and topic.connected and self.commands:
+                return ""
+            topic.send(0.0, 0.0)
+            time.sleep(0.1)
+        if not going_on():
+            return "interrupted"
+        if self.odometry is None:
+            return "no odom: state_estimator does not run"
+        if not self.drivable:
+            return self.stop_in_words()
+        return f"{SOURCE} is {self.masked_by}" if self.masked_by else "diff_drive_controller does not take commands"
+
+    def _receive_odometry(self, message: Odometry) -> None:
+        self.odometry, self.odometry_at = message, time.monotonic()
+
+    def _receive_safety(self, message: SafetyStatus) -> None:
+        self.safety, self._safety_at = message, time.monotonic()
+
+    def _receive_state(self, message: DriveState) -> None:
+        states = dict(text.split(": ", 1) for text in message.sources)
+        state = states.get(SOURCE, "")
+        self.masked_by = state if state.startswith(("masked", "locked")) else ""
+        self.commands = state in {"", "commands"}

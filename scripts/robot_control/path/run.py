@@ -1,0 +1,130 @@
+"""One path, driven: odometry in, commands out, until its end. What drive_path.py and follow_path.py share."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry, Path
+from std_srvs.srv import Trigger, TriggerResponse
+
+from robot_control.common.command_topic import CommandTopic
+from robot_control.path.follower import Follower, Motion, State
+from robot_control.path.frames import PathFrame
+from robot_control.path.robot import SOURCE, Robot, pose_of
+from robot_control.path.waypoints import PathError, Waypoint, from_poses
+
+LOOK = 0.005
+"""s between two looks for a new odometry message"""
+
+
+class Drive:
+    """A path from its first command on."""
+
+    def __init__(self, robot: Robot, topic: CommandTopic, follower: Follower, frame: PathFrame) -> None:
+        self._robot, self._topic, self.follower, self._frame = robot, topic, follower, frame
+        self._lock = threading.Lock()  # services come in threads of their own
+        self.paused_by = ""
+
+    def run(self, going_on: Callable[[], bool], look: Callable[[], None]) -> None:
+        """Until the follower's end, or as long as it shall; `look` is called at every look. Sends no last zero."""
+        last = -math.inf
+        while going_on() and not self.follower.over:
+            against = self._robot.against_driving(time.monotonic())
+            if against:
+                self.follower.fail(against)
+            elif self._robot.odometry_at > last:
+                last = self._robot.odometry_at
+                self._step(self._robot.odometry)
+            look()
+            time.sleep(LOOK)
+
+    def pause(self, why: str) -> None:
+        """Stands until `resume`."""
+        with self._lock:
+            self.follower.pause()
+            self.paused_by = why
+
+    def resume(self) -> str:
+        """Why it does not go on; empty: it does."""
+        with self._lock:
+            if self._robot.masked_by:
+                return f"{SOURCE} is {self._robot.masked_by}"
+            self.follower.resume()
+            self.paused_by = ""
+            return ""
+
+    def _step(self, odometry: Odometry) -> None:
+        if self._robot.masked_by and self.follower.state is not State.PAUSED:
+            self.pause(f"{SOURCE} is {self._robot.masked_by}")
+            rospy.logwarn(f"paused: {self.paused_by}; goes on after ~resume")
+        with self._lock:
+            measured = Motion(odometry.twist.twist.linear.x, odometry.twist.twist.angular.z)
+            try:
+                pose = self._frame.pose(pose_of(odometry), time.monotonic())
+                command = self.follower.step(pose, measured, self._robot.speed_limit)
+            except PathError as error:
+                self.follower.fail(str(error))
+                return
+        self._topic.send(command.linear, command.angular)
+
+    def describe(self) -> str:
+        """One line for the log."""
+        f = self.follower
+        return (
+            f"{f.state.name.lower()}: {100 * f.progress:.0f} %, {f.remaining:.2f} m left, "
+            f"{1000 * f.cross_track_error:z.0f} mm aside, {math.degrees(f.heading_error):z.1f} deg off"
+        )
+
+
+class PauseServices:
+    """~pause and ~resume, of the path that is driven at the moment."""
+
+    def __init__(self) -> None:
+        self.drive: Drive | None = None
+        rospy.Service("~pause", Trigger, self._pause)
+        rospy.Service("~resume", Trigger, self._resume)
+
+    def _pause(self, _request: object) -> TriggerResponse:
+        drive = self.drive
+        if drive is None:
+            return TriggerResponse(success=False, message="no path is driven")
+        drive.pause("~pause was called")
+        return TriggerResponse(success=True, message="paused; goes on after ~resume")
+
+    def _resume(self, _request: object) -> TriggerResponse:
+        drive = self.drive
+        refusal = "no path is driven" if drive is None else drive.resume()
+        return TriggerResponse(success=not refusal, message=refusal or "goes on")
+
+
+def points_of(message: Path) -> list[Waypoint]:
+    """In the frame of its header. Raises PathError: a pose lies in another one."""
+    frame = message.header.frame_id
+    others = {pose.header.frame_id for pose in message.poses} - {"", frame}
+    if others:
+        raise PathError(f"poses of the path lie in {', '.join(sorted(others))}, and the path in {frame!r}")
+    return from_poses(
+        [
+            (pose.position.x, pose.position.y, (q.x, q.y, q.z, q.w))
+            for pose in (stamped.pose for stamped in message.poses)
+            for q in [pose.orientation]
+        ]
+    )
+
+
+def message_of(points: list[Waypoint], frame: str) -> Path:
+    """For RViz."""
+    path = Path()
+    path.header.frame_id, path.header.stamp = frame, rospy.Time.now()
+    for point in points:
+        pose = PoseStamped(header=path.header)
+        pose.pose.position.x, pose.pose.position.y = point.x, point.y
+        half = (point.yaw or 0.0) / 2
+        pose.pose.orientation.z, pose.pose.orientation.w = math.sin(half), math.cos(half)
+        path.poses.append(pose)
+    return path

@@ -1,0 +1,144 @@
+"""follow_path.py's ROS side: the action follow_path."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import threading
+import time
+
+import actionlib
+import rospy
+from nav_msgs.msg import Path
+
+from robot_control.common.command_topic import CommandTopic
+from robot_control.common.ros_master import require_master
+from robot_control.common.ros_node import begin_node
+from robot_control.common.topic_sender import Signals, ended_by_signals
+from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, FollowPathResult
+from robot_control.path.follower import Follower, FollowParameters, State
+from robot_control.path.frames import Tf, located
+from robot_control.path.pieces import route
+from robot_control.path.robot import SOURCE, Robot
+from robot_control.path.run import Drive, PauseServices, message_of, points_of
+from robot_control.path.waypoints import PathError, checked, shortened
+
+NAME = "follow_path"
+FEEDBACK_PERIOD = 0.2
+"""s; a change of the state is sent at once"""
+END = 2.0
+"""s for the goal that is driven when the program is ended"""
+
+
+class Server:
+    """One goal at a time; the newest counts."""
+
+    def __init__(self, signals: Signals) -> None:
+        self._signals = signals
+        self._robot, self._topic, self._tf = Robot(), CommandTopic(SOURCE), Tf()
+        self._services = PauseServices()
+        self._wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
+        self._idle = threading.Event()
+        self._idle.set()
+        self._action = actionlib.SimpleActionServer(NAME, FollowPathAction, self._execute, auto_start=False)
+        self._action.start()
+
+    def await_end(self) -> None:
+        """Of the goal that is driven, after a signal."""
+        self._idle.wait(END)
+
+    def _going_on(self) -> bool:
+        return self._signals.going_on() and not self._action.is_preempt_requested()
+
+    def _execute(self, goal: FollowPathGoal) -> None:
+        self._idle.clear()
+        result = FollowPathResult()
+        try:
+            result.reason = self._drive(goal, result)
+        except PathError as error:
+            result.reason = str(error)
+        finally:
+            self._services.drive = None
+            replaced = self._action.is_new_goal_available()
+            if not replaced:
+                self._topic.send(0.0, 0.0)
+            self._conclude(result, replaced=replaced)
+            self._idle.set()
+
+    def _conclude(self, result: FollowPathResult, *, replaced: bool) -> None:
+        if result.reason == "done":
+            conclude = self._action.set_succeeded
+        elif replaced or self._action.is_preempt_requested():
+            result.reason = "replaced by a newer goal" if replaced else "cancelled"
+            conclude = self._action.set_preempted
+        else:
+            result.reason = result.reason or "interrupted"
+            conclude = self._action.set_aborted
+        rospy.loginfo(f"{result.reason}; {result.distance:.2f} m along the path")
+        conclude(result, result.reason)
+
+    def _drive(self, goal: FollowPathGoal, result: FollowPathResult) -> str:
+        """Why it ended. Raises PathError: the goal cannot be driven."""
+        if not (math.isfinite(goal.speed) and goal.speed >= 0):
+            raise PathError(f"speed is {goal.speed:g} m/s: it must be a number from zero on; zero is the default")
+        points = shortened(checked(points_of(goal.path)), goal.begin_at)
+        result.distance = goal.begin_at
+        self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
+        refusal = self._robot.await_drivable(self._topic, self._going_on)
+        if refusal:
+            return refusal
+        points, frame = located(points, goal.path.header.frame_id, self._robot.frames, self._tf)
+        follower = Follower(route(points), FollowParameters(speed=goal.speed or FollowParameters.speed))
+        self._wanted.publish(message_of(points, frame.name))
+        drive = Drive(self._robot, self._topic, follower, frame)
+        self._services.drive = drive
+        reporter = Reporter(self._action, drive, goal.begin_at)
+        drive.run(self._going_on, reporter.look)
+        result.distance = goal.begin_at + follower.distance
+        result.worst_cross_track_error = follower.worst_cross_track_error
+        return "done" if follower.state is State.DONE else follower.reason
+
+
+class Reporter:
+    """The feedback of one goal."""
+
+    def __init__(self, action: actionlib.SimpleActionServer, drive: Drive, begin_at: float) -> None:
+        self._action, self._drive, self._begin_at = action, drive, begin_at
+        self._sent_at, self._said = -math.inf, State.PAUSED
+
+    def look(self) -> None:
+        """Sends it where it is due."""
+        now, follower = time.monotonic(), self._drive.follower
+        if follower.state is self._said and now - self._sent_at < FEEDBACK_PERIOD:
+            return
+        self._sent_at, self._said = now, follower.state
+        distance = self._begin_at + follower.distance
+        self._action.publish_feedback(
+            FollowPathFeedback(
+                state=follower.state.name.lower(),
+                reason=self._drive.paused_by,
+                progress=distance / (distance + follower.remaining),
+                distance=distance,
+                remaining_distance=follower.remaining,
+                cross_track_error=follower.cross_track_error,
+                heading_error=follower.heading_error,
+            )
+        )
+
+
+def main() -> None:
+    """Entry point of scripts/follow_path.py."""
+    argparse.ArgumentParser(
+        prog="follow_path.py",
+        description="Serves the action follow_path (robot_control/FollowPath.action): drives the robot along the path "
+        "of a goal. Commands go to path_vel where the robot has a list of command sources, else to cmd_vel_stamped. "
+        "Services: follow_path/pause, follow_path/resume.",
+    ).parse_args(rospy.myargv(sys.argv)[1:])
+    require_master()
+    begin_node(NAME)
+    with ended_by_signals() as signals:
+        server = Server(signals)
+        while signals.going_on():
+            time.sleep(0.05)
+        server.await_end()

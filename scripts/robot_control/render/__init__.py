@@ -1,0 +1,1 @@
+"""scripts/render: pictures of a run."""

@@ -1,0 +1,93 @@
+"""What the robot's nodes said lately → RobotStatus. Pure but for the message types."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from robot_control.common.safety_states import DRIVABLE
+from robot_control.msg import RobotStatus, SafetyStatus
+
+REQUIRED = ("state_estimator", "diff_drive_controller", "safety_monitor")
+"""Nodes of every robot; the driver's has its own name"""
+MANUAL_SOURCES = frozenset({"joy_vel", "key_vel"})
+MANUAL_NODES = ("teleop", "pad")
+"""Begins of the names of nodes with which a person drives"""
+ODOMETRY_SENSORS = ("left_encoder", "right_encoder", "gyro")
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What was said and is not too old to count."""
+
+    safety: SafetyStatus | None = None
+    reports: Mapping[str, DiagnosticStatus] = field(default_factory=dict)  # by node, below the namespace
+    commander: str = ""  # of drive_state: where there is a list of command sources
+
+    def value(self, node: str, key: str) -> str:
+        """Of a node's report; empty: it does not say."""
+        report = self.reports.get(node)
+        return next((pair.value for pair in report.values if pair.key == key), "") if report is not None else ""
+
+
+def status_of(heard: Heard) -> RobotStatus:
+    """All but stamp, version and uptime."""
+    status = RobotStatus()
+    senders = heard.value("diff_drive_controller", "senders")
+    status.senders = senders.split(", ") if senders else []
+    status.commander = heard.commander
+    status.health, status.problems = _health(heard)
+    if heard.safety is not None:
+        status.safety_state = heard.safety.state_name
+        status.causes, status.sentences = heard.safety.causes, heard.safety.sentences
+        status.remedies, status.warnings = heard.safety.remedies, heard.safety.warning_sentences
+    status.mode = _mode(status)
+    status.odometry_confidence = _confidence(heard)
+    status.odometry_degraded = bool(heard.value("state_estimator", "degraded"))
+    return status
+
+
+def _mode(status: RobotStatus) -> str:
+    if not status.safety_state:
+        return "offline"
+    if status.safety_state == "INIT":
+        return "starting"
+    if status.safety_state not in DRIVABLE:
+        return "stopped"
+    if status.commander:
+        return "manual" if status.commander in MANUAL_SOURCES else "automatic"
+    names = [sender.rpartition("/")[2] for sender in status.senders]
+    if not names:
+        return "idle"
+    return "manual" if all(name.startswith(MANUAL_NODES) for name in names) else "automatic"
+
+
+def _health(heard: Heard) -> tuple[int, list[str]]:
+    levels, problems = [RobotStatus.OK], []
+    for node in REQUIRED:
+        if node not in heard.reports:
+            levels.append(RobotStatus.ERROR)
+            problems.append(f"{node} is silent")
+    for node, report in sorted(heard.reports.items()):
+        if report.level != DiagnosticStatus.OK:
+            levels.append(RobotStatus.WARN if report.level == DiagnosticStatus.WARN else RobotStatus.ERROR)
+            problems.append(f"{node}: {report.message}")
+    return max(levels), problems
+
+
+def _confidence(heard: Heard) -> float:
+    flags = heard.value("state_estimator", "flags")
+    if "state_estimator" not in heard.reports:
+        return math.nan
+    if "valid" not in flags.split():
+        return 0.0
+    return min(float(heard.value("state_estimator", f"confidence_{sensor}") or "nan") for sensor in ODOMETRY_SENSORS)
+
+
+def changed(new: RobotStatus, old: RobotStatus) -> bool:
+    """Another state, not merely other numbers: what is to be said at once."""
+    names = [name for name in new.__slots__ if name not in {"header", "uptime", "odometry_confidence"}]
+    return any(getattr(new, name) != getattr(old, name) for name in names)

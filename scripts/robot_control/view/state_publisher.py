@@ -1,0 +1,74 @@
+"""state_publisher.py: waits for robot_description, then becomes robot_state_publisher.
+
+Debian's robot_state_publisher ends where robot_description is not there yet, and warns about every root link with an
+inertia, which moves no transform. It is given the description without it, as a parameter of its own.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import xml.etree.ElementTree as ET
+
+import roslib.packages
+import rospkg
+import rospy
+
+from robot_control.common.ros_master import require_master
+from robot_control.common.ros_node import begin_node
+from robot_control.common.topic_sender import ended_by_signals
+
+LOOK = 0.2
+"""s between two looks at the parameter server"""
+PROGRAM = "robot_state_publisher"
+PACKAGE = "ros-robot-state-publisher"
+
+
+def without_root_inertia(urdf: str) -> str:
+    """The same robot for readers of its joints alone. A text that is no URDF is returned as it is."""
+    try:
+        robot = ET.fromstring(urdf)
+    except ET.ParseError:
+        return urdf
+    children = {child.get("link") for child in robot.findall("joint/child")}
+    for link in robot.findall("link"):
+        if link.get("name") not in children:
+            for inertial in link.findall("inertial"):
+                link.remove(inertial)
+    return ET.tostring(robot, encoding="unicode")
+
+
+def program() -> str:
+    """Raises SystemExit: it is not installed."""
+    try:
+        found = roslib.packages.find_node(PROGRAM, PROGRAM)
+    except rospkg.ResourceNotFound:
+        found = []
+    if not found:
+        sys.exit(f"state_publisher.py: needs the package {PACKAGE} (apt install {PACKAGE})")
+    return str(found[0])
+
+
+def await_description() -> str:
+    """Empty: a signal came first."""
+    with ended_by_signals() as signals:
+        while signals.going_on():
+            description = str(rospy.get_param("robot_description", ""))
+            if description:
+                return description
+            time.sleep(LOOK)
+    return ""
+
+
+def main() -> None:
+    """Entry point of scripts/state_publisher.py."""
+    path = program()
+    require_master()
+    begin_node(PROGRAM)
+    own, name = rospy.resolve_name("~robot_description"), rospy.resolve_name("robot_description")
+    description = await_description()
+    if not description:
+        return
+    rospy.set_param(own, without_root_inertia(description))
+    os.execv(path, [path, *sys.argv[1:], f"{name}:={own}"])

@@ -1,0 +1,34 @@
+"""The wheels of the robot that is shown."""
+
+from __future__ import annotations
+
+import tempfile
+from typing import Any
+
+import rospy
+
+from robot_control._robot_control import ParameterError, RobotError
+from robot_control.inspect.description import Description, describe
+from robot_control.view.scene import Wheel
+
+
+def wheels_of(robot: Description) -> dict[str, Wheel]:
+    """The drive wheels, by joint."""
+    return {wheel["joint"]: _wheel(wheel) for wheel in robot["wheels"]}
+
+
+def _wheel(wheel: dict[str, Any]) -> Wheel:
+    x, y, z = wheel["centre"]
+    return Wheel((x, y, z), wheel["radius"])
+
+
+def running_wheels() -> dict[str, Wheel]:
+    """Of robot_description, read as the robot's nodes read it; none while it is not there, or cannot be driven."""
+    robot = {key: value for key, value in rospy.get_param("robot", {}).items() if value != "" and key != "urdf"}
+    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+        file.write(rospy.get_param("robot_description", ""))
+        file.flush()
+        try:
+            return wheels_of(describe(file.name, {"robot": robot}))
+        except (RobotError, ParameterError):
+            return {}

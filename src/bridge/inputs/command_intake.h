@@ -1,0 +1,45 @@
+#pragma once
+/// What becomes of the commands that arrive: the newest one (CommandInput), or that of the winner among several sources
+/// (CommandMux). Pure; time is that of the loop's frames.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bridge/reports/command_report.h"
+#include "signals/velocity_command.h"
+
+namespace robot_control {
+
+class CommandIntake {
+ public:
+  CommandIntake() = default;
+  CommandIntake(const CommandIntake&) = default;
+  CommandIntake(CommandIntake&&) = default;
+  CommandIntake& operator=(const CommandIntake&) = default;
+  CommandIntake& operator=(CommandIntake&&) = default;
+  virtual ~CommandIntake() = default;
+
+  /// Follows what happens without a message: silence. True if the value of the inbox changed.
+  virtual bool look(std::int64_t loop_ns) = 0;
+
+  /// The value for the inbox.
+  virtual const VelocityCommand& value() const noexcept = 0;
+
+  /// The new reports since the last call.
+  virtual std::vector<ReportLine> lines() = 0;
+
+  /// Sorted by name.
+  virtual std::vector<std::string> senders(std::int64_t loop_ns) = 0;
+
+  /// Another cmd_vel_timeout, s.
+  virtual void set_timeout(double timeout) = 0;
+
+  /// The source that commands; empty: none, or there is no list.
+  virtual std::string winner() const { return {}; }
+
+  /// One text per source of a list.
+  virtual std::vector<std::string> states() const { return {}; }
+};
+
+}  // namespace robot_control

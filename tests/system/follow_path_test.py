@@ -1,0 +1,258 @@
+#!/usr/bin/python3
+"""The action follow_path on a running robot with a list of command sources."""
+
+import math
+import time
+from collections.abc import Sequence
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
+from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, FollowPathResult
+from std_srvs.srv import Trigger, TriggerResponse
+from system_support import Program, RobotTestCase, again_after_a_stall, repository, wait_for
+from tf2_msgs.msg import TFMessage
+
+SUCCEEDED, ABORTED, PREEMPTED = GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED
+STAND = 0.01
+"""m/s"""
+
+Points = Sequence[tuple[float, float]]
+
+
+class Client:
+    """One goal: its feedback, state and result."""
+
+    def __init__(self, goal: FollowPathGoal) -> None:
+        self.feedback: list[FollowPathFeedback] = []
+        self._client = actionlib.SimpleActionClient("follow_path", FollowPathAction)
+        if not self._client.wait_for_server(rospy.Duration(30.0)):
+            raise AssertionError("no action server")
+        self._client.send_goal(goal, feedback_cb=self.feedback.append)
+
+    def cancel(self) -> None:
+        self._client.cancel_goal()
+
+    def says(self, state: str, reason: str = "") -> bool:
+        """The last feedback."""
+        return bool(self.feedback) and self.feedback[-1].state == state and reason in self.feedback[-1].reason
+
+    def end(self) -> tuple[int, FollowPathResult]:
+        if not self._client.wait_for_result(rospy.Duration(60.0)):
+            raise AssertionError(f"no end; {self.feedback[-1:]}")
+        return self._client.get_state(), self._client.get_result()
+
+
+class FollowPathTest(RobotTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        rospy.set_param("/diff_drive_controller/command_sources", str(repository() / "config" / "command_sources.yaml"))
+        super().setUpClass()
+        cls.server = Program("follow_path.py")
+        cls.key = rospy.Publisher("key_vel", TwistStamped, queue_size=1, tcp_nodelay=True)
+        cls.tf = rospy.Publisher("tf", TFMessage, queue_size=1)
+        cls.sent: list[float] = []
+        cls.subscriber = rospy.Subscriber("path_vel", TwistStamped, lambda m: cls.sent.append(m.twist.linear.x))
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.server.end()
+        super().tearDownClass()
+
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.await_rest()
+
+    def goal(self, points: Points, frame: str = "odom", **fields: float) -> FollowPathGoal:
+        """Points before the robot, x ahead."""
+        goal = FollowPathGoal(**fields)
+        goal.path.header.frame_id = frame
+        here = self.robot.odom.pose.pose
+        yaw = 2 * math.atan2(here.orientation.z, here.orientation.w)
+        x0, y0 = (here.position.x, here.position.y) if frame in {"odom", "map"} else (0.0, 0.0)
+        yaw = yaw if frame in {"odom", "map"} else 0.0
+        for x, y in points:
+            pose = PoseStamped()
+            pose.pose.position.x = x0 + x * math.cos(yaw) - y * math.sin(yaw)
+            pose.pose.position.y = y0 + x * math.sin(yaw) + y * math.cos(yaw)
+            goal.path.poses.append(pose)
+        return goal
+
+    def straight(self, length: float, frame: str = "odom", **fields: float) -> FollowPathGoal:
+        return self.goal([(0.0, 0.0), (length, 0.0)], frame, **fields)
+
+    def await_motion(self, client: Client, speed: float = 0.3) -> None:
+        try:
+            wait_for(f"{speed} m/s", lambda: abs(self.robot.speed) > speed)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; {client.feedback[-1:]}; {self.server.output}") from None
+        self.assertTrue(client.says("driving"), client.feedback[-1:])
+
+    def await_rest(self) -> None:
+        wait_for("standstill", lambda: abs(self.robot.speed) < STAND)
+
+    @staticmethod
+    def service(name: str) -> TriggerResponse:
+        return rospy.ServiceProxy(f"/follow_path/{name}", Trigger)()
+
+    @again_after_a_stall
+    def test_a_path_is_driven_to_its_end_with_feedback(self) -> None:
+        client = Client(self.straight(1.0, speed=0.4))
+        state, result = client.end()
+        self.assertEqual((state, result.reason), (SUCCEEDED, "done"), self.server.output)
+        self.assertAlmostEqual(result.distance, 1.0, delta=0.01)
+        self.assertLess(result.worst_cross_track_error, 0.03)
+        driven = [feedback for feedback in client.feedback if feedback.state == "driving"]
+        self.assertGreater(len(driven), 5)
+        for feedback in driven:
+            self.assertAlmostEqual(feedback.distance + feedback.remaining_distance, 1.0, delta=1e-6)
+            self.assertAlmostEqual(feedback.progress, feedback.distance, delta=1e-6)
+            self.assertLess(abs(feedback.cross_track_error), 0.03)
+            self.assertLess(abs(feedback.heading_error), 0.1)
+        self.await_rest()
+
+    @again_after_a_stall
+    def test_a_goal_that_is_cancelled_ends_with_zero(self) -> None:
+        client = Client(self.straight(4.0))
+        self.await_motion(client)
+        client.cancel()
+        state, result = client.end()
+        self.assertEqual((state, result.reason), (PREEMPTED, "cancelled"))
+        self.assertGreater(result.distance, 0.02)
+        self.await_rest()
+        self.assertEqual(self.sent[-1], 0.0)
+
+    @again_after_a_stall
+    def test_a_newer_goal_replaces_the_present_one_without_a_stop(self) -> None:
+        first = Client(self.straight(4.0))
+        self.await_motion(first, 0.4)
+        before = len(self.sent)
+        second = Client(self.straight(2.0))
+        self.assertEqual(first.end()[1].reason, "replaced by a newer goal")
+        wait_for("feedback of the second", lambda: second.says("driving") and second.feedback[-1].distance > 0.2)
+        self.assertGreater(min(self.sent[before:]), 0.3)
+        self.assertEqual(second.end()[0], SUCCEEDED)
+
+    @again_after_a_stall
+    def test_a_newer_goal_that_cannot_be_driven_stops_the_robot(self) -> None:
+        first = Client(self.straight(4.0))
+        self.await_motion(first)
+        state, result = Client(self.straight(1.0, "mars")).end()
+        self.assertEqual(state, ABORTED)
+        self.assertIn("tf does not connect", result.reason)
+        self.await_rest()
+
+    @again_after_a_stall
+    def test_a_paused_goal_stands_until_it_is_resumed(self) -> None:
+        client = Client(self.straight(1.2))
+        self.await_motion(client)
+        self.assertTrue(self.service("pause").success)
+        self.await_rest()
+        wait_for("paused in the feedback", lambda: client.says("paused", "~pause was called"))
+        time.sleep(1.0)
+        self.assertLess(abs(self.robot.speed), STAND)
+        self.assertTrue(self.service("resume").success)
+        self.assertEqual(client.end()[0], SUCCEEDED)
+        self.assertEqual(self.service("resume").message, "no path is driven")
+
+    @again_after_a_stall
+    def test_a_masked_goal_pauses_and_goes_on_when_it_is_told_to(self) -> None:
+        client = Client(self.straight(1.2))
+        self.await_motion(client)
+        mask = rospy.Timer(rospy.Duration(0.1), lambda _: self.key.publish(TwistStamped()))
+        wait_for("paused in the feedback", lambda: client.says("paused", "masked by key_vel"))
+        self.assertEqual(self.service("resume").message, "path_vel is masked by key_vel")
+        mask.shutdown()
+        self.await_rest()
+        wait_for("resume taken", lambda: bool(self.service("resume").success))
+        self.assertEqual(client.end()[0], SUCCEEDED)
+
+    @again_after_a_stall
+    def test_an_e_stop_ends_a_goal_and_it_goes_on_after_a_reset_when_it_is_told_to(self) -> None:
+        goal = self.straight(1.5)
+        client = Client(goal)
+        self.await_motion(client)
+        self.robot.call("e_stop_trigger")
+        state, result = client.end()
+        self.assertEqual(state, ABORTED)
+        self.assertIn("e_stop_trigger was called", result.reason)
+        refused = Client(goal)
+        self.assertIn("e_stop_trigger was called", refused.end()[1].reason)
+        self.robot.release()
+        time.sleep(1.0)
+        self.assertLess(abs(self.robot.speed), STAND)
+        goal.begin_at = result.distance
+        state, result = Client(goal).end()
+        self.assertEqual((state, result.reason), (SUCCEEDED, "done"), self.server.output)
+        self.assertAlmostEqual(result.distance, 1.5, delta=0.01)
+
+    def test_what_cannot_be_driven_is_refused_with_its_reason(self) -> None:
+        dense = [(0.05 * number + (3.0 if number > 20 else 0.0), 0.0) for number in range(40)]
+        for goal, words in (
+            (self.goal([(0.0, 0.0)]), "1 different points: it needs two at least"),
+            (self.goal([(0.0, 0.0), (math.nan, 0.0)]), "point 1 of the path holds a number that is not finite"),
+            (self.goal(dense), "the path jumps by 3.05 m after point 20"),
+            (self.straight(1.0, "mars"), "tf does not connect"),
+            (self.straight(1.0, ""), "the path has no frame"),
+            (self.straight(1.0, speed=math.nan), "speed is nan m/s"),
+            (self.straight(1.0, begin_at=2.0), "begin_at is 2 m"),
+            (self.goal([(2.0, 0.0), (3.0, 0.0)]), "the path begins 2.00 m from the robot"),
+        ):
+            state, result = Client(goal).end()
+            self.assertEqual(state, ABORTED, words)
+            self.assertIn(words, result.reason)
+        self.assertLess(abs(self.robot.speed), STAND)
+
+    @again_after_a_stall
+    def test_ten_thousand_points_are_driven(self) -> None:
+        angles = [2 * math.pi * number / 10_000 for number in range(10_000)]
+        goal = self.goal([(0.3 * math.sin(angle), 0.3 * (1 - math.cos(angle))) for angle in angles])
+        state, result = Client(goal).end()
+        self.assertEqual((state, result.reason), (SUCCEEDED, "done"))
+        self.assertAlmostEqual(result.distance, 0.6 * math.pi, delta=0.01)
+        self.assertLess(result.worst_cross_track_error, 0.03)
+
+    @again_after_a_stall
+    def test_poses_against_the_path_are_driven_backwards(self) -> None:
+        goal = self.goal([(0.0, 0.0), (-0.8, 0.0)])
+        for pose in goal.path.poses:
+            pose.pose.orientation = self.robot.odom.pose.pose.orientation
+        client = Client(goal)
+        wait_for("reverse", lambda: self.robot.speed < -0.2)
+        self.assertEqual(client.end()[0], SUCCEEDED)
+
+    @again_after_a_stall
+    def test_a_path_before_the_robot_is_taken_where_it_is_at_the_start(self) -> None:
+        before = self.robot.odom.pose.pose.position
+        state, result = Client(self.straight(0.5, "base_link")).end()
+        self.assertEqual((state, result.reason), (SUCCEEDED, "done"))
+        after = self.robot.odom.pose.pose.position
+        self.assertAlmostEqual(math.hypot(after.x - before.x, after.y - before.y), 0.5, delta=0.02)
+
+    @again_after_a_stall
+    def test_a_path_on_a_map_is_driven_through_tf_and_its_silence_ends_it(self) -> None:
+        timer = rospy.Timer(rospy.Duration(0.05), self.place_map)
+        self.addCleanup(timer.shutdown)
+        time.sleep(0.5)
+        state, result = Client(self.straight(0.5, "map")).end()
+        self.assertEqual((state, result.reason), (SUCCEEDED, "done"))
+        client = Client(self.straight(4.0, "map"))
+        self.await_motion(client)
+        timer.shutdown()
+        state, result = client.end()
+        self.assertEqual((state, result.reason), (ABORTED, "tf from 'odom' to 'map' is silent for 1 s"))
+        self.await_rest()
+
+    def place_map(self, _event: object) -> None:
+        """Odometry's origin is the map's."""
+        transform = TransformStamped()
+        transform.header.frame_id, transform.child_frame_id = "map", "odom"
+        transform.header.stamp = rospy.Time.now()
+        transform.transform.rotation.w = 1.0
+        self.tf.publish(TFMessage([transform]))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "follow_path", FollowPathTest)

@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+"""robot_status from a robot that is not there to one that is stopped."""
+
+import time
+import unittest
+
+import rospy
+import rostest
+from robot_control.msg import RobotStatus, SafetyStatus
+from system_support import ESTIMATOR, STALL_CAUSES, Program, Robot, init_test_node, wait_for
+
+
+class RobotStatusTest(unittest.TestCase):
+    def setUp(self) -> None:
+        init_test_node("robot_status_test")
+        self.heard: list[RobotStatus] = []
+        self.robot = Robot()
+        self.addCleanup(self.robot.end)
+        self.status = Program("robot_status.py")
+        self.addCleanup(self.status.end)
+        rospy.Subscriber("robot_status", RobotStatus, self.heard.append)
+
+    def await_mode(self, mode: str) -> RobotStatus:
+        wait_for(f"mode {mode}; {self.status.output}", lambda: bool(self.heard) and self.heard[-1].mode == mode)
+        return self.heard[-1]
+
+    def test_from_offline_to_driving_to_stopped_to_a_lost_node(self) -> None:
+        offline = self.await_mode("offline")
+        self.assertEqual(offline.health, RobotStatus.ERROR)
+        self.assertIn("safety_monitor is silent", offline.problems)
+        self.assertRegex(offline.software_version, r"^\d+\.\d+\.\d+$")
+
+        self.robot.start()
+        self.robot.await_ready()
+        wait_for("health", lambda: self.heard[-1].mode == "idle" and self.heard[-1].health == RobotStatus.OK)
+        self.assertGreater(self.heard[-1].odometry_confidence, 0.5)
+        began, count = time.monotonic(), len(self.heard)
+        wait_for("five messages of an unchanged robot", lambda: len(self.heard) >= count + 5)
+        self.assertGreater(time.monotonic() - began, 3.0)
+
+        self.robot.drive_until("0.5 m/s", self.robot.driving)
+        self.robot.drive_until("who commands", lambda: self.heard[-1].mode == "automatic")
+        self.assertEqual(self.heard[-1].senders, [rospy.get_name()])
+
+        self.robot.call("e_stop_trigger")
+        wait_for("the stop", lambda: self.robot.state == SafetyStatus.STOPPED)
+        stopped = self.await_mode("stopped")
+        self.assertTrue(set(stopped.causes) - STALL_CAUSES, stopped.causes)
+        self.assertEqual(len(stopped.causes), len(stopped.remedies))
+
+        late: list[RobotStatus] = []
+        rospy.Subscriber("robot_status", RobotStatus, late.append)
+        wait_for("the latched message", lambda: bool(late))
+
+        self.robot.nodes[ESTIMATOR].kill()
+        wait_for("the loss", lambda: "state_estimator is silent" in self.heard[-1].problems)
+        self.assertTrue(self.status.running)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "robot_status", RobotStatusTest)

@@ -1,0 +1,103 @@
+"""robot_status and state_publisher.py: from what was heard to what is said, without ROS."""
+
+import math
+import xml.etree.ElementTree as ET
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from robot_control.msg import RobotStatus, SafetyStatus
+from robot_control.status.report import REQUIRED, Heard, changed, status_of
+from robot_control.view.state_publisher import without_root_inertia
+
+
+def report(level=DiagnosticStatus.OK, message="", **values):
+    return DiagnosticStatus(level=level, message=message, values=[KeyValue(k, v) for k, v in values.items()])
+
+
+ESTIMATOR = {"flags": "valid standstill", "degraded": ""}
+ESTIMATOR |= {f"confidence_{name}": "1" for name in ("left_encoder", "right_encoder", "gyro", "lateral_contact")}
+
+
+def heard(state="READY", commander="", senders="", **changes):
+    """A healthy robot; `changes`: reports of nodes, None: silent."""
+    reports = {name: report() for name in (*REQUIRED, "mujoco_plant")}
+    reports["state_estimator"] = report(**ESTIMATOR)
+    reports["diff_drive_controller"] = report(senders=senders)
+    reports = {name: value for name, value in (reports | changes).items() if value is not None}
+    safety = SafetyStatus(state_name=state) if state else None
+    return Heard(safety, reports, commander)
+
+
+def test_a_healthy_robot_without_commands_is_idle_and_ok():
+    status = status_of(heard())
+    assert (status.mode, status.health, status.problems) == ("idle", RobotStatus.OK, [])
+    assert (status.safety_state, status.odometry_confidence, status.odometry_degraded) == ("READY", 1.0, False)
+
+
+def test_nothing_heard_is_offline_with_the_names_of_who_is_silent():
+    status = status_of(Heard())
+    assert (status.mode, status.health) == ("offline", RobotStatus.ERROR)
+    assert status.problems == [f"{name} is silent" for name in REQUIRED]
+    assert math.isnan(status.odometry_confidence)
+
+
+@pytest.mark.parametrize(
+    ("state", "mode"), [("INIT", "starting"), ("STOPPING", "stopped"), ("STOPPED", "stopped"), ("FAULT", "stopped")]
+)
+def test_who_may_not_drive_is_starting_or_stopped_whoever_commands(state, mode):
+    assert status_of(heard(state, commander="key_vel", senders="/teleop")).mode == mode
+
+
+@pytest.mark.parametrize(
+    ("commander", "senders", "mode"),
+    [
+        ("", "/robot2/teleop_12_34", "manual"),
+        ("", "/pad", "manual"),
+        ("", "/move_base", "automatic"),
+        ("", "/pad, /move_base", "automatic"),
+        ("key_vel", "/teleop_1, /move_base", "manual"),
+        ("path_vel", "/follow_path, /pad", "automatic"),
+    ],
+)
+def test_who_commands_decides_between_manual_and_automatic(commander, senders, mode):
+    status = status_of(heard("DRIVE", commander, senders))
+    assert (status.mode, status.commander, status.senders) == (mode, commander, senders.split(", "))
+
+
+def test_health_is_the_worst_report_and_every_bad_one_is_named():
+    status = status_of(
+        heard(
+            state_estimator=report(DiagnosticStatus.WARN, "slip", **ESTIMATOR),
+            mujoco_plant=report(DiagnosticStatus.ERROR, "no torque"),
+        )
+    )
+    assert status.health == RobotStatus.ERROR
+    assert status.problems == ["mujoco_plant: no torque", "state_estimator: slip"]
+    assert status_of(heard(mujoco_plant=report(DiagnosticStatus.WARN, "hot"))).health == RobotStatus.WARN
+    assert status_of(heard(state_estimator=None)).health == RobotStatus.ERROR
+
+
+def test_the_confidence_is_that_of_the_worst_sensor_and_zero_without_a_valid_pose():
+    assert status_of(heard(state_estimator=report(**ESTIMATOR | {"confidence_gyro": "0.4"}))).odometry_confidence == 0.4
+    assert status_of(heard(state_estimator=report(**ESTIMATOR | {"flags": ""}))).odometry_confidence == 0.0
+    assert status_of(heard(state_estimator=report(**ESTIMATOR | {"degraded": "slip"}))).odometry_degraded
+
+
+def test_numbers_that_always_change_are_no_change_and_a_cause_is_one():
+    before, after = status_of(heard()), status_of(heard())
+    after.uptime, after.odometry_confidence = 3.0, 0.9
+    assert not changed(after, before)
+    after.causes = ["e_stop"]
+    assert changed(after, before)
+
+
+URDF = """<robot name="r"><link name="base"><inertial><mass value="1"/></inertial></link>
+<link name="wheel"><inertial><mass value="2"/></inertial></link>
+<joint name="j" type="continuous"><parent link="base"/><child link="wheel"/></joint></robot>"""
+
+
+def test_state_publisher_takes_the_root_links_inertia_away_and_nothing_else():
+    robot = ET.fromstring(without_root_inertia(URDF))
+    assert [link.get("name") for link in robot.findall("link") if link.find("inertial") is not None] == ["wheel"]
+    assert robot.find("joint/child").get("link") == "wheel"
+    assert without_root_inertia("no URDF") == "no URDF"
