@@ -10,10 +10,9 @@ struct EstimatorParameters {
   double wheel_slip_noise = 8e-5;  ///< m/√m: standard deviation of travelled distance per √distance, per wheel
   double tyre_creep = 0.003;    ///< s²/m: slip per specific force, 1/(g C) of tyres as stiff as C = 34 loads; 0: none
   double gyro_noise = 2.44e-4;  ///< rad/s/√Hz, white noise density of the gyro
-  double standstill_speed = 0.01;        ///< rad/s, wheel and yaw rate below which the robot may be standing
-  double standstill_time = 0.25;         ///< s, for which all sensors must be quiet before the robot stands
-  double standstill_acceleration = 0.3;  ///< m/s² RMS; MEMS noise is 0.05, a shaken robot above 0.5
-  double encoder_noise = 4.4e-4;  ///< rad, standard deviation of an angle: 2π/4096/√12, counts of a wheel's turn
+  double standstill_speed = 0.01;  ///< rad/s, wheel and yaw rate below which the robot may be standing
+  double standstill_time = 0.25;   ///< s, for which all sensors must be quiet before the robot stands
+  double encoder_noise = 4.4e-4;   ///< rad, standard deviation of an angle: 2π/4096/√12, counts of a wheel's turn
   double gyro_scale_deviation = 5.8e-4;     ///< of the gyro's scale; not published, but part of the covariance
   double gyro_bias_initial = 0.05;          ///< rad/s, standard deviation at switch-on (3 °/s, a consumer MEMS gyro)
   double gyro_bias_walk = 8.7e-6;           ///< rad/s/√s

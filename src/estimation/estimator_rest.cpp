@@ -1,129 +1,142 @@
-// The estimator while the robot stands.
+// The estimator at rest: nothing is integrated, biases and tilt are learned.
 
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "estimation/estimator.h"
-#include "estimation/filter/algebra.h"
-#include "estimation/filter/placing.h"
+#include "estimation/values.h"
 
 namespace robot_control {
 namespace {
 
-using namespace algebra;
-using Eigen::Vector3d;
-using Filter = ErrorStateFilter;
-
-constexpr double kAccelerometerAtRest = 0.03;  // m/s², what a body that rocks and a motor's hum leave in a mean
+constexpr double kQuietAcceleration = 0.1;  // m/s², mean at rest beside what is expected: sliding slower is no slide
+constexpr std::uint64_t kDistrustedWindows = 6;  // then the tilt was wrong, not the window
 
 }  // namespace
 
-void Estimator::rest(double dt) noexcept {
-  const double left = sides_[kLeft].encoder.travel();
-  const double right = sides_[kRight].encoder.travel();
-  held_.time += dt;
-  held_.forward += (left + right) / 2;
-  held_.wheel_turn += geometry_.turn(left, right);
+RestWindow Estimator::watch_rest(double dt) noexcept {
+  RestWatch::Sample sample{.dt = dt, .left = sides_[kLeft].encoder.travel(), .right = sides_[kRight].encoder.travel()};
+  Vector3 gyro;
+  Vector3 force;
   if (imu_.gyro()) {
-    held_.turn += *imu_.gyro() * dt;
+    gyro = array(*imu_.gyro());
+    sample.gyro = &gyro;
+  }
+  if (imu_.accelerometer()) {
+    force = array(*imu_.accelerometer());
+    sample.accelerometer = &force;
+  }
+  const double noise = square(parameters_.gyro_noise) / parameters_.standstill_time;
+  const Vector3 bias{gyro_bias_[0], gyro_bias_[1], core_.bias()};
+  const Vector3 deviation{std::sqrt(gyro_variance_[0] + noise), std::sqrt(gyro_variance_[1] + noise),
+                          std::sqrt(core_.covariance(PlanarCore::kBias, PlanarCore::kBias) + noise)};
+  return watch_.step(sample, bias, deviation);
+}
+
+void Estimator::rest(double dt) noexcept {
+  held_.time += dt;
+  held_.left += sides_[kLeft].encoder.travel();
+  held_.right += sides_[kRight].encoder.travel();
+  if (imu_.gyro()) {
+    for (int i = 0; i < 3; ++i) held_.turn[static_cast<std::size_t>(i)] += (*imu_.gyro())[i] * dt;
   } else {
     held_.gyro = false;
   }
-  const auto silent = [&](int side) { return sides_[static_cast<std::size_t>(side)].encoder.gap() > 0 && lost(side); };
+  const auto silent = [&](std::size_t side) { return sides_[side].encoder.gap() > 0 && lost(side); };
   if (silent(kLeft) && silent(kRight)) {  // no sensor confirms that it still rests
-    standstill_.reset();
-    rested_ = 0;
+    watch_.reset();
     lasting_flags_ &= ~std::uint64_t{kStateStandstill};
     return;
   }
-  const WindowEnd window = watch_rest(dt, left, right);
-  if (window == WindowEnd::kOpen) return;
-  if (window == WindowEnd::kQuiet && quiet()) {
+  const RestWindow window = watch_rest(dt);
+  if (window == RestWindow::kOpen) return;
+  if (window != RestWindow::kQuiet) return end_rest();
+  learn_at_rest();
+  flags_ |= kStateStandstill;
+  kept_ = std::exchange(held_, {});
+}
+
+void Estimator::begin_rest() noexcept {
+  resting_ = true;
+  held_ = kept_ = {};
+  slide_.end();
+  block_ = {};
+  for (Side& side : sides_) side.turned = 0;
+  flags_ |= kStateStandstill;
+  lasting_flags_ |= kStateStandstill;
+  distrusted_windows_ = 0;
+  if (watch_.reopened()) {
     learn_at_rest();
-    flags_ |= kStateStandstill;
-    held_ = {};
-    return;
+  } else {
+    watch_.discard();
   }
-  end_rest();
 }
 
 void Estimator::end_rest() noexcept {
+  rested_once_ = rested_once_ || gyro_learned_;
   resting_ = false;
   lasting_flags_ &= ~std::uint64_t{kStateStandstill};
   flags_ &= ~std::uint64_t{kStateStandstill};
-  const Vector3d turn =
-      held_.gyro ? Vector3d(held_.turn - held_.time * filter_.gyro_bias) : Vector3d(0, 0, held_.wheel_turn);
-  filter_.position += filter_.rotation.col(0) * held_.forward;
-  filter_.turn_by(turn);
-  distance_ += std::abs(held_.forward);
-  auto& p = filter_.covariance;
-  p(Filter::kOrientation + 2, Filter::kOrientation + 2) += square(parameters_.gyro_noise) * held_.time;
-  filter_.stand(rested_ > 0 ? kRestSpeed : kUnknownSpeed);  // a run may begin in motion
-  if (imu_.gyro()) {
-    filter_.rock((1 + filter_.gyro_scale) * (imu_.last_gyro() - filter_.gyro_bias),
-                 parameters_.gyro_noise / std::sqrt(period_));
+  const double before = core_.pose().yaw;
+  const bool stood = kept_.time > 0;
+  held_.add(kept_);
+  if (held_.gyro) {
+    core_.turn_by_gyro(held_.turn[2], held_.time);
+    turn_tilt({held_.turn[0] / held_.time, held_.turn[1] / held_.time, held_.turn[2] / held_.time}, held_.time);
+  } else {
+    core_.turn_by_wheels(held_.left, held_.right);
   }
-  for (const int i : {kLeft, kRight}) filter_.anchor_travel(i, sides_[static_cast<std::size_t>(i)].total);
-  slip_.begin(filter_);
-  held_ = {};
-}
-
-WindowEnd Estimator::watch_rest(double dt, double left, double right) noexcept {
-  StandstillSample sample{.dt = dt, .left = left, .right = right, .gyro = {}, .accelerometer = {}};
-  if (imu_.new_gyro()) sample.gyro = imu_.last_gyro();
-  if (imu_.new_accelerometer()) sample.accelerometer = imu_.last_accelerometer();
-  return standstill_.step(sample);
-}
-
-Vector3d Estimator::gyro_at_rest() const noexcept {
-  const double turned = geometry_.turn(standstill_.left(), standstill_.right()) / standstill_.time();
-  return *standstill_.gyro() - Vector3d(0, 0, turned);
-}
-
-bool Estimator::quiet() const noexcept {
-  if (!standstill_.gyro()) return true;
-  const double noise = square(parameters_.gyro_noise) / standstill_.time();
-  const Vector3d rate = gyro_at_rest() - filter_.gyro_bias;
-  for (int i = 0; i < 3; ++i) {
-    const double bias = filter_.covariance(Filter::kGyroBias + i, Filter::kGyroBias + i);
-    if (std::abs(rate[i]) > parameters_.standstill_speed + 3 * std::sqrt(bias + noise)) return false;
+  const double turned = core_.pose().yaw - before;
+  own_yaw_ += turned;
+  go({.distance = (held_.left + held_.right) / 2, .before = turned / 2});
+  for (Side& side : sides_) side.turned = 0;
+  if (stood) {
+    slip_.stand(own_yaw_, tilt_.up());
+  } else {
+    slip_.restart();  // a run may begin in motion
   }
-  return true;
-}
-
-bool Estimator::bias_changed() noexcept {
-  const Vector3d& gyro = *standstill_.gyro();
-  if (steady_time_ == 0 || (gyro - steady_gyro_).cwiseAbs().maxCoeff() > parameters_.standstill_speed) {
-    steady_time_ = 0;
-    steady_gyro_ = gyro;
+  if (both_read()) {
+    core_.begin_block(rate_.rate().z());
+    block_ = {.open = true};
   }
-  steady_time_ += standstill_.time();
-  if (steady_time_ < kSteadyTime) return false;
-  steady_time_ = 0;
-  for (int i = 0; i < 3; ++i) {
-    const int index = Filter::kGyroBias + i;
-    filter_.covariance(index, index) += square(gyro[i] - filter_.gyro_bias[i]);
-  }
-  return true;
+  held_ = kept_ = {};
 }
 
 void Estimator::learn_at_rest() noexcept {
-  const double window = standstill_.time();
-  rested_ += window;
-  const Filter::Rest rest = rested_ <= kSettling ? Filter::Rest::kBegins : Filter::Rest::kGoesOn;
+  const double window = watch_.time();
   lasting_flags_ |= kStateStandstill;
-  filter_.age(window);
-  if (standstill_.gyro()) {
-    const Vector3d gyro = gyro_at_rest();
-    for (int i = 0; i < 3; ++i) {
-      filter_.correct_gyro_at_rest(i, gyro[i], square(parameters_.gyro_noise) / window, rest);
+  core_.age(window);
+  if (watch_.gyro()) {
+    core_.hold_corrections(false);
+    const double variance = square(parameters_.gyro_noise) / window;
+    if (watch_.reopened()) {
+      core_.open_bias(square((*watch_.gyro())[2] - core_.bias()));
+      for (const std::size_t i : {0U, 1U}) gyro_variance_[i] += square((*watch_.gyro())[i] - gyro_bias_[i]);
     }
-  }
-  if (standstill_.accelerometer()) {
-    const double variance = square(parameters_.accelerometer_noise) / window + square(kAccelerometerAtRest);
-    for (int i = 0; i < 3; ++i) {
-      filter_.correct_accelerometer_at_rest(i, (*standstill_.accelerometer())[i], variance);
+    core_.rest((*watch_.gyro())[2], variance, rested_once_);
+    for (const std::size_t i : {0U, 1U}) {
+      gyro_variance_[i] += square(parameters_.gyro_bias_walk) * window;
+      const double gain = gyro_variance_[i] / (gyro_variance_[i] + variance);
+      gyro_bias_[i] += gain * ((*watch_.gyro())[i] - gyro_bias_[i]);
+      gyro_variance_[i] *= 1 - gain;
     }
+    gyro_learned_ = true;
   }
+  if (watch_.force()) tilt_.rest(*watch_.force(), window);
+}
+
+/// Wheels stand, and the accelerometer reads another force than a robot at rest would.
+bool Estimator::slides_at_rest() noexcept {
+  if (!watch_.last_force()) return false;
+  const auto acceleration = tilt_.acceleration(*watch_.last_force());
+  bool slides = false;
+  for (const std::size_t axis : {0U, 1U}) {
+    const double doubt = std::sqrt(tilt_.acceleration_variance(axis));
+    slides = slides || std::abs(acceleration[axis]) > kQuietAcceleration + 3 * doubt;
+  }
+  if (!slides) distrusted_windows_ = 0;
+  return slides && ++distrusted_windows_ < kDistrustedWindows;
 }
 
 }  // namespace robot_control

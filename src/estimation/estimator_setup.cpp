@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "estimation/filter/algebra.h"
-
 namespace robot_control {
 
 const EstimatorParameters& checked(const EstimatorParameters& parameters, const RobotModel& robot, double period) {
@@ -36,7 +34,6 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
   positive(parameters.accelerometer_noise, "accelerometer_noise must be > 0 m/s²/√Hz");
   positive(parameters.standstill_speed, "standstill_speed must be > 0 rad/s");
   positive(parameters.standstill_time, "standstill_time must be > 0 s");
-  positive(parameters.standstill_acceleration, "standstill_acceleration must be > 0 m/s²");
   no_less(parameters.gyro_scale_deviation, "gyro_scale_deviation must be >= 0");
   no_less(parameters.gyro_bias_initial, "gyro_bias_initial must be >= 0 rad/s");
   no_less(parameters.gyro_bias_walk, "gyro_bias_walk must be >= 0 rad/s/√s");
@@ -49,63 +46,46 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
   return parameters;
 }
 
-ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot, double creep) {
-  const Vector3& imu = robot.imu_in_base.position;
-  return {.wheel_base = wheels.wheel_base,
-          .middle_y = wheels.axle_y - imu[1],
-          .middle_x = wheels.axle_x - imu[0],
-          .height = wheels.ground - imu[2],
-          .imu_in_base = algebra::vector(imu),
-          .creep = creep};
+double encoder_deviation(const EstimatorParameters& parameters, const RobotModel& robot) {
+  return parameters.encoder_noise * std::ranges::max(robot.wheels, {}, &WheelModel::radius).radius;
 }
 
-FilterNoise filter_noise(const EstimatorParameters& parameters, const RobotModel& robot) {
-  FilterNoise noise;
-  noise.gyro = parameters.gyro_noise;
-  noise.gyro_bias_walk = parameters.gyro_bias_walk;
-  noise.accelerometer = parameters.accelerometer_noise;
-  noise.accelerometer_bias_walk = parameters.accelerometer_bias_walk;
-  noise.wheel_slip = parameters.wheel_slip_noise;
-  noise.encoder = parameters.encoder_noise * std::ranges::max(robot.wheels, {}, &WheelModel::radius).radius;
-  return noise;
-}
-
-FilterPrior filter_prior(const EstimatorParameters& parameters) {
+PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot) {
   const double learns = parameters.self_calibration ? 1.0 : 0.0;
-  return {.gyro_bias = parameters.gyro_bias_initial,
-          .accelerometer_bias = parameters.accelerometer_bias_initial,
-          .radius_ratio = learns * parameters.calibration.radius_ratio_deviation,
-          .wheel_base = learns * parameters.calibration.wheel_base_deviation,
-          .gyro_scale = parameters.gyro_scale_deviation};
+  return {.wheel_base = robot.effective_wheel_base(),
+          .gyro_noise = parameters.gyro_noise,
+          .gyro_bias_walk = parameters.gyro_bias_walk,
+          .gyro_bias_initial = parameters.gyro_bias_initial,
+          .gyro_scale = parameters.gyro_scale_deviation,
+          .encoder = encoder_deviation(parameters, robot),
+          .slip_least = parameters.wheel_slip_noise,
+          .ratio_deviation = learns * parameters.calibration.radius_ratio_deviation,
+          .wheel_base_deviation = learns * parameters.calibration.wheel_base_deviation};
 }
 
-StandstillLimits standstill_limits(const EstimatorParameters& parameters, const RobotModel& robot) {
-  return {.time = parameters.standstill_time,
+TiltParams tilt_params(const EstimatorParameters& parameters) {
+  return {.accelerometer = parameters.accelerometer_noise,
+          .bias = parameters.accelerometer_bias_initial,
+          .bias_walk = parameters.accelerometer_bias_walk};
+}
+
+RestWatchParams rest_params(const EstimatorParameters& parameters, const RobotModel& robot) {
+  return {.window = parameters.standstill_time,
           .tolerance = parameters.standstill_speed * parameters.standstill_time *
                        std::ranges::min(robot.wheels, {}, &WheelModel::radius).radius,
-          .acceleration = parameters.standstill_acceleration};
+          .steady = parameters.standstill_speed,
+          .turn_per_metre = 1 / robot.effective_wheel_base()};
 }
 
-SimplePartParams simple_part(const EstimatorParameters& parameters, const RobotModel& robot) {
+SlipStatisticParams slip_params(const EstimatorParameters& parameters, const RobotModel& robot) {
   const WheelGeometry wheels(robot);
-  const double largest = std::ranges::max(robot.wheels, {}, &WheelModel::radius).radius;
-  const Eigen::Vector3d bias = rotation_of(robot.imu_in_base.orientation) * algebra::vector(parameters.gyro_bias);
-  SimplePartParams params;
-  params.rest = {
-      .tolerance = standstill_limits(parameters, robot).tolerance / parameters.standstill_time * RestBias::kWindow,
-      .steady = parameters.standstill_speed,
-      .noise = parameters.gyro_noise,
-      .walk = parameters.gyro_bias_walk,
-      .initial = parameters.gyro_bias_initial};
-  params.track.gyro = parameters.gyro_noise;
-  params.track.scale = parameters.gyro_scale_deviation;
-  params.slip = {.encoder = parameters.encoder_noise * largest,
-                 .accelerometer = parameters.accelerometer_noise,
-                 .half_base = wheels.wheel_base / 2,
-                 .ahead = robot.imu_in_base.position[0] - wheels.axle_x,
-                 .aside = robot.imu_in_base.position[1] - wheels.axle_y};
-  params.gyro_bias = algebra::array(bias);
-  return params;
+  return {.encoder = encoder_deviation(parameters, robot),
+          .accelerometer = parameters.accelerometer_noise,
+          .wheel_base = wheels.wheel_base,
+          .slip = parameters.wheel_slip_noise,
+          .ahead = robot.imu_in_base.position[0] - wheels.axle_x,
+          .aside = robot.imu_in_base.position[1] - wheels.axle_y,
+          .height = robot.imu_in_base.position[2] - wheels.ground};
 }
 
 }  // namespace robot_control

@@ -2,9 +2,10 @@
 /// What a user sets and what the robot is → what the estimator's parts start with.
 
 #include "estimation/estimator_parameters.h"
-#include "estimation/filter/error_state_filter.h"
-#include "estimation/inertial/standstill_window.h"
-#include "estimation/simple/simple_part.h"
+#include "estimation/planar/planar_core.h"
+#include "estimation/rest/rest_watch.h"
+#include "estimation/slip/slip_statistic.h"
+#include "estimation/tilt/tilt.h"
 #include "estimation/wheels/wheel_geometry.h"
 #include "robot/robot_model.h"
 
@@ -14,14 +15,13 @@ namespace robot_control {
 /// orientation of the IMU that is no rotation.
 const EstimatorParameters& checked(const EstimatorParameters& parameters, const RobotModel& robot, double period);
 
-ContactGeometry contact_geometry(const WheelGeometry& wheels, const RobotModel& robot, double creep);
-FilterNoise filter_noise(const EstimatorParameters& parameters, const RobotModel& robot);
+/// m, standard deviation of one side's reading.
+double encoder_deviation(const EstimatorParameters& parameters, const RobotModel& robot);
 
 /// Without self_calibration ratio and wheel base are known for ever.
-FilterPrior filter_prior(const EstimatorParameters& parameters);
-
-StandstillLimits standstill_limits(const EstimatorParameters& parameters, const RobotModel& robot);
-
-SimplePartParams simple_part(const EstimatorParameters& parameters, const RobotModel& robot);
+PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot);
+TiltParams tilt_params(const EstimatorParameters& parameters);
+RestWatchParams rest_params(const EstimatorParameters& parameters, const RobotModel& robot);
+SlipStatisticParams slip_params(const EstimatorParameters& parameters, const RobotModel& robot);
 
 }  // namespace robot_control

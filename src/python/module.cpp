@@ -17,12 +17,18 @@
 #include "drivers/model/mujoco_model.h"
 #include "drivers/mujoco_plant.h"
 #include "hal/driver.h"
+#include "python/bag.h"
 #include "python/describe.h"
 #include "python/installed_file.h"
+#include "python/log_replay.h"
+#include "python/loop_replay.h"
 #include "python/offline_estimator.h"
 #include "python/recorder.h"
+#include "python/run_bag.h"
+#include "python/signal_names.h"
 #include "python/wheel_loops.h"
 #include "signals/cause_names.h"
+#include "signals/slip_detection.h"
 #include "simulation/closed_loop.h"
 #include "telemetry/columns.h"
 
@@ -53,8 +59,8 @@ void receive(ClosedLoop& loop, const py::object& given) {
 }
 
 /// Runs `cycles` cycles; `command(t)` gives (linear, angular), or is None. Other Python threads run meanwhile,
-/// where no command function needs the interpreter.
-py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command) {
+/// where no command function needs the interpreter. `replay` notes them, or is None.
+py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay) {
   constexpr std::int64_t kBlock = 1000;  // cycles between two looks for Ctrl-C
   if (cycles < 0) throw py::value_error("cycles must not be negative");
   const std::vector<Column> columns = columns_of(loop);
@@ -66,7 +72,9 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command) {
   }
   const auto step = [&](std::int64_t row) {
     loop.step();
-    for (std::size_t i = 0; i < columns.size(); ++i) cells[i][row] = columns[i].value(loop.row());
+    if (replay != nullptr) replay->note(loop);
+    const PresentSources present = present_sources(loop.row());
+    for (std::size_t i = 0; i < columns.size(); ++i) cells[i][row] = columns[i].value(loop.row(), present);
   };
   for (std::int64_t first = 0; first < cycles; first += kBlock) {
     const std::int64_t last = std::min(first + kBlock, cycles);
@@ -154,12 +162,6 @@ std::vector<std::pair<std::string, std::string>> column_units(const ClosedLoop& 
   return names;
 }
 
-std::vector<std::string> stop_causes() {
-  std::vector<std::string> names;
-  for (const BitName& row : kStopCauseNames) names.emplace_back(row.name);
-  return names;
-}
-
 /// Functions of a parameter file and the values laid over it.
 void bind_parameters(py::module_& module) {
   const auto define = [&](const char* name, auto function) {
@@ -202,7 +204,7 @@ void bind_closed_loop(py::module_& module) {
       .def("reset", &ClosedLoop::reset)
       .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
       .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
-      .def("run", &run, py::arg("cycles"), py::arg("command"))
+      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr)
       .def("record", &record, py::arg("commands"))
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
@@ -220,9 +222,15 @@ PYBIND11_MODULE(_robot_control, module) {
   py::register_exception<ParameterError>(module, "ParameterError", PyExc_ValueError);
   py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
   py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
-  module.attr("stop_causes") = stop_causes();
+  module.attr("signal_names") = signal_names();
+  module.def("slip_detection", &slip_detection, py::arg("residual_level"));
+  module.attr("project_folder") = ROBOT_CONTROL_PROJECT;  // of the checkout, where PyPI's packages are installed
   bind_parameters(module);
   bind_spectral_radius(module);
   bind_offline_estimator(module);
+  bind_loop_replay(module);
+  bind_log_replay(module);
   bind_closed_loop(module);
+  bind_bag(module);
+  bind_run_bag(module);
 }

@@ -13,6 +13,7 @@
 #include "parameters/calibration_file.h"
 #include "python/installed_file.h"
 #include "signals/names.h"
+#include "signals/rotation.h"
 
 namespace py = pybind11;
 
@@ -58,10 +59,7 @@ RobotModel two_wheels(const RobotParameters& given) {
 }
 
 Vector3 roll_pitch_yaw(const Quaternion& q) noexcept {
-  const auto [x, y, z, w] = q;
-  return {std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
-          std::asin(std::clamp(2 * (w * y - z * x), -1.0, 1.0)),
-          std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))};
+  return {roll_of(q), pitch_of(q), yaw_of(q)};
 }
 
 template <class Values, class Cell>
@@ -210,7 +208,7 @@ void OfflineEstimator::save_calibration(const std::string& path) const {
 void OfflineEstimator::begin(double period) {
   if (busy_) throw std::runtime_error("another thread is inside process() of this Estimator");
   estimator_ = std::make_unique<Estimator>(parameters_, robot_, period);
-  estimator_->reset();
+  estimator_->enter_run();
   period_ = period;
   sensors_ = {};
   sensors_.head.run = 1;
@@ -314,15 +312,6 @@ py::dict OfflineEstimator::describe() const {
 }
 
 void bind_offline_estimator(py::module_& module) {
-  const auto words = [](std::span<const BitName> table) {
-    py::dict bits;
-    for (const BitName& row : table) bits[py::str(std::string(row.name))] = row.bit;
-    return bits;
-  };
-  module.attr("state_sensors") = std::vector<std::string>(kStateSensorNames.begin(), kStateSensorNames.end());
-  module.attr("state_flags") = words(kStateFlagNames);
-  module.attr("slip_reasons") = words(kSlipReasonNames);
-  module.attr("degraded_reasons") = words(kDegradedReasonNames);
   py::class_<OfflineEstimator>(module, "OfflineEstimator")
       .def(py::init<const std::string&, const OfflineEstimator::Values&, bool>(), py::arg("path"), py::arg("values"),
            py::arg("two_wheels"))

@@ -49,7 +49,6 @@ TEST_F(EstimatorHeldCalibrationTest, HoldsWhatItStartedWith) {
   EXPECT_EQ(state_.calibration.wheel_base_deviation, 0);
 }
 
-// Whoever switches learning off and starts again means it.
 TEST_F(EstimatorCalibrationTest, WhatARestartHoldsIsNotLearned) {
   practise(30);
   StateFrame last = state_;
@@ -63,7 +62,8 @@ TEST_F(EstimatorCalibrationTest, WhatARestartHoldsIsNotLearned) {
   EXPECT_EQ(state_.calibration.radius_ratio_deviation, 0);
 }
 
-// Straight on nothing tells the wheel base; noise of the gyro, in rate and innovation alike, must not.
+// On a straight way the wheel base is not observable; noise of the gyro, in rate and innovation alike, must not
+// change it.
 TEST(EstimatorCalibration, TheWheelBaseStaysWhereNothingTurns) {
   RollingRobot robot;
   robot.noise = {.gyro = 2.44e-4, .accelerometer = 1.7e-3, .counts = 4096};

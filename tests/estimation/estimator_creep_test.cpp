@@ -1,5 +1,7 @@
 // Tyres that creep under force.
 
+#include <utility>
+
 #include "estimation/estimator_fixture.h"
 #include "support/constants.h"
 
@@ -15,14 +17,18 @@ class CreepingTyres : public EstimatorFixture {
     robot_.creep = kCreep;
     stand();
   }
-  /// Largest error of the speed, m/s, from 0.1 s after the start of each ramp on.
-  double shuttle() {
-    double worst = 0;
+  /// Largest error of the speed, m/s, from 0.1 s after the last change of the acceleration on: then the tread's speed
+  /// jumps, and the tracking loop of the wheels follows.
+  double shuttle(double rate = 0.5) {
+    double worst = 0, last = 0;
+    int steady = 0;
     for (const double speed : {0.8, 0.2, 0.7, -0.5, 0.4}) {
-      drive(speed, 0.5, 100);
-      for (int i = 0; i < 1500; ++i) {
-        drive(speed, 0.5, 1);
-        worst = std::max(worst, std::abs(this->speed() - robot_.motion.velocity.x()));
+      for (int i = 0; i < 1600; ++i) {
+        const double before = robot_.motion.velocity.x();
+        drive(speed, rate, 1);
+        const double gained = robot_.motion.velocity.x() - before;
+        steady = std::abs(gained - std::exchange(last, gained)) < 1e-9 ? steady + 1 : 0;
+        if (steady >= 100) worst = std::max(worst, std::abs(this->speed() - robot_.motion.velocity.x()));
       }
     }
     return worst;
@@ -44,9 +50,14 @@ class CreepingTyresUnderAFarImu : public CreepingTyres {
   }
 };
 
-TEST_F(CreepingTyres, SpeedAndWayAreThatOfTheGround) {
-  EXPECT_LT(shuttle(), 0.0005);
+// Straight on: in curves the creep of one side more than of the other is a part of wheel base and clock offset.
+TEST_F(CreepingTyres, TheWayIsThatOfTheGround) {
+  shuttle(0);
   EXPECT_LT(position_error(), 2e-4);
+}
+
+TEST_F(CreepingTyres, TheSpeedIsThatOfTheGround) {
+  EXPECT_LT(shuttle(), 0.0015);
 }
 
 TEST_F(CreepingTyres, CurvesDriftOutwards) {
@@ -55,7 +66,7 @@ TEST_F(CreepingTyres, CurvesDriftOutwards) {
 }
 
 TEST_F(CreepingTyresUnderAFarImu, SpeedIsThatOfTheGround) {
-  EXPECT_LT(shuttle(), 0.001);
+  EXPECT_LT(shuttle(), 0.0015);
 }
 
 TEST_F(CreepingTyresTakenForRigid, SpeedIsThatOfTheTread) {
@@ -90,8 +101,8 @@ TEST(EstimatorCreep, TheWayUphillIsThatOfTheGround) {
   EXPECT_NEAR(error(kCreep), 0, 0.1 * crept);
 }
 
-// It stands on a slope that it takes for its accelerometer's bias, or the other way round: no force of which nobody is
-// sure makes the way longer or shorter.
+// It stands on a slope that may be the accelerometer's bias, or the other way round: a force that may be either makes
+// the way neither longer nor shorter.
 TEST(EstimatorCreep, ATiltInDoubtMakesNoCreep) {
   RollingRobot robot;
   robot.accelerometer_bias = {0.5, 0, 0};
@@ -105,7 +116,7 @@ TEST(EstimatorCreep, ATiltInDoubtMakesNoCreep) {
   };
   drive(0, 3000);
   drive(0.5, 4000);
-  // 0.005 of the way, were it believed; the tilt of 0.05 rad shortens its projection by 0.00125.
+  // Taken for a slope it would be 0.005 of the way; the tilt of 0.05 rad shortens its projection by 0.00125.
   EXPECT_NEAR(state.pose_odom.position[0], robot.x(), 0.002 * robot.x());
 }
 

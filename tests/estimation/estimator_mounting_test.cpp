@@ -28,7 +28,7 @@ RobotModel mounted(const Eigen::Quaterniond& q, const Vector3& position) {
 
 class EstimatorMountingTest : public testing::TestWithParam<unsigned> {};
 
-// The same samples in other axes: the same state to rounding; biases are told in the IMU's own axes.
+// The same samples in other axes: the same state to rounding; biases are published in the IMU's own axes.
 TEST_P(EstimatorMountingTest, AnyOrientationGivesTheSameState) {
   std::mt19937 random(GetParam());
   std::normal_distribution<double> normal(0, 1);
@@ -53,9 +53,9 @@ TEST_P(EstimatorMountingTest, AnyOrientationGivesTheSameState) {
   EXPECT_NEAR(yaw_of(state.pose_odom), yaw_of(expected.pose_odom), kRounding);
   EXPECT_NEAR(state.pose_covariance[0], expected.pose_covariance[0], 1e-5 * expected.pose_covariance[0]);
   EXPECT_EQ(state.slip, 0u);
-  const Eigen::Vector3d told(state.gyro_bias.data());
+  const Eigen::Vector3d in_imu(state.gyro_bias.data());
   const Eigen::Vector3d in_base(expected.gyro_bias.data());
-  EXPECT_LT((q * told - in_base).norm(), kRounding);
+  EXPECT_LT((q * in_imu - in_base).norm(), kRounding);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorMountingTest, testing::Range(0U, 10U));
@@ -98,7 +98,7 @@ struct Rates {
 
 class EstimatorRatesTest : public testing::TestWithParam<Rates> {};
 
-// The pose is looked at where the wheels were just heard. A gyro at rate f of a turn that changes by α rad/s² misses
+// The pose is compared where the wheels were just read. A gyro at rate f of a turn that changes by α rad/s² misses
 // less than α/(8 f²) rad per sample, which is nothing; a late gyro sample turns the robot late by one gap.
 TEST_P(EstimatorRatesTest, FindTheTruth) {
   RollingRobot robot;

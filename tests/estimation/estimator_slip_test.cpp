@@ -1,28 +1,25 @@
-// Wheels that do not roll: said which and why, soon, and the pose hardly suffers. And no flag where they do.
-//
-// Expected is what the inertial sensors can carry: accelerometer noise of 2 mg at rest's end integrates over t seconds
-// to no more than the position's own deviation, which every error is measured by.
+// Wheels that do not roll: which and why is published soon, and the pose hardly suffers. And no flag where they roll.
 
 #include <cstring>
 
 #include "estimation/estimator_fixture.h"
-#include "estimation/wheels/slip_watch.h"
 #include "support/constants.h"
 
 namespace robot_control {
 namespace {
 
-/// Two seconds of standing, then 0.5 m/s; noise as of a consumer IMU.
+/// Two seconds of standing, curves in which the clock offset is found, then 0.5 m/s; noise as of a consumer IMU.
 class EstimatorSlipTest : public EstimatorFixture {
  protected:
-  EstimatorSlipTest() {
+  explicit EstimatorSlipTest(int curves = 20000) {
     robot_.noise = {.gyro = 1e-4, .accelerometer = 1e-3, .counts = 4096};
     stand(2000);
+    for (int i = 0; i < curves; ++i) drive(0.5, 0.6 * std::sin(i * 2e-3), 1);
     drive(0.5, 0, 6000);  // in which the level of the residuals is learned
     EXPECT_EQ(state_.slip, 0u);
   }
-  bool says(std::uint64_t reasons) const { return (state_.slip & reasons) == reasons; }
-  /// Cycles, of `cycles` in which the robot moves on as it does, until slip is said; counts those in which it was.
+  bool names(std::uint64_t reasons) const { return (state_.slip & reasons) == reasons; }
+  /// Cycles, of `cycles` in which the robot moves on as it does, until slip is flagged; counts those in which it was.
   int flagged(int cycles) {
     int count = 0;
     for (int i = 0; i < cycles; ++i) {
@@ -45,8 +42,8 @@ class EstimatorSlipTest : public EstimatorFixture {
 TEST_F(EstimatorSlipTest, AWheelThatSpinsIsNamed) {
   robot_.tread[1] = 1.0;
   EXPECT_GT(flagged(1000), 900);
-  EXPECT_TRUE(says(kSlipRight | kSlipSpinning | kSlipTurn));
-  EXPECT_FALSE(says(kSlipLeft));
+  EXPECT_TRUE(names(kSlipRight | kSlipSpinning | kSlipTurn));
+  EXPECT_FALSE(names(kSlipLeft));
   EXPECT_EQ(state_.confidence[kRightEncoder], 0);
   EXPECT_LT(position_error(), raw_error() / 5);
   EXPECT_LT(yaw_error(), 0.01);
@@ -58,8 +55,8 @@ TEST_F(EstimatorSlipTest, AWheelThatSpinsIsNamed) {
 TEST_F(EstimatorSlipTest, AWheelThatIsStuckIsNamed) {
   robot_.tread[0] = 0.0;
   EXPECT_GT(flagged(1000), 900);
-  EXPECT_TRUE(says(kSlipLeft | kSlipStalled | kSlipTurn));
-  EXPECT_FALSE(says(kSlipRight));
+  EXPECT_TRUE(names(kSlipLeft | kSlipStalled | kSlipTurn));
+  EXPECT_FALSE(names(kSlipRight));
   EXPECT_LT(position_error(), raw_error() / 5);
   recover();
   EXPECT_EQ(state_.slip, 0u);
@@ -68,8 +65,8 @@ TEST_F(EstimatorSlipTest, AWheelThatIsStuckIsNamed) {
 TEST_F(EstimatorSlipTest, BothWheelsSpinningUnderABodyThatRollsOn) {
   robot_.tread = {1.0, 1.0};
   EXPECT_GT(flagged(1000), 900);
-  EXPECT_TRUE(says(kSlipLeft | kSlipRight | kSlipSpinning));
-  EXPECT_FALSE(says(kSlipTurn));
+  EXPECT_TRUE(names(kSlipLeft | kSlipRight | kSlipSpinning));
+  EXPECT_FALSE(names(kSlipTurn));
   EXPECT_LT(position_error(), raw_error() / 5);
   recover();
   EXPECT_EQ(state_.slip, 0u);
@@ -85,7 +82,7 @@ TEST_F(EstimatorSlipTest, LockedWheelsOfARobotThatSlidesOn) {
     flagged += has(kStateSlip) ? 1 : 0;
     ASSERT_FALSE(has(kStateStandstill)) << "wheels that stand are not a robot that stands";
     if (i == 250) {
-      EXPECT_TRUE(says(kSlipLeft | kSlipRight | kSlipStalled));
+      EXPECT_TRUE(names(kSlipLeft | kSlipRight | kSlipStalled));
     }
   }
   EXPECT_GT(flagged, 350);
@@ -93,7 +90,20 @@ TEST_F(EstimatorSlipTest, LockedWheelsOfARobotThatSlidesOn) {
   EXPECT_TRUE(has(kStateStandstill));
   EXPECT_EQ(state_.slip, 0u);
   EXPECT_GT(raw_error(), 0.1);
-  EXPECT_LT(position_error(), raw_error() / 5);
+  EXPECT_LT(position_error(), raw_error() / 3);  // what the verdict of the first 0.1 s leaves
+}
+
+/// Has not turned yet: wheels and accelerometer may be a tenth of a second apart.
+class EstimatorSlipBeforeATurn : public EstimatorSlipTest {
+ protected:
+  EstimatorSlipBeforeATurn() : EstimatorSlipTest(0) {}
+};
+
+TEST_F(EstimatorSlipBeforeATurn, LockedWheelsAreNoWorseThanTheWheels) {
+  robot_.tread = {0.0, 0.0};
+  drive(0, 0, 3000);
+  EXPECT_GT(raw_error(), 0.1);
+  EXPECT_LT(position_error(), 1.1 * raw_error());
 }
 
 TEST_F(EstimatorSlipTest, SlidingSidewaysIsNamed) {
@@ -104,38 +114,38 @@ TEST_F(EstimatorSlipTest, SlidingSidewaysIsNamed) {
     observe();
   }
   EXPECT_GT(flagged(500), 450);
-  EXPECT_TRUE(says(kSlipSideways));
+  EXPECT_TRUE(names(kSlipSideways));
   EXPECT_EQ(state_.confidence[kLateralContact], 0);
   EXPECT_LT(position_error(), raw_error() / 5);
 }
 
-TEST_F(EstimatorSlipTest, BeingLiftedIsNamed) {
-  for (int i = 0; i < 500; ++i) {
-    Rolling end = robot_.motion;
-    end.velocity.z() += (i < 250 ? 1.0 : 0) * kPeriod;
-    robot_.go(end);
-    observe();
-  }
-  EXPECT_TRUE(says(kSlipLifted));
-  EXPECT_EQ(state_.confidence[kVerticalContact], 0);
-}
-
-// What was believed while it began is taken back: the velocity is the inertial one, to its own deviation.
-TEST_F(EstimatorSlipTest, TheVelocityAfterDetectionIsTheInertialOne) {
+// The wheels jump by 1 m/s, which no real wheel does; the first verdict comes within the shortest span.
+TEST_F(EstimatorSlipTest, IsFoundWithinTheShortestSpan) {
   robot_.tread = {1.5, 1.5};
-  int cycles = 0;
-  while (!has(kStateSlip) && cycles < 500) {
-    robot_.go(robot_.motion);
-    observe();
-    ++cycles;
-  }
-  ASSERT_LT(cycles, 100) << "a window of 0.1 s sees 1 m/s";
-  EXPECT_NEAR(speed(), 0.5, 4 * std::sqrt(state_.twist_covariance[0]));
-  EXPECT_LT(std::sqrt(state_.twist_covariance[0]), 0.1);
+  EXPECT_GT(flagged(100), 10);
 }
 
-// However long it spun.
-// The pose moves, the wheels go on spinning.
+TEST_F(EstimatorSlipTest, TheVelocityOfASlideIsTheInertialOne) {
+  robot_.tread = {1.5, 1.5};
+  flagged(300);
+  double worst = 0;
+  for (int i = 0; i < 1000; ++i) {
+    flagged(1);
+    worst = std::max(worst, std::abs(speed() - 0.5));
+  }
+  EXPECT_LT(worst, 0.02);  // 1 s of 1e-3 m/s²/√Hz, and of the tilt's deviation
+}
+
+// From the first cycle of the verdict on.
+TEST_F(EstimatorSlipTest, TheVelocityOfASlideIsAsUncertainAsItIsWrong) {
+  robot_.tread = {1.5, 1.5};
+  while (flagged(1) == 0) ASSERT_LT(robot_.distance, 20);
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_NEAR(speed(), 0.5, 4 * std::sqrt(state_.twist_covariance[0])) << "cycle " << i;
+    flagged(1);
+  }
+}
+
 TEST_F(EstimatorSlipTest, IsNotForgottenWhereThePoseIsSet) {
   robot_.tread = {1.0, 1.0};
   drive(0.5, 0, 500);
@@ -144,14 +154,15 @@ TEST_F(EstimatorSlipTest, IsNotForgottenWhereThePoseIsSet) {
   estimator_.set_pose({3, 2, 1});
   for (int i = 0; i < 50; ++i) {
     drive(0.5, 0, 1);
-    ASSERT_TRUE(says(kSlipLeft | kSlipRight)) << i;
+    ASSERT_TRUE(names(kSlipLeft | kSlipRight)) << i;
   }
   EXPECT_NEAR(speed(), forward, 0.05);
 }
 
-TEST_F(EstimatorSlipTest, ADeadlockEnds) {
+// However long it spun.
+TEST_F(EstimatorSlipTest, EndsWhenTheWheelRollsAgain) {
   robot_.tread[0] = 1.0;
-  const int cycles = static_cast<int>(SlipWatch::kDeadlock / kPeriod);
+  const int cycles = static_cast<int>(SlipCorrection::kLongest / kPeriod);
   EXPECT_GT(flagged(cycles), 0.9 * cycles);
   flagged(cycles / 2);
   ASSERT_TRUE(all_finite(state_));
@@ -236,13 +247,14 @@ TEST_F(EstimatorRollingTest, GroundThatPitchesTheBodyIsNotCalledSlip) {
   EXPECT_LE(flagged(model, rolls, pitch_rate), 0.03);
 }
 
-// Creep of up to 3 % under force is rubber.
+constexpr double kLargestCreep = 0.03;  // of rubber under force
+
 TEST_F(EstimatorRollingTest, CreepIsNotCalledSlip) {
   const auto creeps = [](RollingRobot& robot, int) {
     for (const std::size_t side : {0U, 1U}) {
       const double sign = side == 0 ? -1 : 1;
       const double rolling = robot.motion.velocity.x() + sign / 2 * two_wheeler().wheel_base * robot.motion.rate.z();
-      robot.tread[side] = rolling * (1 - 0.4 * SlipWatch::kCreep * sign);
+      robot.tread[side] = rolling * (1 - 0.4 * kLargestCreep * sign);
     }
   };
   EXPECT_LE(flagged(two_wheeler(), creeps, level), 0.03);

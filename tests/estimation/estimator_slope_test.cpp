@@ -49,7 +49,7 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
   EXPECT_NEAR(state_.pose_odom.position[0] - x, way * std::cos(kSlope), 0.002 * way);
   EXPECT_EQ(state_.slip, 0u);
   EXPECT_TRUE(state_.flags & kStateValid);
-  // Attitude is always told; nose up is a negative pitch.
+  // Attitude is always published; nose up is a negative pitch.
   const double pitch = 2 * std::asin(state_.attitude[1]);
   EXPECT_NEAR(pitch, -kSlope, 3 * std::sqrt(state_.attitude_covariance[4]) + 1e-3);
   EXPECT_NEAR(state_.attitude[0], 0, 1e-3);
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Planar, EstimatorSlopeTest, testing::Bool(), [](const t
   return planar.param ? "Projected" : "InThreeDimensions";
 });
 
-// It stands on a ramp when it is switched on: tilt and bias are told apart by no one; it does not roll away.
+// It stands on a ramp when it is switched on: tilt and bias cannot be separated; it does not move.
 TEST(EstimatorOnARamp, StartsWithTheTiltThatItStandsAt) {
   EstimatorParameters parameters;
   parameters.planar = false;

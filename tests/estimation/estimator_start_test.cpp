@@ -8,15 +8,15 @@ namespace {
 
 class EstimatorStartTest : public EstimatorFixture {
  protected:
-  /// The robot moves, nobody listens.
-  void drive_unheard(double linear, double angular, int cycles) {
+  /// The robot moves and no sample is received.
+  void drive_unseen(double linear, double angular, int cycles) {
     for (int i = 0; i < cycles; ++i) robot_.drive(linear, angular);
   }
 };
 
 // 12 s at 0.5 m/s: the speed is found out of travel, within a count's deviation per 0.1 s; 1 % is ten times that.
 TEST_F(EstimatorStartTest, ARunThatBeginsInMotionFindsItsSpeed) {
-  drive_unheard(0.5, 0.1, 1000);
+  drive_unseen(0.5, 0.1, 1000);
   observe();
   drive(0.5, 0.1, 12000);
   EXPECT_NEAR(speed(), 0.5, 0.005);
@@ -33,12 +33,12 @@ TEST_F(EstimatorStartTest, AFreshRunStandsAtZero) {
   EXPECT_LT(std::sqrt(state_.pose_covariance[7]), 1e-5);
 }
 
-TEST_F(EstimatorStartTest, ARestartBelievesTheWheelsNotTheSpeedOfBefore) {
+TEST_F(EstimatorStartTest, ARestartTakesTheSpeedOfTheWheelsNotThatOfBefore) {
   stand();
   drive(0.5, 0, 2000);
   StateFrame last = state_;
   last.head.cycle = robot_.frame().head.cycle;
-  drive_unheard(0.2, 0, 600);
+  drive_unseen(0.2, 0, 600);
   estimator_.resume(last);
   observe();
   drive(0.2, 0, 5000);
@@ -46,19 +46,19 @@ TEST_F(EstimatorStartTest, ARestartBelievesTheWheelsNotTheSpeedOfBefore) {
   EXPECT_EQ(state_.slip, 0u);
 }
 
-// 0.3 s at 0.6 rad/s without a sample, in which the turn begins and ends: only the wheels know of it.
+// 0.3 s at 0.6 rad/s without a sample, in which the turn begins and ends: only the wheels measure it.
 TEST_F(EstimatorStartTest, AHoleInAllSamplesIsTurnedByTheWheels) {
   stand();
   drive(0.3, 0, 2000);
-  drive_unheard(0.3, 0.6, 150);
-  drive_unheard(0.3, 0, 150);
+  drive_unseen(0.3, 0.6, 150);
+  drive_unseen(0.3, 0, 150);
   drive(0.3, 0, 1000);
   EXPECT_LT(yaw_error(), 5 * std::sqrt(state_.pose_covariance[35]));
   EXPECT_LT(yaw_error(), 0.01);
   EXPECT_NEAR(speed(), 0.3, 0.005);
 }
 
-TEST_F(EstimatorStartTest, WithoutEncodersNobodySaysThatItStillRests) {
+TEST_F(EstimatorStartTest, WithoutEncodersItIsNotAtRest) {
   stand();
   const Vector3 learned = state_.gyro_bias;
   for (int i = 0; i < 3000; ++i) {

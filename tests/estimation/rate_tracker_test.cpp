@@ -84,8 +84,8 @@ TEST_F(PublishedRate, OfEachWheelDoesNotJumpWithItsCounts) {
   drive(0.5, 0.2, 3000);
   for (int i = 0; i < 2000; ++i) {
     drive(0.5, 0.2, 1);
-    ASSERT_NEAR(state_.wheel_velocity[0], 4.5, 0.15);
-    ASSERT_NEAR(state_.wheel_velocity[1], 5.5, 0.15);
+    ASSERT_NEAR(state_.wheel_velocity[0], 4.5, 0.03);
+    ASSERT_NEAR(state_.wheel_velocity[1], 5.5, 0.03);
   }
   drive(0, 0, 3000);
   EXPECT_NEAR(state_.wheel_velocity[0], 0, 1e-6);

@@ -21,7 +21,7 @@ LOGGED = {
 
 
 def wander(t):
-    """Rest, then curves either way: everything that the filter learns from."""
+    """Rest, then curves either way: everything that the estimator learns from."""
     return (0.0, 0.0) if t < 1 else (0.5, 0.8 * np.sin(t))
 
 

@@ -30,6 +30,7 @@ BOUNDS = {
 SLIP = 0.05  # share of the drive that may be called slip
 CAMERA = 1.05  # RMS over that of the simple odometry
 WITHIN = 0.85  # share of the time within three deviations
+LITTLE = 0.002  # of the distance: errors that are smaller are none
 DEVIATION = 0.03  # of the distance, at the end of the indoor drives
 
 needs_recordings = pytest.mark.skipif(recordings_folder() is None, reason=ABSENT)
@@ -124,6 +125,17 @@ def test_a_drive_with_the_errors_of_real_sensors_is_as_good_as_the_simple_odomet
     away = np.hypot(*(path - truth[:, 1:]).T)
     moved = truth[:, 0] > drive.drive.rest + 2
     assert np.mean(away[moved] <= 3 * deviation[moved] + 0.1) >= WITHIN  # 0.1 m: stamps 0.07 s late at 0.9 m/s
+
+
+@pytest.mark.parametrize("seed", [5, 10, 15])
+def test_a_start_in_motion_is_the_simple_odometry_until_the_first_rest(seed):
+    """By a gyro whose bias is zero, as the simple odometry takes it; then by the bias that a rest of a second shows."""
+    drive = Drive(field_drive(Errors(rest=0.0, bias=(0.0, 0.0, 0.0)), seed))
+    moving = drive.drive.time < 29  # its first stop comes at 30 s
+    assert drive.away[moving].max() <= 0.02 * drive.distance  # the clock offset and the slopes of the tilt
+    assert error_at_the_end(drive, drive.path) <= 0.02 * drive.distance
+    off = np.remainder(drive.out["yaw"] - drive.simple[:, 2] + np.pi, 2 * np.pi) - np.pi
+    assert np.mean(np.abs(off) <= 3 * np.sqrt(drive.out["pose_covariance"][:, 5, 5]) + 1e-3) >= WITHIN
 
 
 def test_good_sensors_are_not_degraded():

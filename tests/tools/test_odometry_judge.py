@@ -218,7 +218,7 @@ def test_runs_in_which_wheels_do_well_do_not_count_as_missed():
         ({"notice": Notice(100, 89, 1000, 10, 2000)}, "slip above 20 % flagged"),
         ({"pose_nees": np.array([3.0, 30.0, 3.0])}, "slip, mean NEES of the pose"),
         ({"notice": Notice(100, 95, 1000, 31, 2000)}, "false alarms, slip"),
-        ({"ours": 0.12}, "slip, position over simple part's"),
+        ({"ours": 0.12}, "slip, position over simple odometry's"),
     ],
 )
 def test_each_broken_promise_is_reported(broken, name):

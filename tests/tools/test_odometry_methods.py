@@ -14,7 +14,7 @@ from lab.odometry.methods import (
     calibrated_wheels,
     gyro_without_bias,
     raw_wheels,
-    simple_part,
+    simple_odometry,
     standing,
 )
 from lab.odometry.truth import truth_of
@@ -53,7 +53,7 @@ def test_the_gyro_as_it_is_drifts_by_its_bias():
     assert gyro_without_bias(recording).yaw[-1] == pytest.approx(0.002 * 13.0, abs=ROUNDING)
 
 
-def test_the_simple_part_keeps_what_its_filter_could_not_learn():
+def test_the_simple_odometry_keeps_what_its_filter_could_not_learn():
     """Of a bias b there remains (1 − K) b, K = P/(P + σ²/T); nothing while it stands."""
     recording = drive(STAND, LINE, bias=0.002)
     still = standing(recording)
@@ -62,7 +62,7 @@ def test_the_simple_part_keeps_what_its_filter_could_not_learn():
     variance = GYRO_BIAS**2 + GYRO_WALK**2 * first * PERIOD
     rest = 1 - variance / (variance + GYRO_NOISE**2 / used)
     expected = 0.002 * first * PERIOD + rest * 0.002 * (13.0 - (first + still.sum()) * PERIOD)
-    assert simple_part(recording).yaw[-1] == pytest.approx(expected, abs=2 * 0.002 * PERIOD)
+    assert simple_odometry(recording).yaw[-1] == pytest.approx(expected, abs=2 * 0.002 * PERIOD)
 
 
 def test_a_second_standstill_teaches_what_has_changed():

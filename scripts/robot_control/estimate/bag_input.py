@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from robot_control.common.files import LARGEST_TABLE, check_input, listed, printable
-from robot_control.estimate.bounded_bag import InflationError, open_bag
+from robot_control.common.bag_file import BagFile
+from robot_control.common.files import listed
 from robot_control.estimate.samples import FloatArray, InputError, Robot, Samples, Stream, merged, wheel_joints
 from robot_control.estimate.wheels import wheel_angles
 
@@ -32,54 +32,34 @@ def read_bag(path: Path, robot: Robot, topics: BagTopics) -> Samples:
     """Reads wheels and IMU, by their header stamps.
 
     Raises:
-        InputError: no bag, a topic that is not there or of another type, more than one that could be meant.
+        InputError: a topic that is not there or of another type, more than one that could be meant.
+        BagFileError: no sound bag.
         OSError: it cannot be opened.
     """
-    rosbag = _rosbag()
-    check_input(path, LARGEST_TABLE)
-    with path.open("rb"):
-        pass
-    try:
-        with open_bag(path) as bag:
-            reader = _Reader(path, bag)
-            imu = None if topics.imu == NO_IMU else reader.imu_topic(topics.imu)
-            wheels, type_of_wheels = reader.wheel_topic(topics.wheels, robot, topics.joints)
-            if type_of_wheels == JOINT_STATE:
-                left, right = reader.joints(wheels, robot, topics.joints)
-            else:
-                left, right = reader.odometry(wheels, robot, topics.odometry)
-            streams = [left, right, *([] if imu is None else reader.imu(imu, robot))]
-    except rosbag.ROSBagUnindexedException:
-        raise InputError(f"{path} has no index, its recorder was killed: run `rosbag reindex` on it") from None
-    except (InputError, InflationError, MemoryError):
-        raise
-    except Exception as error:  # rosbag and genpy raise whatever a broken record makes of them
-        raise InputError(
-            f"{path} is no ROS 1 bag that can be read: {printable(f'{type(error).__name__}: {error}')}"
-        ) from error
+    reader = _Reader(path, BagFile(path))
+    imu = None if topics.imu == NO_IMU else reader.imu_topic(topics.imu)
+    wheels, type_of_wheels = reader.wheel_topic(topics.wheels, robot, topics.joints)
+    if type_of_wheels == JOINT_STATE:
+        left, right = reader.joints(wheels, robot, topics.joints)
+    else:
+        left, right = reader.odometry(wheels, robot, topics.odometry)
+    streams = [left, right, *([] if imu is None else reader.imu(imu, robot))]
     time_ns, tables = merged(streams)
     gyro, accel = (tables[2], tables[3]) if imu is not None else (None, None)
     known = [None if table is None or np.all(np.isnan(table)) else table for table in (gyro, accel)]
     by_side = [table[:, 0] if table.shape[1] == 1 else table for table in tables[:2]]
-    return Samples(time_ns, by_side[0], by_side[1], known[0], known[1], reader.notes)
-
-
-def _rosbag() -> Any:  # noqa: ANN401 (Debian's rosbag has no type information)
-    try:
-        import rosbag
-    except ImportError as error:
-        raise InputError(f"bags need Debian's python3-rosbag: {error}. Run it with /usr/bin/python3") from None
-    return rosbag
+    return Samples(time_ns, by_side[0], by_side[1], known[0], known[1], reader.notes, reader.warnings)
 
 
 class _Reader:
     """The topics of one bag."""
 
-    def __init__(self, path: Path, bag: Any) -> None:  # noqa: ANN401
+    def __init__(self, path: Path, bag: BagFile) -> None:
         self.notes: list[str] = []
+        self.warnings = [bag.cut] if bag.cut else []
         self._path = path
         self._bag = bag
-        self._types: dict[str, str] = {name: of.msg_type for name, of in bag.get_type_and_topic_info()[1].items()}
+        self._types = bag.topics
 
     def imu_topic(self, wanted: str | None) -> str | None:
         """None: there is none, which is noted."""
@@ -176,11 +156,11 @@ class _Reader:
     def _messages(self, topic: str) -> Iterator[tuple[Any, int]]:
         """Message and stamp [ns]; where the header has none, the time of recording."""
         unstamped = 0
-        for _, message, recorded in self._bag.read_messages(topics=[topic]):
+        for message, recorded in self._bag.messages(topic):
             stamp = message.header.stamp.to_nsec()
             if stamp == 0:
                 unstamped += 1
-                stamp = recorded.to_nsec()
+                stamp = recorded
             yield message, stamp
         if unstamped > 1:  # simulated time may begin at zero
             self.notes.append(f"{unstamped} messages of {topic} have no stamp; their time of recording is taken")
@@ -220,7 +200,7 @@ class _Reader:
     def _positions_in(self, topic: str) -> set[str]:
         """Joints with a position in the first messages."""
         there: set[str] = set()
-        for count, (_, message, _) in enumerate(self._bag.read_messages(topics=[topic])):
+        for count, (message, _) in enumerate(self._bag.messages(topic)):
             there |= {name for name, _ in zip(message.name, message.position, strict=False)}
             if count == 100:
                 break

@@ -13,11 +13,10 @@ from typing import TextIO
 import numpy as np
 
 from robot_control.common.files import LARGEST_TABLE, check_input, listed
-from robot_control.estimate.samples import FloatArray, InputError, IntArray, Robot, Samples, wheel_joints
+from robot_control.common.run_log import notes_on_runs
+from robot_control.estimate.log_input import log_columns
+from robot_control.estimate.samples import ACCEL, GYRO, FloatArray, InputError, IntArray, Robot, Samples
 
-AXES = ("x", "y", "z")
-GYRO = tuple(f"gyro_{axis}" for axis in AXES)
-ACCEL = tuple(f"accel_{axis}" for axis in AXES)
 NAMES = ("time", "left", "right", *GYRO, *ACCEL)
 LONGEST_LINE = 100_000
 """characters; below the field limit of Python's csv, and a row of a log has some 3000"""
@@ -109,25 +108,10 @@ def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
 
 def _read_log(table: _Table, robot: Robot) -> Samples:
     """The last run in a log of this package's telemetry, or of ClosedLoop."""
-    joints = {side: wheel_joints(robot, side) for side in ("left", "right")}
-    wanted = [f"{joint}_position" for side in joints.values() for joint in side]
-    missing = [name for name in wanted if name not in table.header]
-    if missing:
-        there = [name for name in table.header if name.endswith("_position")]
-        raise InputError(
-            f"{table.path} is a log of another robot: no column {', '.join(missing)}; it has {listed(there)}. Give "
-            "the --urdf or --params that it was recorded with, or --columns time=time,left=…,right=…"
-        )
-    names = [*wanted, *GYRO, *ACCEL]
-    absent = [name for name in names if name not in table.header]
-    if absent:
-        raise InputError(f"{table.path}: its header is that of a log, but there is no {', '.join(absent)}")
-    time_ns, values, runs = table.read("time", "s", names, run="run")
-    if runs > 1:
-        table.notes.append(f"{runs} runs in the file; this is the last one")
-    split = [len(joints["left"]), len(wanted), len(wanted) + 3]
-    left, right, gyro, accel = np.split(values, split, axis=1)
-    return Samples(time_ns, left, right, gyro, accel, table.notes, own_log=True)
+    wanted = log_columns(table.path, table.header, robot)
+    time_ns, values, runs = table.read("time", "s", wanted.all, run="run")
+    table.notes += notes_on_runs(runs)
+    return wanted.samples(time_ns, values, table.notes)
 
 
 class _Table:

@@ -15,10 +15,12 @@ import yaml  # type: ignore[import-untyped]
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import NewFiles, fit_for_message
+from robot_control.common.run_log import is_run_log
 from robot_control.estimate.bag_input import BagTopics, read_bag
 from robot_control.estimate.csv_input import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
 from robot_control.estimate.encoder import counts_per_turn
 from robot_control.estimate.input_check import check, check_angles
+from robot_control.estimate.log_input import read_run_bag
 from robot_control.estimate.output import BagSink, CsvSink, Sink
 from robot_control.estimate.report import Summary
 from robot_control.estimate.samples import InputError, IntArray, Robot, Samples
@@ -39,11 +41,12 @@ IMU may have rates of their own. Its columns, under these names or by --columns:
   left, right               rad, angles of the wheels, as their joints report them
   gyro_x, gyro_y, gyro_z    rad/s, in the IMU's own axes; gyro_z alone will do; may be absent
   accel_x, accel_y, accel_z m/s², likewise, +9.81 upwards at rest; may be absent
-A run.csv of this package (telemetry, the demo) is known by its columns: the last run in it is estimated again.
+A run.bag or run.csv of this package (telemetry, the demo) is known by its contents: the last run in it is estimated
+again.
 A bag is read by the stamps of its messages, needs no running ROS, and its topics are found where only one can be meant.
 
 The robot is --urdf, or --wheel-radius with --wheel-base (base_link mid-axle), or what --params says; it must be given,
-but for a run.csv.
+but for a run.bag or run.csv.
 """
 
 
@@ -192,6 +195,8 @@ def _thinned(time_ns: IntArray, rows: Estimate, rate: float | None, all_ns: IntA
 
 
 def _read(options: argparse.Namespace, estimator: Estimator) -> Samples:
+    if options.input.suffix == ".bag" and is_run_log(options.input):
+        return read_run_bag(options.input, estimator.robot)
     if options.input.suffix == ".bag":
         samples = read_bag(
             options.input,
@@ -265,7 +270,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="estimate.py",
         description="Estimates where a robot was from a recording of its wheels and its IMU, with the node's own "
-        "filter; prints a summary, and writes what is asked for.",
+        "law; prints a summary, and writes what is asked for.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from robot_control._robot_control import slip_detection
 from robot_control.estimate.samples import IntArray, Robot, Samples
 from robot_control.offline_estimator import DEGRADED_REASONS, FLAGS, SENSORS, SLIP_REASONS, Estimate
 
@@ -64,18 +65,12 @@ class Summary:
             ("wheel base", _base(robot, last)),
             ("standing", f"{self.seconds['standstill']:.1f} s"),
             ("slip", self._slip()),
+            ("slip detection", slip_detection(float(last["residual_level"]))),
             ("rejected", _rejected(last, samples)),
         ]
         if self.degraded:
             names = [name for name, bit in DEGRADED_REASONS.items() if self.degraded & bit]
-            level = float(last["residual_level"])
-            lines.append(
-                (
-                    "degraded",
-                    f"{self.seconds['degraded']:.1f} s by wheels and gyro alone ({', '.join(names)}); "
-                    f"the accelerometer's residuals are {level:.3g} × its noise",
-                )
-            )
+            lines.append(("degraded", f"{self.seconds['degraded']:.1f} s ({', '.join(names)})"))
         if self.seconds["invalid"] > 0:
             lines.append(("not valid", f"{self.seconds['invalid']:.1f} s"))
         lines += [("note", note) for note in samples.notes]

@@ -14,6 +14,10 @@ IntArray = NDArray[np.int64]
 Robot = Mapping[str, Any]
 """`Estimator.robot`"""
 
+AXES = ("x", "y", "z")
+GYRO = tuple(f"gyro_{axis}" for axis in AXES)
+ACCEL = tuple(f"accel_{axis}" for axis in AXES)
+
 GAP = 0.5
 """s without any sample that are worth telling; a robot at 1 m/s is half a metre on"""
 

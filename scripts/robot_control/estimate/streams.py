@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robot_control.common.rotation import rotation
 from robot_control.estimate.samples import FloatArray, Robot, Samples
 
 REST = 0.5
@@ -66,18 +67,6 @@ def streams_of(samples: Samples, robot: Robot) -> Streams:
         accel,
         rotation(robot["imu"]["orientation"]),
         float(robot["effective_wheel_base"]),
-    )
-
-
-def rotation(quaternion: tuple[float, float, float, float]) -> FloatArray:
-    """(3, 3), of x, y, z, w."""
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
     )
 
 

@@ -56,7 +56,7 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   for (Wheel& wheel : wheels_) sum += wheel.take(sensors);
   if (reading == EncoderReading::kTravel) travel_ = sum / static_cast<double>(wheels_.size());
   time_ = waiting_;
-  gap_ = std::min(waiting_, kLongGap);
+  gap_ = std::min(std::max(waiting_, kShrink * gap_), kLongGap);
   waiting_ = 0;
   known_ = true;
   rejected_ = 0;

@@ -10,9 +10,9 @@
 /// kMaxRejected readings was reset: then the present angles become the offset, and the travel in between is lost.
 
 #include <cstdint>
-#include <vector>
 
 #include "robot/robot_model.h"
+#include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {
@@ -27,7 +27,8 @@ enum class EncoderReading : std::uint8_t {
 class SideEncoder {
  public:
   static constexpr std::uint64_t kMaxRejected = 4;
-  static constexpr double kLongGap = 0.1;  ///< s
+  static constexpr double kLongGap = 0.5;  ///< s
+  static constexpr double kShrink = 0.9;   ///< stamps jitter: readings that come in a batch are no new rate
   static constexpr double kSlack = 0.1;    ///< rad; some counts of a coarse encoder, and backlash
 
   /// At least one wheel on that side.
@@ -46,7 +47,9 @@ class SideEncoder {
   bool received() const noexcept { return waiting_ == 0 && known_; }
   bool known() const noexcept { return known_; }        ///< a reading was accepted in this run
   double waiting() const noexcept { return waiting_; }  ///< s since a reading was accepted
-  double gap() const noexcept { return gap_; }          ///< s between the last two that were accepted; at most kLongGap
+  double gap() const noexcept {
+    return gap_;
+  }  ///< s between readings, the largest, shrinking by kShrink; at most kLongGap
 
  private:
   struct Wheel {
@@ -61,7 +64,7 @@ class SideEncoder {
     double take(const SensorFrame& sensors) noexcept;  ///< m, travel
   };
 
-  std::vector<Wheel> wheels_;
+  FixedVector<Wheel, kMaxWheels> wheels_;
   double travel_ = 0;
   double time_ = 0;
   double waiting_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
-/// How fast each wheel turns, for joint_states: a tracking loop (speed_tracker.h) on every wheel's own angle.
+/// How fast each wheel turns, for joint_states: the tracking loop of the wheel loops (robot/encoders/tracking_loop.h)
+/// on every wheel's own angle, without a torque that explains its acceleration.
 ///
 /// The speed that an encoder reports is differenced over one period and jumps by a count per period: 1.5 rad/s with
 /// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastest are left out; after
@@ -9,10 +10,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
-#include "estimation/wheels/speed_tracker.h"
+#include "robot/encoders/tracking_loop.h"
 #include "robot/robot_model.h"
+#include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
 
@@ -25,40 +26,46 @@ class WheelVelocities {
 
   /// `bandwidth` Hz, `period` s.
   WheelVelocities(const RobotModel& robot, double bandwidth, double period)
-      : wheels_(std::min(robot.wheels.size(), kMaxWheels), Wheel{.speed = SpeedTracker(bandwidth, period)}) {}
+      : period_(period),
+        wheels_(std::min(robot.wheels.size(), kMaxWheels), Wheel{.tracking = TrackingLoop(bandwidth, period)}) {}
 
   void reset() noexcept {
-    for (Wheel& wheel : wheels_) wheel.known = false;
+    for (Wheel& wheel : wheels_) {
+      wheel.tracking.reset();
+      wheel.known = false;
+    }
   }
 
   /// `dt` s after the last one; 0: the first, or the same again.
   void step(const SensorFrame& sensors, double dt) noexcept {
     const bool valid = (sensors.valid & kValidJoints) != 0 && sensors.joint_count >= wheels_.size();
-    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].step(sensors.joints[i], valid, dt);
+    for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].step(sensors.joints[i], valid, dt, period_);
+    for (std::size_t i = 0; i < wheels_.size(); ++i)
+      wheels_[i].tracking.assume_encoder_of(wheels_[(i + 1) % wheels_.size()].tracking);
   }
 
   /// rad/s, in the joint's own sign; those of wheels without a sample are 0.
   void write(std::array<double, kMaxWheelVelocities>& out) const noexcept {
     out = {};
-    for (std::size_t i = 0; i < wheels_.size(); ++i) out[i] = wheels_[i].known ? wheels_[i].speed.speed() : 0;
+    for (std::size_t i = 0; i < wheels_.size(); ++i) out[i] = wheels_[i].known ? wheels_[i].tracking.velocity() : 0;
   }
 
  private:
   struct Wheel {
-    SpeedTracker speed;
+    TrackingLoop tracking;
     double angle = 0;  ///< rad, of the last good sample
     double since = 0;  ///< s
     bool known = false;
 
-    void step(const JointSample& sample, bool valid, double dt) noexcept {
+    void step(const JointSample& sample, bool valid, double dt, double period) noexcept {
       since += dt;
       if (!valid || !std::isfinite(sample.position)) return;
       const double travel = sample.position - angle;
       if (!known || since > kForgotten) {
-        speed.reset(0);
+        tracking.restart_from(sample.position, 0);
         known = true;
       } else if (since > 0 && std::abs(travel) <= kFastest * since) {
-        speed.step(travel, since);
+        tracking.step(sample.position, 0, since / period);
       } else {
         return;
       }
@@ -67,7 +74,8 @@ class WheelVelocities {
     }
   };
 
-  std::vector<Wheel> wheels_;
+  double period_;
+  FixedVector<Wheel, kMaxWheels> wheels_;
 };
 
 static_assert(kMaxWheelVelocities == kMaxWheels);

@@ -29,6 +29,7 @@ CASES = {
     "64 counts": replace(FIELD, counts=64),
     "centre of gravity 0.05 m ahead": replace(FIELD, sideways=0.05),
     "begins in motion": replace(FIELD, rest=0),
+    "begins in motion, gyro without bias": replace(FIELD, rest=0, bias=(0.0, 0.0, 0.0)),
 }
 LITTLE = 0.002  # of the distance
 

@@ -3,7 +3,7 @@
     raw wheels         Δs = (r Δφ_r + r Δφ_l)/2      Δθ = (r Δφ_r − r Δφ_l)/b      r, b as the robot is described
     calibrated wheels  the same with the true radii r_l, r_r and the true base: what a perfect calibration could reach
     gyro, no bias      Δs of raw wheels,             Δθ = ∫ ω dt
-    simple part        Δs of raw wheels,             Δθ = ∫ (ω − b̂) dt, 0 while it stands;   b̂ from standstills
+    simple odometry    Δs of raw wheels,             Δθ = ∫ (ω − b̂) dt, 0 while it stands;   b̂ from standstills
 
 ω is the gyro's rate about base z, integrated by trapezoids; position by chords, x += Δs cos(θ + Δθ/2), whose error
 goes with Δθ³ and vanishes at 1 kHz (Borenstein, Everett & Feng, "Where am I?", 1996, section 1.3.1).
@@ -55,7 +55,7 @@ def gyro_without_bias(recording: Recording) -> Track:
     return _sampled(recording, _distance(recording), _integrated(recording, recording.gyro[:, 2]))
 
 
-def simple_part(recording: Recording) -> Track:
+def simple_odometry(recording: Recording) -> Track:
     """Distance by raw wheels, heading by the gyro less the bias learned at standstill."""
     still = standing(recording)
     rate = recording.gyro[:, 2] - bias(recording, still)
@@ -98,7 +98,7 @@ METHODS = {
     "raw wheels": raw_wheels,
     "calibrated wheels": calibrated_wheels,
     "gyro, no bias": gyro_without_bias,
-    "simple part": simple_part,
+    "simple odometry": simple_odometry,
 }
 
 

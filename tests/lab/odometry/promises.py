@@ -18,7 +18,7 @@ from lab.odometry.scenarios import SCENARIOS
 from lab.odometry.tested_estimator import OURS
 from lab.odometry.truth import Array
 
-SIMPLE, RAW, CALIBRATED = "simple part", "raw wheels", "calibrated wheels"
+SIMPLE, RAW, CALIBRATED = "simple odometry", "raw wheels", "calibrated wheels"
 WITHOUT_SLIP = "random"  # the scenario whose NEES is judged; within default limits on dry ground nothing slips
 WORTH = 0.2  # m, that calibrated wheels have to err by for a slip run to count
 
@@ -136,12 +136,12 @@ def false_alarms(runs: Sequence[Run]) -> list[Promise]:
 
 
 def never_worse(runs: Sequence[Run]) -> list[Promise]:
-    """Than 1.1 × its simple part: the median over the seeds of ours over that of the simple part, in every scenario."""
+    """Than 1.1 × the simple odometry: ratio of the medians over the seeds, in every scenario."""
     promises = []
     for scenario in (name for name in SCENARIOS if of(runs, name)):
         for what, errors in (("position", positions), ("yaw", yaws)):
             ratio = np.median(errors(runs, scenario)) / np.median(errors(runs, scenario, SIMPLE))
-            promises.append(Promise(f"{scenario}, {what} over simple part's", float(ratio), 1.1, ""))
+            promises.append(Promise(f"{scenario}, {what} over simple odometry's", float(ratio), 1.1, ""))
     return promises
 
 

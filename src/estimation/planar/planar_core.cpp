@@ -1,0 +1,212 @@
+#include "estimation/planar/planar_core.h"
+
+#include <algorithm>
+
+namespace robot_control {
+namespace {
+
+constexpr double kFirstSlip = 5e-3;  // m/√m
+constexpr double kLargestSlip = 0.05;
+constexpr double kSlipStep = 0.2;   // of the logarithm
+constexpr double kMedian = 0.6745;  // deviations, of |normal|
+constexpr double kHuber = 2;
+constexpr double kGate = 6;
+constexpr double kSignificant = 10;
+constexpr double kTurnSlip = 5e-4;      // rad/√rad, of a hard tyre on a hard floor
+constexpr double kProvenBias = 5;       // deviations
+constexpr double kLargestOffset = 0.4;  // s
+constexpr double kFirstTwist = 0.05;    // rad/√rad
+
+}  // namespace
+
+PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
+    : params_(params), slip_(std::max(kFirstSlip, params.slip_least)), twist_(kFirstTwist) {
+  covariance_[kBias][kBias] = square(params.gyro_bias_initial);
+  covariance_[kScale][kScale] = square(params.gyro_scale);
+  covariance_[kRatio][kRatio] = square(params.ratio_deviation);
+  covariance_[kBase][kBase] = square(params.wheel_base_deviation);
+  covariance_[kOffset][kOffset] = square(params.clock_offset);
+}
+
+void PlanarCore::place(const PlanarPose& pose) noexcept {
+  pose_ = pose;
+  for (const std::size_t i : {kX, kY, kYaw, kAnchor}) {
+    for (std::size_t k = 0; k < kSize; ++k) covariance_[i][k] = covariance_[k][i] = 0;
+  }
+  for (const std::size_t i : {kX, kY, kYaw, kAnchor}) held_[i] = 0;
+  anchor_ = pose.yaw;
+}
+
+void PlanarCore::set_bias(double bias, double deviation) noexcept {
+  bias_ = bias;
+  held_[kBias] = 0;
+  for (std::size_t k = 0; k < kSize; ++k) covariance_[kBias][k] = covariance_[k][kBias] = 0;
+  covariance_[kBias][kBias] = square(deviation);
+}
+
+void PlanarCore::set_calibration(double ratio, double ratio_deviation, double base, double base_deviation) noexcept {
+  ratio_ = ratio;
+  base_ = base;
+  for (const std::size_t i : {kRatio, kBase}) {
+    for (std::size_t k = 0; k < kSize; ++k) covariance_[i][k] = covariance_[k][i] = 0;
+  }
+  covariance_[kRatio][kRatio] = params_.ratio_deviation == 0 ? 0 : square(ratio_deviation);
+  covariance_[kBase][kBase] = params_.wheel_base_deviation == 0 ? 0 : square(base_deviation);
+}
+
+/// P ← T P Tᵀ, T = I + factor e_to e_fromᵀ.
+void PlanarCore::add(std::size_t to, double factor, std::size_t from) noexcept {
+  Row& row = covariance_[to];
+  const Row& other = covariance_[from];
+  for (std::size_t k = 0; k < kSize; ++k) row[k] += factor * other[k];
+  row[to] += factor * row[from];
+  for (std::size_t k = 0; k < kSize; ++k) covariance_[k][to] = row[k];
+  held_[to] += factor * held_[from];
+}
+
+void PlanarCore::turn_by_gyro(double angle, double dt) noexcept {
+  const double turned = angle - bias_ * dt;
+  pose_.yaw += turned;
+  age(dt);
+  add(kYaw, -dt, kBias);
+  add(kYaw, turned, kScale);
+  covariance_[kYaw][kYaw] += square(params_.gyro_noise) * dt;
+}
+
+double PlanarCore::wheel_turn(double left, double right) const noexcept {
+  return (right - left + ratio_ * (left + right) / 2) / (params_.wheel_base * (1 + base_));
+}
+
+void PlanarCore::turn_by_wheels(double left, double right) noexcept {
+  const double turned = wheel_turn(left, right);
+  pose_.yaw += turned;
+  add(kYaw, (left + right) / 2 / params_.wheel_base, kRatio);
+  add(kYaw, -turned, kBase);
+  covariance_[kYaw][kYaw] +=
+      square(slip_ / params_.wheel_base) * (std::abs(left) + std::abs(right)) + square(twist_) * std::abs(turned);
+}
+
+void PlanarCore::roll(double x, double y, double rate) noexcept {
+  pose_.x += x;
+  pose_.y += y;
+  add(kX, -y, kYaw);
+  add(kY, x, kYaw);
+  add(kX, rate * y, kOffset);
+  add(kY, -rate * x, kOffset);
+  const double noise = square(slip_) / 2 * std::sqrt(x * x + y * y);
+  covariance_[kX][kX] += noise;
+  covariance_[kY][kY] += noise;
+}
+
+void PlanarCore::shift(double x, double y, double variance) noexcept {
+  pose_.x += x;
+  pose_.y += y;
+  covariance_[kX][kX] += variance;
+  covariance_[kY][kY] += variance;
+}
+
+void PlanarCore::set_pose_covariance(const Eigen::Matrix3d& known) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) covariance_[i][j] = known(static_cast<int>(i), static_cast<int>(j));
+  }
+}
+
+void PlanarCore::begin_block(double rate) noexcept {
+  anchor_ = pose_.yaw;
+  held_[kAnchor] = held_[kYaw];
+  anchor_rate_ = rate;
+  covariance_[kAnchor] = covariance_[kYaw];
+  covariance_[kAnchor][kAnchor] = covariance_[kYaw][kYaw];
+  for (std::size_t k = 0; k < kSize; ++k) covariance_[k][kAnchor] = covariance_[kAnchor][k];
+}
+
+PlanarCore::Innovation PlanarCore::end_block(double left, double right, double rate, double dt) noexcept {
+  const double way = (left + right) / 2;
+  const double later = rate - anchor_rate_;
+  const double angle = turned() - offset_ * later;
+  const double b = params_.wheel_base * (1 + base_);
+  double innovation = right - left + ratio_ * way - b * angle;
+  const double doubt = square(params_.gyro_noise) * dt + covariance_[kBias][kBias] * dt * dt;
+  Row h{};
+  h[kYaw] = b;
+  h[kAnchor] = -b;
+  h[kOffset] = -b * later;
+  if (square(angle) > square(kSignificant) * doubt) h[kBase] = params_.wheel_base * angle;
+  h[kRatio] = -way;
+  Row ph{};
+  double s = 0;
+  for (std::size_t i = 0; i < kSize; ++i) innovation -= h[i] * held_[i];
+  for (std::size_t i = 0; i < kSize; ++i) {
+    for (std::size_t k = 0; k < kSize; ++k) ph[i] += covariance_[i][k] * h[k];
+  }
+  for (std::size_t i = 0; i < kSize; ++i) s += h[i] * ph[i];
+  const double rolled = std::abs(left) + std::abs(right);
+  const double repeated = std::clamp(correlation_ / power_, 0.0, 0.9);
+  const double slips = square(slip_) * rolled;
+  s += 4 * square(params_.encoder) + (square(b * twist_) * std::abs(angle) + slips) * (1 + repeated) / (1 - repeated);
+  const double normalised = innovation / std::sqrt(s);
+  const bool used = std::abs(normalised) <= kGate;
+  if (used) {
+    Row gain{};
+    for (std::size_t i = 0; i < kSize; ++i) gain[i] = ph[i] / s;
+    gain[kScale] = 0;
+    if (params_.ratio_deviation == 0) gain[kRatio] = 0;
+    correct(gain, ph, s, std::clamp(normalised, -kHuber, kHuber) * std::sqrt(s));
+  }
+  learn(normalised, rolled, std::abs(angle));
+  covariance_[kRatio][kRatio] += params_.ratio_deviation == 0 ? 0 : square(kRatioWalk * slip_) * std::abs(way);
+  covariance_[kBase][kBase] += params_.wheel_base_deviation == 0 ? 0 : square(kBaseWalk * slip_) * rolled / 2;
+  return {square(normalised), used};
+}
+
+void PlanarCore::correct(const Row& gain, const Row& ph, double s, double innovation) noexcept {
+  for (std::size_t i = 0; i < kSize; ++i) held_[i] += gain[i] * innovation;
+  if (!holds_ || square(held_[kBias]) > square(kProvenBias) * covariance_[kBias][kBias]) release();
+  for (std::size_t i = 0; i < kSize; ++i) {
+    for (std::size_t k = 0; k < kSize; ++k) {
+      covariance_[i][k] += gain[i] * gain[k] * s - gain[i] * ph[k] - ph[i] * gain[k];
+    }
+  }
+}
+
+void PlanarCore::release() noexcept {
+  pose_.x += held_[kX];
+  pose_.y += held_[kY];
+  pose_.yaw += held_[kYaw];
+  anchor_ += held_[kAnchor];
+  bias_ += held_[kBias];
+  ratio_ += held_[kRatio];
+  base_ += held_[kBase];
+  offset_ = std::clamp(offset_ + held_[kOffset], -kLargestOffset, kLargestOffset);
+  held_ = {};
+}
+
+void PlanarCore::learn(double normalised, double rolled, double angle) noexcept {
+  constexpr double kMoved = 0.02;  // m
+  constexpr double kTurns = 0.1;   // of the way
+  if (rolled < kMoved) return;
+  const double bounded = std::clamp(normalised, -3.0, 3.0);
+  correlation_ += 0.05 * (bounded * last_ - correlation_);
+  power_ = std::max(0.1, power_ + 0.05 * (bounded * bounded - power_));
+  last_ = bounded;
+  const double step = std::exp(std::abs(normalised) > kMedian ? kSlipStep : -kSlipStep);
+  if (params_.wheel_base * angle > kTurns * rolled) {
+    twist_ = std::clamp(twist_ * step, kTurnSlip, 1.0);
+  }
+  slip_ = std::clamp(slip_ * step, params_.slip_least, kLargestSlip);
+}
+
+void PlanarCore::rest(double mean, double variance, bool holds) noexcept {
+  const double s = covariance_[kBias][kBias] + variance;
+  Row ph{};
+  Row gain{};
+  for (std::size_t i = 0; i < kSize; ++i) {
+    ph[i] = covariance_[i][kBias];
+    gain[i] = ph[i] / s;
+  }
+  gain[kScale] = 0;
+  if (holds) gain[kX] = gain[kY] = gain[kYaw] = gain[kAnchor] = 0;
+  correct(gain, ph, s, mean - bias_ - held_[kBias]);
+}
+
+}  // namespace robot_control

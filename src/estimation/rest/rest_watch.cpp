@@ -1,0 +1,65 @@
+#include "estimation/rest/rest_watch.h"
+
+#include <cmath>
+#include <utility>
+
+namespace robot_control {
+
+void RestWatch::begin() noexcept {
+  time_ = left_ = right_ = 0;
+  gyro_.reset();
+  force_.reset();
+}
+
+void RestWatch::reset() noexcept {
+  begin();
+  pending_ = done_ = {};
+  steady_time_ = 0;
+  reopened_ = false;
+}
+
+RestWindow RestWatch::step(const Sample& sample, const Vector3& bias, const Vector3& deviation) noexcept {
+  reopened_ = false;
+  left_ += sample.left;
+  right_ += sample.right;
+  if (std::abs(left_) > params_.tolerance || std::abs(right_) > params_.tolerance) {
+    begin();
+    pending_ = {};
+    steady_time_ = 0;
+    return RestWindow::kBroken;
+  }
+  time_ += sample.dt;
+  if (sample.gyro != nullptr) gyro_.add(*sample.gyro, sample.dt);
+  if (sample.accelerometer != nullptr) force_.add(*sample.accelerometer, sample.dt);
+  return time_ < params_.window * (1 - 1e-9) ? RestWindow::kOpen : close(bias, deviation);
+}
+
+RestWindow RestWatch::close(const Vector3& bias, const Vector3& deviation) noexcept {
+  Window now{.time = time_, .gyro = {}, .force = {}};
+  if (force_.over(time_)) now.force = force_.mean();
+  RestWindow verdict = RestWindow::kQuiet;
+  if (gyro_.over(time_)) {
+    Vector3 mean = gyro_.mean();
+    mean[2] -= (right_ - left_) * params_.turn_per_metre / time_;
+    bool same = true;
+    bool goes_on = steady_time_ > 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      same = same && std::abs(mean[i] - bias[i]) <= params_.steady + 3 * deviation[i];
+      goes_on = goes_on && std::abs(mean[i] - steady_gyro_[i]) <= params_.steady;
+    }
+    if (!goes_on) {
+      steady_time_ = 0;
+      steady_gyro_ = mean;
+    }
+    steady_time_ += time_;
+    reopened_ = !same && steady_time_ >= kReopened;
+    if (!same && !reopened_) verdict = RestWindow::kTurned;
+    if (same) steady_time_ = 0;
+    now.gyro = mean;
+  }
+  done_ = std::exchange(pending_, now);
+  begin();
+  return verdict;
+}
+
+}  // namespace robot_control

@@ -1,0 +1,106 @@
+#pragma once
+/// Which way is up, in base axes, and the accelerometer's bias along and across: gravity's direction turned by the
+/// gyro, and corrected by what the accelerometer says at rest, and beyond the wheels' acceleration.
+///
+///   u̇ = −ω × u        accelerometer/g = u + β at rest        u: unit vector; β: bias/g, along and across
+///
+/// Error state: u_x, u_y, β_x, β_y. One rest shows their sums alone; rests in two headings tell them apart, because
+/// gravity turns against the robot and the bias does not. How the tilt changed from one rest to the next, the gyro
+/// says; where it is in doubt, that the floor is plane: the tilt of the last rest, turned by the wheels, known to
+/// kFloor. Where the rest contradicts that, too, by more than kDoubts deviations, the tilt is open again: what failed
+/// on the way turns the tilt, it does not change the bias.
+///
+/// The gyro is in doubt when it turns the robot over faster than kTipping by kDoubtful in all, or repeats one sample
+/// for kStuck: a robot on its wheels does neither.
+///
+/// Bounded: the robot stands on its wheels. The gyro's x and y count after a first rest only, when their bias is known:
+/// a broken axis reads −31 °/s at rest.
+
+#include <array>
+#include <cstddef>
+
+#include "robot/gravity.h"
+#include "signals/geometry.h"
+
+namespace robot_control {
+
+struct TiltParams {
+  double accelerometer = 1.716e-3;  ///< m/s²/√Hz
+  double bias = 0.2;                ///< m/s², standard deviation at switch-on
+  double bias_walk = 6.5e-5;        ///< m/s²/√s
+};
+
+class Tilt {
+ public:
+  static constexpr double kSteepest = 0.6;      ///< sine of the tilt: 37°, where rubber on dry ground begins to slide
+  static constexpr double kInitial = 0.1;       ///< rad, standard deviation at switch-on
+  static constexpr double kAtRest = 0.03;       ///< m/s², what a body that rocks and a motor's hum leave in a mean
+  static constexpr double kWalk = 2e-3;         ///< rad/√s: rough ground, and 0.02 m/s² that change within a second
+  static constexpr double kUnknownWalk = 0.02;  ///< rad/√s, while the gyro's x and y do not count
+  static constexpr double kFloor = 0.01;        ///< rad, between two places: twice what DIN 18202 grants a finished one
+  static constexpr double kDoubts = 3;          ///< deviations
+  static constexpr double kTipping = 0.5;       ///< rad/s
+  static constexpr double kDoubtful = 0.005;    ///< rad
+  static constexpr double kStuck = 0.1;         ///< s
+  static constexpr double kTime = 3.0;          ///< s, in which the accelerometer's slow errors while driving change
+
+  explicit Tilt(const TiltParams& params = {}) noexcept;
+
+  /// rad/s, bias removed. `known`: x and y count.
+  void turn(const Vector3& rate, double dt, bool known) noexcept;
+  /// By the wheels, rad.
+  void roll(double turn) noexcept { rolled_ += turn; }
+
+  /// By how much gravity seems to be too small, m/s², along and across, over the last `dt`; deviation m/s².
+  void pull(double along, double across, double dt, double deviation) noexcept;
+
+  /// The robot rests: `force` m/s² is its accelerometer's mean over `dt`.
+  void rest(const Vector3& force, double dt) noexcept;
+
+  /// Of an earlier process: `up` base axes, `bias` m/s² along and across.
+  void set(const Vector3& up, const std::array<double, 2>& bias) noexcept;
+
+  const Vector3& up() const noexcept { return now_.up; }
+  double roll() const noexcept;                                                            ///< rad
+  double pitch() const noexcept;                                                           ///< rad
+  double bias(std::size_t axis) const noexcept { return kGravity * now_.bias[axis]; }      ///< m/s², along and across
+  double vertical_bias() const noexcept { return vertical_; }                              ///< m/s², along u
+  double covariance(std::size_t i, std::size_t k) const noexcept { return now_.p[i][k]; }  ///< of u_x, u_y
+  /// (m/s²)², of gravity and bias together.
+  double acceleration_variance(std::size_t axis) const noexcept { return kGravity * kGravity * now_.variance(axis); }
+  /// m/s²: `force` without gravity and bias, along and across.
+  std::array<double, 2> acceleration(const Vector3& force) const noexcept {
+    return {force[0] - kGravity * (now_.up[0] + now_.bias[0]), force[1] - kGravity * (now_.up[1] + now_.bias[1])};
+  }
+
+ private:
+  using Plane = std::array<double, 2>;  ///< along and across
+  struct Belief {
+    Vector3 up{0, 0, 1};
+    Plane bias{};                              ///< β
+    std::array<std::array<double, 4>, 4> p{};  ///< covariance of u_x, u_y, β_x, β_y
+
+    void turn(double angle) noexcept;  ///< of the robot, about the vertical: of the covariance alone
+    double off(const Plane& sum, std::size_t axis) const noexcept { return sum[axis] - up[axis] - bias[axis]; }
+    double variance(std::size_t axis) const noexcept;  ///< of u + β
+    bool contradicts(const Plane& sum, double variance) const noexcept;
+    void update(const Plane& sum, double variance) noexcept;
+    void bound() noexcept;
+  };
+
+  void age() noexcept;
+  Belief on_the_floor() const noexcept;
+
+  TiltParams params_;
+  Belief now_;
+  double vertical_ = 0;
+  Belief rested_;                              ///< at the end of the last rest
+  bool known_ = false;                         ///< there was one
+  double rolled_ = 0;                          ///< rad, since then
+  double doubt_ = 0;                           ///< rad, likewise
+  double stuck_ = 0;                           ///< s
+  Vector3 last_{};                             ///< rad/s
+  double turned_ = 0, walked_ = 0, time_ = 0;  ///< rad, rad², s: since the covariance aged
+};
+
+}  // namespace robot_control

@@ -1,0 +1,26 @@
+#pragma once
+/// What StateFrame::residual_level means for the detection of slip, in words.
+///
+/// Within 0.2 s, by an IMU such as the BMI088, wheels that spin by less than 0.025 m/s times the level prove nothing
+/// (estimation/slip/slip_statistic.h): from kSlowDetection on 0.08 m/s, from kNoDetection on 1 m/s.
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace robot_control {
+
+inline constexpr double kSlowDetection = 3;
+inline constexpr double kNoDetection = 40;
+
+/// "on", "slow: residuals 12 × the sensors' noise", "off: …", or that nothing was compared yet.
+inline std::string slip_detection(double residual_level) {
+  if (residual_level == 0) return "unknown: nothing was compared yet";
+  if (residual_level < kSlowDetection) return "on";
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "%s: residuals %.0f × the sensors' noise",
+                residual_level < kNoDetection ? "slow" : "off", residual_level);
+  return text.data();
+}
+
+}  // namespace robot_control

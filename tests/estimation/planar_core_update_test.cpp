@@ -1,0 +1,182 @@
+// The planar core's update against that of the textbook: a Kalman filter with a considered state (S. F. Schmidt, 1966).
+
+#include "estimation/planar_core_fixture.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kRounding = 1e-12;  // relative
+constexpr double kBase = PlanarCoreParams{}.wheel_base;
+
+/// A block of 0.4 m and 0.3 rad that is about to end. The calibration is held, so that it does not walk.
+class CoreUpdateTest : public testing::Test {
+ protected:
+  CoreUpdateTest() {
+    practise(core_, 3);
+    core_.begin_block(0.1);
+    core_.turn_by_gyro(0.3, 1.0);
+    core_.roll(0.4 * std::cos(core_.pose().yaw), 0.4 * std::sin(core_.pose().yaw), 0.3);
+  }
+  /// m: of the right side beyond what the gyro turned.
+  PlanarCore::Innovation end_block(double innovation) {
+    const double turn = kBase * (1 + core_.base()) * (core_.turned() - core_.offset() * kLater);
+    const double difference = turn + innovation - core_.ratio() * kWay;
+    left_ = kWay - difference / 2;
+    right_ = kWay + difference / 2;
+    return core_.end_block(left_, right_, 0.1 + kLater, 1.0);
+  }
+  /// d innovation / d state.
+  CoreVector measurement() const {
+    CoreVector h = CoreVector::Zero();
+    h[PlanarCore::kYaw] = kBase * (1 + core_.base());
+    h[PlanarCore::kAnchor] = -h[PlanarCore::kYaw];
+    h[PlanarCore::kBase] = kBase * (core_.turned() - core_.offset() * kLater);
+    h[PlanarCore::kOffset] = -kBase * (1 + core_.base()) * kLater;
+    h[PlanarCore::kRatio] = -kWay;
+    return h;
+  }
+  static constexpr double kWay = 0.4;
+  static constexpr double kLater = 0.4;  // rad/s, by which it turns faster at the end
+  PlanarCore core_{PlanarCoreParams{}};
+  double left_ = 0, right_ = 0;
+};
+
+TEST_F(CoreUpdateTest, ABlockIsAKalmanUpdateThatConsidersTheGyrosScale) {
+  const CoreMatrix before = matrix_of(core_);
+  const CoreVector x = values_of(core_);
+  const CoreVector h = measurement();
+  constexpr double kInnovation = 2e-4;
+  const PlanarCore::Innovation verdict = end_block(kInnovation);
+  ASSERT_TRUE(verdict.used);
+  ASSERT_LT(verdict.nis, 1);
+  const double s = kInnovation * kInnovation / verdict.nis;
+  const double r = s - h.dot(before * h);
+  ASSERT_GT(r, 0) << "slip and encoders";
+  CoreVector gain = before * h / s;
+  gain[PlanarCore::kScale] = 0;
+  const CoreMatrix left = CoreMatrix::Identity() - gain * h.transpose();
+  const CoreMatrix expected = left * before * left.transpose() + r * gain * gain.transpose();  // Joseph's form
+  const CoreVector change = values_of(core_) - x;
+  for (int i = 0; i < change.size(); ++i) {
+    EXPECT_NEAR(change[i], kInnovation * gain[i], kRounding * std::sqrt(before(i, i)) + 1e-15) << i;
+  }
+  const CoreMatrix p = matrix_of(core_);
+  for (int i = 0; i < p.rows(); ++i) {
+    for (int k = 0; k < p.cols(); ++k) {
+      if (i == k && (i == PlanarCore::kRatio || i == PlanarCore::kBase)) {
+        EXPECT_GT(p(i, i), expected(i, i)) << "it walks";
+      } else {
+        EXPECT_NEAR(p(i, k), expected(i, k), 1e-9 * std::sqrt(before(i, i) * before(k, k))) << i << ", " << k;
+      }
+    }
+  }
+}
+
+TEST_F(CoreUpdateTest, TheGyrosScaleIsNeverBetterKnown) {
+  const double before = core_.covariance(PlanarCore::kScale, PlanarCore::kScale);
+  practise(core_, 100);
+  EXPECT_EQ(core_.covariance(PlanarCore::kScale, PlanarCore::kScale), before);
+}
+
+// Of an innovation of n deviations, Huber's bound lets 2 pull.
+TEST_F(CoreUpdateTest, AnInnovationPullsNoHarderThanHubersBound) {
+  PlanarCore other = core_;
+  const double deviation = 1e-4 / std::sqrt(end_block(1e-4).nis);
+  core_ = other;
+  const CoreVector x = values_of(core_);
+  const CoreVector ph = matrix_of(core_) * measurement();
+  const PlanarCore::Innovation verdict = end_block(5 * deviation);
+  EXPECT_TRUE(verdict.used);
+  EXPECT_NEAR(verdict.nis, 25, 1e-6);
+  EXPECT_NEAR(values_of(core_)[PlanarCore::kBias] - x[PlanarCore::kBias], ph[PlanarCore::kBias] * 2 / deviation,
+              1e-9 * std::abs(ph[PlanarCore::kBias] / deviation));
+}
+
+TEST_F(CoreUpdateTest, AnInnovationBeyondSixDeviationsIsNotUsed) {
+  PlanarCore other = core_;
+  const double deviation = 1e-4 / std::sqrt(end_block(1e-4).nis);
+  core_ = other;
+  const CoreVector x = values_of(core_);
+  EXPECT_FALSE(end_block(6.5 * deviation).used);
+  EXPECT_EQ((values_of(core_) - x).norm(), 0);
+}
+
+TEST_F(CoreUpdateTest, WhatIsHeldIsNotLearned) {
+  PlanarCoreParams params;
+  params.ratio_deviation = params.wheel_base_deviation = 0;
+  core_ = PlanarCore(params);
+  core_.set_calibration(0.01, 0, 0.02, 0);
+  practise(core_, 20);
+  EXPECT_EQ(core_.ratio(), 0.01);
+  EXPECT_EQ(core_.base(), 0.02);
+}
+
+// Gyro's mean at rest, of variance r: a Kalman update of the bias, and through it of the heading.
+TEST_F(CoreUpdateTest, ARestIsAKalmanUpdateOfTheBias) {
+  const CoreMatrix before = matrix_of(core_);
+  const CoreVector x = values_of(core_);
+  constexpr double kVariance = 1e-6;
+  core_.rest(0.003, kVariance, false);
+  CoreVector gain = before.col(PlanarCore::kBias) / (before(PlanarCore::kBias, PlanarCore::kBias) + kVariance);
+  gain[PlanarCore::kScale] = 0;
+  const double innovation = 0.003 - x[PlanarCore::kBias];
+  const CoreVector change = values_of(core_) - x;
+  for (int i = 0; i < change.size(); ++i) EXPECT_NEAR(change[i], innovation * gain[i], 1e-12) << i;
+  CoreVector h = CoreVector::Zero();
+  h[PlanarCore::kBias] = 1;
+  const CoreMatrix left = CoreMatrix::Identity() - gain * h.transpose();
+  const CoreMatrix expected = left * before * left.transpose() + kVariance * gain * gain.transpose();
+  const CoreMatrix p = matrix_of(core_);
+  for (int i = 0; i < p.rows(); ++i) {
+    for (int k = 0; k < p.cols(); ++k) {
+      EXPECT_NEAR(p(i, k), expected(i, k), 1e-9 * std::sqrt(before(i, i) * before(k, k))) << i << ", " << k;
+    }
+  }
+}
+
+TEST_F(CoreUpdateTest, ASettledRestLeavesThePose) {
+  const PlanarPose before = core_.pose();
+  core_.rest(0.003, 1e-6, true);
+  EXPECT_EQ(core_.pose().x, before.x);
+  EXPECT_EQ(core_.pose().y, before.y);
+  EXPECT_EQ(core_.pose().yaw, before.yaw);
+  EXPECT_NEAR(core_.bias(), 0.003, 1e-3);
+}
+
+// Before the first rest a bias and wheels of two sizes look the same: the plain odometry goes on, and its covariance
+// has the correction that was held back.
+TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
+  PlanarCore free = core_;
+  core_.hold_corrections(true);
+  const CoreVector x = values_of(core_);
+  for (PlanarCore* core : {&free, &core_}) core->end_block(kWay - 0.07, kWay + 0.07, 0.1, 1.0);
+  EXPECT_EQ((values_of(core_) - x).norm(), 0);
+  const CoreVector held = values_of(free) - x;
+  ASSERT_GT(std::abs(held[PlanarCore::kBias]), 0);
+  const CoreMatrix expected = matrix_of(free) + held * held.transpose();
+  EXPECT_LT((matrix_of(core_) - expected).cwiseAbs().maxCoeff(), kRounding * expected.cwiseAbs().maxCoeff());
+  core_.hold_corrections(false);
+  EXPECT_LT((values_of(core_) - values_of(free)).norm(), 1e-15);
+}
+
+TEST_F(CoreUpdateTest, PlacingForgetsWhatThePoseWasCorrelatedWith) {
+  core_.place({1, 2, 3});
+  const CoreMatrix p = matrix_of(core_);
+  for (const int i : {PlanarCore::kX, PlanarCore::kY, PlanarCore::kYaw, PlanarCore::kAnchor}) {
+    EXPECT_EQ(p.row(i).norm(), 0) << i;
+    EXPECT_EQ(p.col(i).norm(), 0) << i;
+  }
+  EXPECT_GT(p(PlanarCore::kBias, PlanarCore::kBias), 0);
+  EXPECT_EQ(core_.turned(), 0);
+}
+
+TEST_F(CoreUpdateTest, ABiasThatIsSetIsCorrelatedWithNothing) {
+  core_.set_bias(0.02, 0.003);
+  const CoreMatrix p = matrix_of(core_);
+  EXPECT_EQ(core_.bias(), 0.02);
+  EXPECT_NEAR(p(PlanarCore::kBias, PlanarCore::kBias), 9e-6, 1e-18);
+  EXPECT_NEAR(p.row(PlanarCore::kBias).norm(), 9e-6, 1e-18);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,197 @@
+// The correction of the way while wheels slip, as the estimator applies it: explicit, bounded, and it ends.
+
+#include "estimation/slip_fixture.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+namespace {
+
+class SlipCorrectionTest : public SlipFixture {
+ protected:
+  SlipCorrectionTest() { learn(); }
+
+  SlipCorrection::Known known() const {
+    return {.white = body_.statistic.white(),
+            .slow = body_.statistic.slow(1e-6),
+            .along = body_.statistic.slope_deviation(SlipStatistic::kAlong),
+            .turn = body_.statistic.slope_deviation(SlipStatistic::kTurn),
+            .speed = body_.wheel_speed(),
+            .calm = calm_};
+  }
+  void add(const SlipCorrection::Step& step) {
+    corrected_.x += step.x;
+    corrected_.y += step.y;
+    variance_ += step.variance;
+    largest_ = std::max(largest_, std::hypot(step.x, step.y));
+  }
+  /// s until the slide ends, or `seconds`.
+  double go(double seconds, double ahead = 0, double across = 0, double turning = 0) {
+    for (double t = 0; t < seconds - SlidingBody::kStep / 2; t += SlidingBody::kStep) {
+      const bool point = body_.step(ahead, across, turning);
+      if (slide_.active()) {
+        add(slide_.step(body_.statistic, known()));
+        if (!slide_.active()) return t;
+      } else if (point) {
+        judge(false);
+        double span = 0;
+        for (const auto channel : {SlipStatistic::kAlong, SlipStatistic::kAcross, SlipStatistic::kTurn}) {
+          span = std::max(span, body_.statistic.span(channel));
+        }
+        if (span > 0) add(slide_.begin(body_.statistic, span, known()));
+      }
+    }
+    return seconds;
+  }
+  /// Both treads are `faster` than the ground until a slide has begun.
+  void spin(double faster) {
+    body_.left = body_.right = faster;
+    for (int i = 0; i < 100 && !slide_.active(); ++i) go(SlidingBody::kStep);
+    ASSERT_TRUE(slide_.active());
+  }
+  /// m, of the way by wheels and correction.
+  double error() const {
+    return std::hypot(body_.wheels().x + corrected_.x - body_.x, body_.wheels().y + corrected_.y - body_.y);
+  }
+  double wheels_error() const { return std::hypot(body_.wheels().x - body_.x, body_.wheels().y - body_.y); }
+
+  SlipCorrection slide_;
+  bool calm_ = true;
+  Planar corrected_;
+  double variance_ = 0;  ///< m²
+  double largest_ = 0;   ///< m, of one step
+};
+
+TEST_F(SlipCorrectionTest, TakesASpinOffTheWay) {
+  spin(0.5);
+  go(1.0);
+  EXPECT_GT(wheels_error(), 0.4);
+  EXPECT_LT(error(), wheels_error() / 20);
+  EXPECT_LT(error(), 3 * std::sqrt(variance_) + 0.005);
+  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipSpinning);
+  EXPECT_NEAR(slide_.excess(), 0.5, 0.03);
+}
+
+TEST_F(SlipCorrectionTest, AddsTheWayOfASkid) {
+  spin(-0.4);
+  go(1.0);
+  EXPECT_GT(wheels_error(), 0.3);
+  EXPECT_LT(error(), wheels_error() / 20);
+  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipStalled);
+}
+
+// Wheels that stand while the body slides on do not spin.
+TEST_F(SlipCorrectionTest, LockedWheelsAreStalled) {
+  spin(-body_.speed);
+  for (int i = 0; i < 40; ++i) {
+    go(SlidingBody::kStep, -1);
+    body_.left = body_.right = -body_.speed - 1e-9;
+  }
+  ASSERT_TRUE(slide_.active());
+  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipStalled);
+}
+
+TEST_F(SlipCorrectionTest, TheOtherSideGivesTheWayOfASpinOfOne) {
+  body_.left = 0.5;
+  for (int i = 0; i < 100 && !slide_.active(); ++i) go(SlidingBody::kStep);
+  go(10.0);
+  EXPECT_TRUE(slide_.active()) << "a side that rolls carries it on as long as it takes";
+  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipTurn | kSlipSpinning);
+  EXPECT_GT(wheels_error(), 2);
+  EXPECT_LT(error(), wheels_error() / 50);
+}
+
+class SlipBounds : public SlipCorrectionTest, public testing::WithParamInterface<double> {
+ protected:
+  static constexpr double kSlack = 0.021;  // m/s, of the bounds, and rounding
+};
+
+// Whatever the accelerometer reads in a slide: the way is that of a speed between zero, that of before, and the
+// wheels'. A renewed line moves it at once, within the same bounds.
+TEST_P(SlipBounds, TheWayStaysBetweenRestAndTheWheels) {
+  spin(0.7);
+  body_.error = GetParam();
+  const double began = body_.wheels().x + corrected_.x;
+  for (int i = 1; i < 2000 && slide_.active(); ++i) {
+    go(SlidingBody::kStep);
+    const double time = i * SlidingBody::kStep;
+    const double way = body_.wheels().x + corrected_.x - began;
+    ASSERT_GT(way, -kSlack * time - 1e-3) << i;
+    ASSERT_LT(way, (body_.wheel_speed() + kSlack) * time + 1e-3) << i;
+  }
+}
+
+// What is published as the speed is bounded likewise.
+TEST_P(SlipBounds, TheSpeedStaysBetweenRestAndTheWheels) {
+  spin(0.7);
+  body_.error = GetParam();
+  for (int i = 0; i < 600 && slide_.active(); ++i) {
+    go(SlidingBody::kStep);
+    const double speed = body_.wheel_speed() - slide_.excess();
+    ASSERT_GT(speed, -kSlack) << i;
+    ASSERT_LT(speed, body_.wheel_speed() + kSlack) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, SlipBounds, testing::Values(-30.0, -3.0, -0.3, 0.3, 3.0, 30.0));
+
+// Two decisions of 0.1 s, and 0.15 s of agreement.
+TEST_F(SlipCorrectionTest, EndsWhenTheWheelsAgreeWithTheBody) {
+  spin(0.5);
+  go(1.0);
+  body_.left = body_.right = 0;
+  EXPECT_LT(go(2), 0.5);
+  EXPECT_FALSE(slide_.active());
+  EXPECT_FALSE(slide_.gave_up());
+  EXPECT_EQ(slide_.reasons(), 0u);
+}
+
+// The body has stopped within the slide; then its line is as wrong as the accelerometer made it.
+TEST_F(SlipCorrectionTest, EndsWhenTheRobotStands) {
+  spin(-body_.speed);
+  body_.error = 0.05;
+  while (body_.speed > 0) {
+    go(SlidingBody::kStep, -1);
+    body_.left = body_.right = -body_.speed;
+  }
+  body_.speed = body_.left = body_.right = 0;
+  EXPECT_LT(go(2), 0.6);
+  EXPECT_FALSE(slide_.active());
+}
+
+TEST_F(SlipCorrectionTest, EndsAfterTheLongestTime) {
+  spin(0.5);
+  EXPECT_NEAR(go(20), SlipCorrection::kLongest, 0.3);
+  EXPECT_FALSE(slide_.active());
+  EXPECT_TRUE(slide_.gave_up());
+  EXPECT_GT(std::hypot(corrected_.x, corrected_.y), 1);
+}
+
+// Where the accelerometer shakes, a slide of that length is none: the way is that of the wheels again.
+TEST_F(SlipCorrectionTest, OnAShakenRobotItTakesBackWhatItCorrected) {
+  calm_ = false;
+  spin(0.5);
+  EXPECT_NEAR(go(20), SlipCorrection::kLongestShaken, 0.3);
+  EXPECT_TRUE(slide_.gave_up());
+  EXPECT_NEAR(corrected_.x, 0, 1e-12);
+  EXPECT_NEAR(corrected_.y, 0, 1e-12);
+  EXPECT_GT(std::sqrt(variance_), 0.5) << "it may have been one";
+}
+
+TEST_F(SlipCorrectionTest, ResetEndsIt) {
+  spin(0.5);
+  slide_.reset();
+  EXPECT_FALSE(slide_.active());
+  EXPECT_EQ(slide_.excess(), 0);
+}
+
+TEST_F(SlipCorrectionTest, SlidingSidewaysIsCorrectedAcross) {
+  go(0.5, 0, 1.0);
+  go(0.5);
+  ASSERT_TRUE(slide_.active());
+  EXPECT_NE(slide_.reasons() & kSlipSideways, 0u);
+  EXPECT_NEAR(slide_.aside(), 0.5, 0.05);
+  EXPECT_LT(error(), wheels_error() / 5);
+}
+
+}  // namespace
+}  // namespace robot_control

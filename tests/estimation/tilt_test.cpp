@@ -1,0 +1,213 @@
+// Tilt of the body and bias of the accelerometer, from rests, the gyro between them, and the wheels' acceleration.
+
+#include "estimation/tilt/tilt.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace robot_control {
+namespace {
+
+constexpr double kTiltStep = 0.01;                             // s
+constexpr double kAllowedTilt = 0.5 * std::numbers::pi / 180;  // rad: what a failed sensor may leave behind a rest
+
+/// Of a robot that stands, its nose down by `pitch`.
+Vector3 gravity(double pitch) {
+  return {-kGravity * std::sin(pitch), 0, kGravity * std::cos(pitch)};
+}
+
+/// On level ground with an accelerometer of 0.3 m/s² of bias.
+constexpr double kForceBias = 0.3;
+constexpr Vector3 kBiased{kForceBias, 0, kGravity};
+
+/// Two seconds; `force` m/s²: what the accelerometer reads.
+void stand(Tilt& tilt, const Vector3& force) {
+  for (int i = 0; i < 4; ++i) tilt.rest(force, 0.5);
+}
+
+/// Half a turn, while the gyro reads `tipping` rad/s about y for the first tenth of a second.
+void turn_back(Tilt& tilt, double tipping = 0) {
+  constexpr int kTurn = 628;
+  for (int i = 0; i < kTurn; ++i) {
+    tilt.turn({0, i * kTiltStep < 0.1 ? tipping : 1e-3 * (i % 2), std::numbers::pi / kTurn / kTiltStep}, kTiltStep,
+              true);
+    tilt.roll(std::numbers::pi / kTurn);
+  }
+}
+
+TEST(TiltTest, IsBoundedHoweverTheGyroTurns) {
+  Tilt tilt;
+  for (int i = 0; i < 10000; ++i) {
+    tilt.turn({3.0, -2.0, 1.0}, kTiltStep, true);
+    ASSERT_LE(std::hypot(tilt.up()[0], tilt.up()[1]), Tilt::kSteepest + 1e-9);
+    ASSERT_GT(tilt.up()[2], 0);
+  }
+}
+
+TEST(TiltTest, IsBoundedHoweverTheAccelerometerPulls) {
+  Tilt tilt;
+  for (int i = 0; i < 1000; ++i) {
+    tilt.turn({}, kTiltStep, true);
+    tilt.pull(8.0, -9.0, 1.0, 1e-3);
+    ASSERT_LE(std::hypot(tilt.up()[0], tilt.up()[1]), Tilt::kSteepest + 1e-9);
+    ASSERT_GT(tilt.up()[2], 0);
+  }
+}
+
+TEST(TiltTest, ItsVarianceIsBoundedHoweverLongNothingCorrectsIt) {
+  Tilt tilt;
+  for (int i = 0; i < 100000; ++i) {
+    tilt.turn({}, 1.0, false);
+    if (i % 100 == 0) tilt.pull(0, 0, 1.0, 1e6);
+  }
+  for (const std::size_t axis : {0U, 1U}) EXPECT_LE(tilt.covariance(axis, axis), Tilt::kSteepest * Tilt::kSteepest);
+}
+
+// Of what a first rest shows, the bias has the share of its own variance: 0.0004 of 0.0104.
+TEST(TiltTest, IsThatOfGravityButForTheShareThatTheBiasMayHave) {
+  Tilt tilt;
+  tilt.rest(gravity(0.05), 0.5);
+  EXPECT_NEAR(tilt.pitch(), 0.05, 0.05 * 0.05);
+  EXPECT_NEAR(tilt.roll(), 0, 1e-12);
+}
+
+TEST(TiltTest, AForceThatIsNotGravityIsNoRest) {
+  Tilt tilt;
+  for (const double force : {0.0, 0.4 * kGravity, 2.1 * kGravity}) tilt.rest({force, 0, 0}, 0.5);
+  EXPECT_EQ(tilt.up(), (Vector3{0, 0, 1}));
+}
+
+TEST(TiltTest, RestsInTwoHeadingsSeparateBiasFromTilt) {
+  Tilt tilt;
+  stand(tilt, kBiased);
+  EXPECT_NEAR(tilt.up()[0], kForceBias / kGravity, 0.1 * kForceBias / kGravity) << "taken for a slope";
+  turn_back(tilt);
+  stand(tilt, kBiased);
+  EXPECT_NEAR(tilt.up()[0], 0, kAllowedTilt);
+  EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
+}
+
+// On a slope of 0.1 rad that the robot leaves and comes back to turned by 180°: gravity turns, the bias does not.
+TEST(TiltTest, OnASlopeTooTheTwoAreSeparated) {
+  Tilt tilt;
+  Vector3 uphill = gravity(-0.1);
+  Vector3 downhill = gravity(0.1);
+  uphill[0] += kForceBias;
+  downhill[0] += kForceBias;
+  stand(tilt, uphill);
+  for (int i = 0; i < 628; ++i) {  // about the slope's normal
+    tilt.turn({0, 1e-4 * (i % 2), std::numbers::pi / 6.28}, kTiltStep, true);
+    tilt.roll(std::numbers::pi / 628);
+  }
+  stand(tilt, downhill);
+  EXPECT_NEAR(tilt.pitch(), 0.1, kAllowedTilt);
+  EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
+}
+
+// The gyro reads that the robot was tipped over by 5° within a tenth of a second.
+TEST(TiltTest, WhereTheGyroIsInDoubtTheFloorIsTakenForPlane) {
+  Tilt tilt;
+  stand(tilt, kBiased);
+  turn_back(tilt, 0.9);
+  stand(tilt, kBiased);
+  EXPECT_NEAR(tilt.up()[0], 0, kAllowedTilt);
+  EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
+}
+
+TEST(TiltTest, AGyroThatRepeatsOneSampleIsInDoubt) {
+  Tilt tilt;
+  stand(tilt, kBiased);
+  for (int i = 0; i < 300; ++i) {  // 2 rad by its last sample, half a turn by the wheels
+    tilt.turn({0.01, 0.02, 0.67}, kTiltStep, true);
+    tilt.roll(std::numbers::pi / 300);
+  }
+  stand(tilt, kBiased);
+  EXPECT_NEAR(tilt.up()[0], 0, kAllowedTilt);
+}
+
+/// s, rad/s: for so long the gyro reads that about y.
+struct GyroFault {
+  double time, rate;
+};
+
+class TiltBehindAFault : public testing::TestWithParam<GyroFault> {};
+
+// The bias is known by rests in two headings; a fault of the gyro changes it by a tenth at most, whatever its size.
+TEST_P(TiltBehindAFault, TheBiasStays) {
+  Tilt tilt;
+  stand(tilt, kBiased);
+  turn_back(tilt);
+  stand(tilt, kBiased);
+  const double before = tilt.bias(0);
+  for (double t = 0; t < GetParam().time; t += kTiltStep) tilt.turn({0, GetParam().rate, 0}, kTiltStep, true);
+  stand(tilt, kBiased);
+  EXPECT_NEAR(tilt.bias(0), before, 0.1 * kForceBias);
+  EXPECT_NEAR(tilt.up()[0], 0, kAllowedTilt);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, TiltBehindAFault,
+                         testing::Values(GyroFault{0.02, 30}, GyroFault{0.02, -99}, GyroFault{0.3, 5}, GyroFault{1, -2},
+                                         GyroFault{3, 0.6}, GyroFault{3, 100}),
+                         [](const testing::TestParamInfo<GyroFault>& fault) {
+                           return "Nr" + std::to_string(fault.index);
+                         });
+
+// Down by 0.1 rad where it stands next, which the gyro measured: no plane floor, and no bias either.
+TEST(TiltTest, WhatTheGyroMeasuredIsASlope) {
+  Tilt tilt;
+  stand(tilt, gravity(0));
+  for (int i = 0; i < 100; ++i) tilt.turn({0, 0.1 + 1e-3 * (i % 2), 0}, kTiltStep, true);
+  stand(tilt, gravity(0.1));
+  EXPECT_NEAR(tilt.pitch(), 0.1, kAllowedTilt);
+  EXPECT_NEAR(tilt.bias(0), 0, 0.05);
+}
+
+// A slope of 0.2 rad that a broken gyro did not measure; the bias is known by rests in two headings.
+TEST(TiltTest, ARestThatContradictsGyroAndFloorOpensTheTiltAndLeavesTheBias) {
+  Tilt tilt;
+  stand(tilt, kBiased);
+  turn_back(tilt);
+  stand(tilt, kBiased);
+  const Vector3 slope = gravity(0.2);
+  stand(tilt, {slope[0] + kForceBias, slope[1], slope[2]});
+  EXPECT_NEAR(tilt.pitch(), 0.2, kAllowedTilt);
+  EXPECT_NEAR(tilt.bias(0), kForceBias, 0.1 * kForceBias);
+}
+
+// Onto a slope of 0.05 rad without a gyro that counts: the wheels' acceleration finds it.
+TEST(TiltTest, ThePullOfGravityTurnsIt) {
+  Tilt tilt;
+  stand(tilt, gravity(0));
+  for (int i = 0; i < 30000; ++i) {
+    tilt.turn({}, kTiltStep, false);
+    if (i % 40 != 0) continue;
+    const double along = gravity(0.05)[0] - kGravity * tilt.up()[0] - tilt.bias(0);
+    tilt.pull(along, 0, 0.4, 0.05);
+  }
+  EXPECT_NEAR(tilt.pitch(), 0.05, kAllowedTilt);
+}
+
+TEST(TiltTest, IsSetToThatOfAnEarlierProcess) {
+  Tilt tilt;
+  const double up = std::sqrt(1 - 0.1 * 0.1 - 0.05 * 0.05);
+  tilt.set({0.1, -0.05, up}, {0.2, -0.3});
+  EXPECT_NEAR(tilt.up()[0], 0.1, 1e-12);
+  EXPECT_NEAR(tilt.up()[1], -0.05, 1e-12);
+  EXPECT_NEAR(tilt.bias(0), 0.2, 1e-12);
+  EXPECT_NEAR(tilt.bias(1), -0.3, 1e-12);
+  EXPECT_NEAR(tilt.pitch(), std::asin(-0.1), 1e-12);
+  const auto acceleration = tilt.acceleration({kGravity * 0.1 + 0.2 + 0.5, -kGravity * 0.05 - 0.3 - 0.25, 0});
+  EXPECT_NEAR(acceleration[0], 0.5, 1e-12);
+  EXPECT_NEAR(acceleration[1], -0.25, 1e-12);
+}
+
+TEST(TiltTest, WhatIsSetBeyondTheSteepestIsBounded) {
+  Tilt tilt;
+  tilt.set({0.9, 0, std::sqrt(1 - 0.81)}, {0, 0});
+  EXPECT_NEAR(tilt.up()[0], Tilt::kSteepest, 1e-9);
+}
+
+}  // namespace
+}  // namespace robot_control
