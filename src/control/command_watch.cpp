@@ -22,18 +22,17 @@ std::uint64_t cycles_left(double timeout, std::int64_t age_ns, double period) no
 }
 
 std::uint64_t cycles_of_silence(double timeout, double period) noexcept {
-  constexpr double kWithoutTimeout = 1;  // s
-  return cycles_left(timeout > 0 ? timeout : kWithoutTimeout, 0, period);
+  return cycles_left(silence_needed(timeout), 0, period);
 }
 
 }  // namespace
 
 CommandWatch::CommandWatch(double timeout, double period)
     : timeout_(timeout), period_(period), silence_needed_(cycles_of_silence(timeout, period)) {
-  reset();
+  enter_run();
 }
 
-void CommandWatch::reset(const VelocityCommand& inbox, bool with_zero) noexcept {
+void CommandWatch::enter_run(const VelocityCommand& inbox, bool with_zero) noexcept {
   first_ = last_ = inbox;
   first_cycle_.reset();
   message_cycle_ = 0;
@@ -63,7 +62,7 @@ void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t c
   const bool first = !first_cycle_.has_value();
   if (first) first_cycle_ = message_cycle_ = cycle;
   const bool refused = request.stale != last_.stale || request.crowded != last_.crowded;
-  const bool accepted = request.count != last_.count;
+  const bool accepted = request.count != last_.count && request.contested != kNoMessage;
   if (!refused && !accepted) return;
   message_cycle_ = cycle;
   zero_requested_ = !first && !refused && zero(request.twist) && request.contested == 0 && request.many_senders == 0;

@@ -23,8 +23,8 @@
 ///   zero requested  a zero request was received, and since then nothing else: no motion, no refused message, no
 ///                   contested zero
 ///   silent cycles   k − k_message, k_message the cycle of the last message of any sender, accepted or refused; before
-///                   the first message the cycle of the first step
-///   silence needed  cmd_vel_timeout in cycles; 1 s if that is 0
+///                   the first message the cycle of the first step. kNoMessage is not a message
+///   silence needed  silence_needed (signals/velocity_command.h) in cycles
 
 #include <cstdint>
 #include <optional>
@@ -40,7 +40,7 @@ class CommandWatch {
 
   /// A new run: what the inbox holds now, and everything before, counts as not received. `with_zero`: the run begins
   /// with a zero request, because no older command can be pending (a command script, ClosedLoop).
-  void reset(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
+  void enter_run(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
 
   /// Another timeout, s, from the next step on; it also applies to the command in force.
   void set_timeout(double timeout) noexcept;
@@ -79,7 +79,7 @@ class CommandWatch {
   std::uint64_t reason_ = 0;
   std::uint64_t stale_ = 0;  ///< kReasonStale or 0
   Twist requested_twist_;
-  std::optional<std::uint64_t> first_cycle_;  ///< of the first step since `reset`
+  std::optional<std::uint64_t> first_cycle_;  ///< of the first step since `enter_run`
   std::uint64_t message_cycle_ = 0;
   std::uint64_t silence_needed_ = 0;
   std::uint64_t zero_requests_ = 0;

@@ -4,14 +4,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <utility>
 
-#include "control/kinematics.h"
+#include "control/feed_forward_problems.h"
+#include "control/limits/drive_limits.h"
 #include "control/measured_robot.h"
 #include "control/rehearsal.h"
 #include "control/wheel_loops/feed_forward.h"
+#include "control/wheel_loops/quantisation_ripple.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
 #include "control/wheel_loops/wheel_loop_stability.h"
 
@@ -54,15 +55,27 @@ constexpr double kLeastDampingOff = 0.2;
 /// the encoder's counts, and the loop makes torque of them.
 constexpr double kMostTracking = 0.1;
 
+/// RMS of the torque of a lifted wheel behind an encoder, of the torque limit: what safety_monitor stops in the end.
+constexpr double kMostRipple = 0.3;
+
+/// What derived gains would do nearly as well is not the set's fault.
+constexpr double kNotWorse = 1.2;
+
+/// Of full speed, in which counts are judged.
+constexpr std::array kSpeedParts{1.0, 0.3, 0.1, 0.03};
+
 /// What decides about stability.
 struct Loop {
   WheelLoopGains gains;
-  double bandwidth;  ///< Hz
-  double period;     ///< s
-  Loads loads;       ///< those of the set, then those of the description
+  double bandwidth;     ///< Hz
+  double period;        ///< s
+  double effort_limit;  ///< N·m
+  double speed;         ///< rad/s, the fastest
+  Loads loads;          ///< those of the set, then those of the description
 
   bool operator==(const Loop& other) const noexcept {
-    return gains.kp == other.gains.kp && gains.ki == other.gains.ki && loads == other.loads;
+    return gains.kp == other.gains.kp && gains.ki == other.gains.ki && effort_limit == other.effort_limit &&
+           speed == other.speed && loads == other.loads;
   }
 
   double radius(const Load& of) const { return wheel_loop_spectral_radius(gains, of.load, period, bandwidth); }
@@ -79,6 +92,23 @@ struct Loop {
     const auto found =
         std::ranges::find_if(loads, [&](const Load& load) { return damping(load) < least_damping(derived, load); });
     return found == loads.end() ? nullptr : &*found;
+  }
+
+  /// Of the torque limit, RMS, the most at any of kSpeedParts.
+  double ripple(const Load& of) const {
+    double most = 0;
+    for (const double part : kSpeedParts)
+      most = std::max(most, quantisation_ripple(gains, of.load, bandwidth, effort_limit, part * speed, period));
+    return most / effort_limit;
+  }
+
+  /// The lifted wheel, of the set or of the description, whose torque oscillates; null: none.
+  const Load* oscillating_load(const Loop& derived) const {
+    for (const Load* of : {loads.data(), loads.data() + loads.size() / 2}) {
+      const double part = ripple(*of);
+      if (part > kMostRipple && part > kNotWorse * derived.ripple(*of)) return of;
+    }
+    return nullptr;
   }
 
   /// Null: stable with every load.
@@ -161,6 +191,18 @@ std::string underdamped_message(const Loop& loop, const Loop& derived, const std
   return text.str();
 }
 
+std::string oscillation_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "diff_drive_controller: pid_kp " << loop.gains.kp << ", pid_kd " << loop.gains.kd << ", tracking_bandwidth "
+       << loop.bandwidth << " Hz: behind an encoder of " << kCounts << " counts the torque of joint '" << joint
+       << "' oscillates by " << loop.ripple(load) << " of its limit, RMS, with the wheel " << load.name << " ("
+       << load.load.inertia << " kg·m²" << (described(loop, load) ? " by the description" : "") << "), must be at most "
+       << kMostRipple << ". Lower tracking_bandwidth, derived are " << derived.bandwidth
+       << " Hz, or pid_kp and pid_kd; or leave them out: then they are derived from the robot.";
+  return text.str();
+}
+
 std::string tracking_message(double bandwidth, double most, double period) {
   std::ostringstream text;
   text.precision(3);
@@ -176,75 +218,6 @@ std::string powerless_message(const JointModel& joint, const RobotModel& robot) 
        << " N·m, must be > 0: the wheel could not be driven. Set <limit effort=…> in " << robot.source
        << ", or robot.wheel_effort_limit.";
   return text.str();
-}
-
-/// One value of feed_forward beside what the URDF says of it.
-struct MeasuredValue {
-  const char* key;
-  const char* unit;
-  std::optional<double> given;
-  double described;
-  double most;  ///< times either way
-};
-
-void check_plausible(const MeasuredValue& value, std::vector<std::string>& problems) {
-  if (!value.given || (*value.given <= value.most * value.described && value.described <= value.most * *value.given)) {
-    return;
-  }
-  std::ostringstream text;
-  text.precision(4);
-  text << "diff_drive_controller.feed_forward." << value.key << " = " << *value.given << " " << value.unit << ": "
-       << "the description says " << value.described << " " << value.unit << "; more than " << value.most
-       << " times either way is taken for a typing error. Correct the one or the other.";
-  problems.push_back(text.str());
-}
-
-/// What the joints take at full speed by the set, beside what the motors have and what the description says.
-void check_joint_losses(const DriveControllerParameters& parameters, const RobotModel& robot,
-                        std::vector<std::string>& problems) {
-  constexpr double kPart = 0.25;  // of the effort limit, for bearing and gear: half of a worm gear's at full load
-  constexpr double kTimes = 2;    // of what is described
-  const DriveKinematics kinematics(robot);
-  const double linear = parameters.max_linear_speed;
-  const double angular = parameters.max_angular_speed;
-  const PlanarTwist fastest{linear, angular};
-  const WheelValues speeds = kinematics.joint_speeds(
-      {kinematics.wheel_speed_scale(fastest) * linear, kinematics.wheel_speed_scale(fastest) * angular});
-  double most_damping = std::numeric_limits<double>::infinity();
-  double most_friction = most_damping;
-  for (const WheelModel& wheel : robot.wheels) {
-    const JointModel& joint = robot.joints[wheel.joint];
-    const double speed = std::ranges::max(speeds, {}, [](double value) { return std::abs(value); });
-    most_damping =
-        std::min(most_damping, std::max(kTimes * joint.damping, kPart * joint.effort_limit / std::abs(speed)));
-    most_friction = std::min(most_friction, std::max(kTimes * joint.friction, kPart * joint.effort_limit));
-  }
-  const auto check = [&](const char* key, const char* unit, const std::optional<double>& given, double most,
-                         const char* why) {
-    if (!given || *given <= most) return;
-    std::ostringstream text;
-    text.precision(4);
-    text << "diff_drive_controller.feed_forward." << key << " = " << *given << " " << unit
-         << ": plausible for this robot are 0 … " << most << " " << unit << ", " << why
-         << ", or twice what the description says. Where it really is more, say so in the URDF (<dynamics>).";
-    problems.push_back(text.str());
-  };
-  check("wheel_damping", "N·m·s/rad", parameters.feed_forward.wheel_damping, most_damping,
-        "a quarter of the wheel's torque limit at the fastest wheel speed of these limits");
-  check("wheel_friction", "N·m", parameters.feed_forward.wheel_friction, most_friction,
-        "a quarter of the wheel's torque limit");
-}
-
-/// A payload, a rotor behind a gear: but not a hundred times what is described, which would drive the robot by itself.
-void check_plausible(const DriveControllerParameters& parameters, const RobotModel& robot,
-                     std::vector<std::string>& problems) {
-  const FeedForwardParameters& given = parameters.feed_forward;
-  check_plausible({"mass", "kg", given.mass, robot.mass, 5}, problems);
-  check_plausible({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
-  if (robot.wheels.empty()) return;
-  const double wheel = robot.wheels.front().inertia;
-  check_plausible({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
-  check_joint_losses(parameters, robot, problems);
 }
 
 std::string excess_message(const Excess& excess, const char* robot) {
@@ -263,10 +236,9 @@ std::string excess_message(const Excess& excess, const char* robot) {
 }
 
 /// The set is driven before it drives the robot (rehearsal.h): the robot as described, and as the set has it. What
-/// derived gains would do on it as well is not the set's fault.
+/// derived gains would do as well in that motion is not the set's fault.
 std::string rehearsal_problem(const DriveControllerParameters& parameters, const RobotModel& described,
                               const RobotModel& set, double period) {
-  constexpr double kNotWorse = 1.2;
   DriveControllerParameters derived = parameters;
   derived.pid_kp.reset();
   derived.pid_ki.reset();
@@ -281,12 +253,41 @@ std::string rehearsal_problem(const DriveControllerParameters& parameters, const
   };
   for (const Trial& trial : {Trial{"the robot as its description has it", described, as_described},
                              Trial{"the robot as feed_forward has it", set, derived}}) {
-    const Excess excess = rehearse(parameters, described, trial.plant, period);
-    if (excess.times <= 1) continue;
-    if (excess.times <= kNotWorse * rehearse(trial.reference, described, trial.plant, period).times) continue;
-    return excess_message(excess, trial.name);
+    const std::vector<Excess> excesses = rehearse(parameters, described, trial.plant, period);
+    if (std::ranges::none_of(excesses, [](const Excess& excess) { return excess.times > 1; })) continue;
+    const std::vector<Excess> usual = rehearse(trial.reference, described, trial.plant, period);
+    const Excess* worst = nullptr;
+    for (std::size_t i = 0; i < excesses.size(); ++i) {
+      if (excesses[i].times <= std::max(1.0, kNotWorse * usual[i].times)) continue;
+      if (worst == nullptr || excesses[i].times > worst->times) worst = &excesses[i];
+    }
+    if (worst != nullptr) return excess_message(*worst, trial.name);
   }
   return "";
+}
+
+/// `set` with every acceleration and jerk of `in_force` that is steeper; equal to it where none is.
+DriveControllerParameters with_steeper_ramps(DriveControllerParameters set, const DriveControllerParameters& in_force) {
+  const SpeedLimits wanted = speed_limits(set);
+  const SpeedLimits present = speed_limits(in_force);
+  set.max_linear_acceleration = std::max(wanted.linear.acceleration, present.linear.acceleration);
+  set.max_angular_acceleration = std::max(wanted.angular.acceleration, present.angular.acceleration);
+  set.max_linear_deceleration = std::max(wanted.linear.deceleration, present.linear.deceleration);
+  set.max_angular_deceleration = std::max(wanted.angular.deceleration, present.angular.deceleration);
+  const auto jerk = [](double one, double other) {
+    const double most = std::max(one, other);
+    return std::isinf(most) ? 0 : most;
+  };
+  set.max_linear_jerk = jerk(wanted.linear.jerk, present.linear.jerk);
+  set.max_angular_jerk = jerk(wanted.angular.jerk, present.angular.jerk);
+  return set;
+}
+
+bool steeper(const DriveControllerParameters& one, const DriveControllerParameters& other) {
+  const SpeedLimits a = speed_limits(one);
+  const SpeedLimits b = speed_limits(other);
+  return a.linear.acceleration > b.linear.acceleration || a.angular.acceleration > b.angular.acceleration ||
+         a.linear.deceleration > b.linear.deceleration || a.angular.deceleration > b.angular.deceleration;
 }
 
 /// Nothing but limits is set: the rest is derived from the description.
@@ -296,36 +297,51 @@ bool only_limits(const DriveControllerParameters& parameters) noexcept {
          !given.mass && !given.yaw_inertia && !given.wheel_inertia && !given.wheel_damping && !given.wheel_friction;
 }
 
-}  // namespace
-
-std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
-                                          double period) {
-  const RobotModel robot = measured_robot(described, parameters.feed_forward);
-  std::vector<std::string> problems;
-  check_plausible(parameters, described, problems);
+void check_loops(const DriveControllerParameters& parameters, const RobotModel& described, const RobotModel& set,
+                 double period, std::vector<std::string>& problems) {
   std::vector<Loop> judged;
-  const double bandwidth = tracking_bandwidth(parameters, period);
-  const double most = std::max(kMostTracking / period, tracking_bandwidth({}, period));
-  if (bandwidth > most) problems.push_back(tracking_message(bandwidth, most, period));
-  for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
-    const WheelModel& wheel = robot.wheels[i];
-    const JointModel& joint = robot.joints[wheel.joint];
-    if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, robot));
-    const Loop loop{wheel_loop_gains(parameters, robot, wheel, period), bandwidth, period, loads(robot, described, i)};
-    const Loop derived{wheel_loop_gains({}, described, described.wheels[i], period), tracking_bandwidth({}, period),
-                       period, loop.loads};
+  const bool gains_are_set = !only_limits(parameters);
+  for (std::size_t i = 0; i < set.wheels.size(); ++i) {
+    const WheelModel& wheel = set.wheels[i];
+    const JointModel& joint = set.joints[wheel.joint];
+    if (!(joint.effort_limit > 0)) problems.push_back(powerless_message(joint, set));
+    const Loop loop{wheel_loop_gains(parameters, set, wheel, period),
+                    tracking_bandwidth(parameters, period),
+                    period,
+                    joint.effort_limit,
+                    parameters.max_linear_speed / wheel.radius,
+                    loads(set, described, i)};
+    Loop derived = loop;
+    derived.gains = wheel_loop_gains({}, described, described.wheels[i], period);
+    derived.bandwidth = tracking_bandwidth({}, period);
     if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
     judged.push_back(loop);
     if (const Load* load = loop.unstable_load()) {
       problems.push_back(unstable_message(loop, derived, joint.name, *load));
     } else if (const Load* swinging = loop.underdamped_load(derived)) {
       problems.push_back(underdamped_message(loop, derived, joint.name, *swinging));
+    } else if (const Load* shaken = gains_are_set ? loop.oscillating_load(derived) : nullptr) {
+      problems.push_back(oscillation_message(loop, derived, joint.name, *shaken));
     }
   }
+}
+
+}  // namespace
+
+std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
+                                          double period, const DriveControllerParameters* in_force) {
+  const RobotModel robot = measured_robot(described, parameters.feed_forward);
+  std::vector<std::string> problems = feed_forward_problems(parameters, described);
+  const double bandwidth = tracking_bandwidth(parameters, period);
+  const double most = std::max(kMostTracking / period, tracking_bandwidth({}, period));
+  if (bandwidth > most) problems.push_back(tracking_message(bandwidth, most, period));
+  check_loops(parameters, described, robot, period, problems);
   if (problems.empty() && !robot.wheels.empty() && !only_limits(parameters)) {
-    if (std::string problem = rehearsal_problem(parameters, described, robot, period); !problem.empty()) {
-      problems.push_back(std::move(problem));
+    std::string problem = rehearsal_problem(parameters, described, robot, period);
+    if (problem.empty() && in_force != nullptr && steeper(*in_force, parameters)) {
+      problem = rehearsal_problem(with_steeper_ramps(parameters, *in_force), described, robot, period);
     }
+    if (!problem.empty()) problems.push_back(std::move(problem));
   }
   return problems;
 }

@@ -13,10 +13,9 @@ namespace robot_control {
 
 namespace {
 
-std::vector<WheelLoop> make_loops(const DriveControllerParameters& parameters, const RobotModel& described,
-                                  double period) {
+WheelLoops make_loops(const DriveControllerParameters& parameters, const RobotModel& described, double period) {
   const RobotModel robot = measured_robot(described, parameters.feed_forward);
-  std::vector<WheelLoop> loops;
+  WheelLoops loops;
   for (const WheelModel& wheel : robot.wheels) {
     loops.emplace_back(wheel_loop_gains(parameters, robot, wheel, period), tracking_bandwidth(parameters, period),
                        robot.joints[wheel.joint].effort_limit, period);
@@ -59,16 +58,19 @@ DriveController::DriveController(const DriveControllerParameters& parameters, co
       joint_count_(robot.joints.size()),
       kinematics_(robot),
       feed_forward_(measured_robot(robot, parameters.feed_forward)),
+      ground_friction_(robot),
       watch_(parameters.cmd_vel_timeout, period),
       limiter_(speed_limits(parameters)),
       standstill_(period),
       loops_(make_loops(parameters, robot, period)) {}
 
-void DriveController::reset(const VelocityCommand& inbox, bool with_zero) noexcept {
-  watch_.reset(inbox, with_zero);
+void DriveController::enter_run(const VelocityCommand& inbox, bool with_zero) noexcept {
+  watch_.enter_run(inbox, with_zero);
   limiter_.restart_from({});
   standstill_.reset();
+  held_cycles_ = 0;
   for (WheelLoop& loop : loops_) loop.reset();
+  ground_friction_.reset();
   last_cycle_.reset();
   last_angle_.reset();
   periods_ = acceleration_scale_ = 1;
@@ -169,16 +171,36 @@ bool DriveController::slow() const noexcept {
                      [](const WheelLoop& loop) { return std::abs(loop.velocity()) < kStandstillSpeed; });
 }
 
-void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
+void DriveController::average_held_efforts(const SensorFrame& sensors) noexcept {
+  held_cycles_ = std::min({held_cycles_ + 1, standstill_.cycles() + 1, standstill_.cycles_needed()});
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    held_effort_[i] += (sensors.joints[i].effort - held_effort_[i]) / static_cast<double>(held_cycles_);
+  }
+}
+
+PlanarTwist DriveController::measured_twist() const noexcept {
   WheelValues measured{};
   for (std::size_t i = 0; i < loops_.size(); ++i) measured[i] = loops_[i].velocity();
-  const PlanarTwist twist = kinematics_.twist(measured);
+  return kinematics_.twist(measured);
+}
+
+void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
+  average_held_efforts(sensors);
+  const PlanarTwist twist = measured_twist();
   const double scale = kinematics_.wheel_speed_scale(twist);  // no plan beyond the joints' limits
-  limiter_.restart_from({scale * twist.linear, scale * twist.angular});
-  const bool preloads = standstill_.standing() || slow();
+  // Treads that a brake holds strained tremble: a plan that began with that would strain them the other way.
+  const bool rests = ground_friction_.scrubs() && (standstill_.standing() || slow());
+  limiter_.restart_from(rests ? PlanarTwist{} : PlanarTwist{scale * twist.linear, scale * twist.angular});
+  if (ground_friction_.scrubs()) {
+    if (rests) {
+      ground_friction_.rest([&](std::size_t wheel) { return held_effort_[wheel]; });
+    } else {
+      ground_friction_.move(twist, periods_ * period_);
+    }
+  }
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     loops_[i].reset_to_measured();
-    if (preloads) loops_[i].preload_integrator(sensors.joints[i].effort);
+    if (standstill_.standing()) loops_[i].preload_integrator(held_effort_[i] - ground_friction_.effort(i));
   }
 }
 
@@ -196,8 +218,42 @@ double DriveController::affordable_acceleration_scale(const PlanarTwist& limited
   return std::clamp(multiple * limiter_.used_acceleration_scale(), kLeastAccelerationScale, 1.0);
 }
 
+WheelValues DriveController::planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept {
+  WheelValues efforts = in_control_ ? feed_forward_.efforts(twist, acceleration) : WheelValues{};
+  if (!ground_friction_.scrubs()) return efforts;
+  if (in_control_) {
+    learn_ground_friction();
+    ground_friction_.move(twist, periods_ * period_);
+    if (ground_friction_.searches() && twist.angular != 0) search_ground_friction(twist);
+  }
+  for (std::size_t i = 0; i < loops_.size(); ++i) efforts[i] += ground_friction_.effort(i);
+  return efforts;
+}
+
+void DriveController::search_ground_friction(const PlanarTwist& twist) noexcept {
+  const PlanarTwist measured = measured_twist();
+  const WheelValues joints = feed_forward_.efforts(twist, {});
+  const WheelValues momenta = feed_forward_.efforts({}, measured);
+  ground_friction_.search(
+      {.part = measured.angular / twist.angular,
+       .integral = ground_friction_.along([&](std::size_t i) { return loops_[i].integral(); }),
+       .effort = ground_friction_.along([&](std::size_t i) { return loops_[i].unclamped_effort() - joints[i]; }),
+       .momentum = ground_friction_.along([&](std::size_t i) { return momenta[i]; })},
+      periods_ * period_);
+}
+
+void DriveController::learn_ground_friction() noexcept {
+  const double more = ground_friction_.take([&](std::size_t wheel) { return loops_[wheel].integral(); });
+  if (more == 0) return;
+  for (std::size_t i = 0; i < loops_.size(); ++i) loops_[i].move_to_feed_forward(more * ground_friction_.strain(i));
+}
+
 void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept {
-  if (!in_control_) follow_measured(sensors);
+  if (in_control_) {
+    held_cycles_ = 0;
+  } else {
+    follow_measured(sensors);
+  }
   const bool at_rest =
       in_control_ ? is_zero(limiter_.value()) && standstill_.standing() : holding_ || standstill_.standing() || slow();
   holding_ = is_zero(requested) && at_rest;
@@ -219,7 +275,7 @@ void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sen
   const PlanarTwist rate = scaled(limiter_.acceleration(), scale);
   const WheelValues velocity = kinematics_.joint_speeds(limited);
   const WheelValues acceleration = kinematics_.joint_speeds(rate);
-  const WheelValues feed_forward = in_control_ ? feed_forward_.efforts(limited, rate) : WheelValues{};
+  const WheelValues feed_forward = planned_efforts(limited, rate);
   const bool clamped = in_control_ && (sensors.gate.reasons & kGateClamps) != 0;
   if (clamped) out.reasons |= kReasonSaturated;
   for (std::size_t i = 0; i < loops_.size(); ++i) {

@@ -15,9 +15,12 @@
 ///
 /// While this controller is not in control of the wheels (it brakes, or the gate reports that tick k−1 was braked),
 /// limiter and wheel loops are set to the measured speed in every cycle, so that nothing jumps at release: the first
-/// torque is that of an unaccelerated motion, and the ramp starts once the gate has passed it. While the wheels stand,
-/// the integrators are preloaded with the measured effort, which is the load that the brake was holding. While they
-/// turn, the effort of the brake is not a load, and the integrators keep their values.
+/// torque is that of an unaccelerated motion, and the ramp starts once the gate has passed it; of a robot whose treads
+/// scrub, and whose wheels stand, from rest. While the wheels stand, the integrators are preloaded with the load that
+/// the brake holds: the mean of the measured effort since the wheels stand and this controller is not in control, of
+/// the last kStandstillTime about. A robot that was braked hard rocks on its brakes, and then one sample of effort is
+/// no load: released with it, the robot moves by itself. While the wheels turn, the effort of the brake is not a load,
+/// and the integrators keep their values.
 ///
 /// Saturation keeps the curvature.
 /// Speed: the requested twist is scaled until no wheel exceeds the part of its velocity limit that kinematics.h allows.
@@ -41,7 +44,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "control/command_watch.h"
 #include "control/drive_controller_parameters.h"
@@ -49,10 +51,12 @@
 #include "control/limits/speed_limiter.h"
 #include "control/standstill.h"
 #include "control/wheel_loops/feed_forward.h"
+#include "control/wheel_loops/ground_friction.h"
 #include "control/wheel_loops/wheel_loop.h"
 #include "robot/robot_model.h"
 #include "signals/command_frame.h"
 #include "signals/drive_tuning.h"
+#include "signals/fixed_vector.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -71,17 +75,19 @@ struct ControlInput {
 /// rad/s, 10⁴ rpm, more than any wheel reaches: a faster change of angle is an encoder error.
 inline constexpr double kFastestWheel = 1000;
 
+using WheelLoops = FixedVector<WheelLoop, kMaxWheels>;
+
 class DriveController {
  public:
   /// `robot` as read_robot gives it: at least a wheel on either side, wheels[i].joint == i. `period` s.
   DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
 
-  /// A new run: resets all state; requests that the inbox holds now do not count.
+  /// A new run: all state is as at the start; requests that the inbox holds now do not count.
   /// `with_zero`: the run begins with a zero request (command_watch.h).
-  void reset(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
+  void enter_run(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
 
   /// Between two cycles: other limits, timeout and gains, from the next step on. Bumpless (wheel_loop.h); speeds above
-  /// a lowered limit return to it as the limiter does. The values stay after `reset`.
+  /// a lowered limit return to it as the limiter does. The values stay after `enter_run`.
   void tune(const DriveTuning& tuning) noexcept;
 
   /// Fills everything but `out.head`.
@@ -95,20 +101,28 @@ class DriveController {
   std::uint64_t state_reasons(const StateFrame* state, std::uint64_t cycle) noexcept;
   PlanarTwist permitted_twist(const Permit* permit, CommandFrame& out) const noexcept;
   bool slow() const noexcept;
+  void average_held_efforts(const SensorFrame& sensors) noexcept;
+  PlanarTwist measured_twist() const noexcept;  ///< of the wheels
   void follow_measured(const SensorFrame& sensors) noexcept;
   double affordable_acceleration_scale(const PlanarTwist& limited, const WheelValues& feed_forward) const noexcept;
+  WheelValues planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept;
+  void search_ground_friction(const PlanarTwist& twist) noexcept;
+  void learn_ground_friction() noexcept;
   void drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept;
 
   double period_;
   std::uint64_t joint_count_;
   DriveKinematics kinematics_;
   FeedForward feed_forward_;
+  GroundFriction ground_friction_;
   CommandWatch watch_;
   SpeedLimiter limiter_;
   Standstill standstill_;
-  std::vector<WheelLoop> loops_;             ///< one per wheel; its index is the joint's
+  WheelLoops loops_;                         ///< one per wheel; its index is the joint's
   std::optional<std::uint64_t> last_cycle_;  ///< of the last usable sample
   std::optional<WheelValues> last_angle_;    ///< rad, of the sample before; none: the loops restart
+  WheelValues held_effort_{};                ///< N·m, mean since `held_cycles_`
+  std::uint64_t held_cycles_ = 0;            ///< in which the wheels stood and this controller was not in control
   double acceleration_scale_ = 1;            ///< of the acceleration limits, as the wheels' torque allows
   double periods_ = 1;                       ///< between the last two usable samples
   bool driving_ = false;                     ///< the last command was not the brake

@@ -1,14 +1,17 @@
 #include "control/rehearsal.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "control/drive_controller.h"
 #include "control/kinematics.h"
 #include "control/limits/drive_limits.h"
-#include "control/wheel_loops/feed_forward.h"
+#include "control/wheel_loops/ground_friction.h"
+#include "control/wheel_loops/quantisation_ripple.h"
 #include "robot/gravity.h"
 
 namespace robot_control {
@@ -18,7 +21,9 @@ constexpr double kRehearsedFriction = 0.1;  // rad/s, ε of feed_forward.h
 constexpr double kSteady = 0.5;             // s after a ramp
 constexpr double kLongestRamp = 10.0;       // s
 constexpr double kPush = 0.01;              // of the weight: rolling resistance of a hard wheel, a caster that swivels
-constexpr double kStretch = 5;              // the longest that a ramp is stretched where torque is short
+constexpr double kLostGrip = 0.05;          // of treads that scrub: what scrub.h misses of a curve, or a floor's seam
+constexpr double kCount = 2 * std::numbers::pi / kCounts;  // rad
+constexpr double kStretch = 5;                             // the longest that a ramp is stretched where torque is short
 
 /// The robot of the header.
 class RigidRobot {
@@ -40,11 +45,13 @@ class RigidRobot {
 
   const PlanarTwist& twist() const noexcept { return twist_; }
 
-  /// Over one period with the torques of `command`, and the force `push`, N, forwards at the right wheels.
-  void step(const CommandFrame& command, double push, double dt) noexcept {
+  /// Over one period with the torques of `command`, and the force `push`, N, forwards at the right wheels; treads grip
+  /// with the part `grip` of their friction.
+  void step(const CommandFrame& command, double push, double grip, double dt) noexcept {
     if (command.joints[0].mode == JointMode::kBrake) {
       twist_ = {};
       effort_ = {};
+      strain_ = {};
       return;
     }
     const WheelValues speed = kinematics_.joint_speeds(twist_);
@@ -61,16 +68,19 @@ class RigidRobot {
     }
     damping /= static_cast<double>(robot_.wheels.size());
     const double turning = std::copysign(std::max(std::abs(twist_.angular), 1e-9), twist_.angular);
-    double scrubbing = 0;  // N·m·s/rad, of a wheel's torque by ω
-    for (const double effort : scrub_.efforts(twist_.linear, turning)) scrubbing += std::abs(effort / turning);
-    scrubbing *= kGroundFriction / static_cast<double>(robot_.wheels.size());
+    // Treads as springs of the turn in this step, from what they would hold without it.
+    WheelValues kept = strain_, turned_on = strain_;
+    scrub_.strain(kept, twist_.linear, 0, dt);
+    scrub_.strain(turned_on, twist_.linear, turning, dt);
+    const double held = grip * scrub(kept);
+    const double scrubbing = (grip * scrub(turned_on) - held) / turning;  // N·m·s/rad
     const double base = robot_.wheel_base;
     const double rim = 0.5 * robot_.effective_wheel_base();
     const double lever = radius_ / beside_;
     const double pull = 0.5 * (torque.right + torque.left) +
                         0.5 * lever * robot_.mass * centre_ahead_ * twist_.angular * twist_.angular;
     const double turn = 0.5 * (torque.right - torque.left) -
-                        lever * robot_.mass * centre_ahead_ * twist_.linear * twist_.angular / base;
+                        lever * robot_.mass * centre_ahead_ * twist_.linear * twist_.angular / base - held;
     const double linear_inertia = 0.5 * lever * robot_.mass + inertia_ / radius_;
     const double angular_inertia = lever * robot_.yaw_inertia / base + inertia_ * rim / radius_;
     // Losses implicitly: they may be stiff against the period.
@@ -81,17 +91,29 @@ class RigidRobot {
     const WheelValues turned =
         kinematics_.joint_speeds({0.5 * (twist_.linear + next.linear), 0.5 * (twist_.angular + next.angular)});
     for (std::size_t i = 0; i < robot_.wheels.size(); ++i) angle_[i] += turned[i] * dt;
+    scrub_.strain(strain_, twist_.linear, next.angular, dt);
     twist_ = next;
   }
 
   void sample(SensorFrame& sensors) const noexcept {
     const WheelValues speed = kinematics_.joint_speeds(twist_);
     for (std::size_t i = 0; i < robot_.wheels.size(); ++i) {
-      sensors.joints[i] = {.position = angle_[i], .velocity = speed[i], .effort = effort_[i]};
+      sensors.joints[i] = {
+          .position = std::round(angle_[i] / kCount) * kCount, .velocity = speed[i], .effort = effort_[i]};
     }
   }
 
  private:
+  /// N·m against a turn to the left, mean of the wheels.
+  double scrub(const WheelValues& strain) const noexcept {
+    double sum = 0;
+    for (std::size_t i = 0; i < robot_.wheels.size(); ++i) {
+      const WheelModel& wheel = robot_.wheels[i];
+      sum += wheel.side == Side::kLeft ? -wheel.sign * strain[i] : wheel.sign * strain[i];
+    }
+    return kGroundFriction * sum / static_cast<double>(robot_.wheels.size());
+  }
+
   const RobotModel& robot_;
   DriveKinematics kinematics_;
   Scrub scrub_;
@@ -102,6 +124,7 @@ class RigidRobot {
   PlanarTwist twist_;
   WheelValues angle_{};
   WheelValues effort_{};
+  WheelValues strain_{};  ///< N·m, z of scrub.h
 };
 
 double ramp_time(double speed, const MotionLimits& limits) noexcept {
@@ -147,11 +170,11 @@ class Rehearsal {
         kinematics_(described),
         controller_(parameters, described, period) {}
 
-  /// Of this motion, where it is worse than `worst`; `pushed` or not.
-  void drive(const PlanarTwist& motion, bool pushed, Excess& worst) {
+  /// Adds the excesses of this motion, `pushed` or not.
+  void drive(const PlanarTwist& motion, bool pushed, std::vector<Excess>& out) {
     const double scale = kinematics_.wheel_speed_scale(motion);  // the controller asks for no more
     const PlanarTwist asked{scale * motion.linear, scale * motion.angular};
-    controller_.reset();
+    controller_.enter_run();
     RigidRobot robot(plant_);
     SensorFrame sensors;
     sensors.valid = kValidJoints;
@@ -173,6 +196,9 @@ class Rehearsal {
     };
     ExcessWatch linear = watch(asked.linear, 1);
     ExcessWatch angular = watch(asked.angular, rim);
+    std::array<Excess, 4> excesses;
+    for (std::size_t i = 0; i < excesses.size(); ++i)
+      excesses[i] = {.motion = asked, .turning = i >= 2, .stopping = i % 2 == 1};
     const auto push_cycles = static_cast<std::uint64_t>(kSteady / period_);
     const double push = pushed ? kPush * kGravity * plant_.mass : 0;
     for (std::uint64_t cycle = 0; cycle < 2 * half; ++cycle) {
@@ -185,22 +211,22 @@ class Rehearsal {
       ++request.count;  // in every cycle, so that none times out
       controller_.step({.sensors = &sensors, .permit = &permit, .request = request}, command);
       const bool steady = cycle + push_cycles >= half && !stopping;
-      robot.step(last, steady ? push : 0, period_);
+      robot.step(last, steady ? push : 0, steady && pushed ? 1 - kLostGrip : 1, period_);
       sensors.gate.verdict = last.joints[0].mode == JointMode::kBrake ? GateVerdict::kBrake : GateVerdict::kPassed;
       last = command;
-      const double too_fast = linear.step(robot.twist().linear);
-      const double too_quick = angular.step(robot.twist().angular);
-      if (std::max(too_fast, too_quick) <= worst.times) continue;
-      const bool turning = too_quick > too_fast;
-      worst = {.motion = asked,
-               .turning = turning,
-               .stopping = stopping,
-               .reached = turning ? robot.twist().angular : robot.twist().linear,
-               .times = std::max(too_fast, too_quick)};
+      note(linear.step(robot.twist().linear), robot.twist().linear, excesses[stopping ? 1 : 0]);
+      note(angular.step(robot.twist().angular), robot.twist().angular, excesses[stopping ? 3 : 2]);
     }
+    out.insert(out.end(), excesses.begin(), excesses.end());
   }
 
  private:
+  static void note(double times, double reached, Excess& worst) noexcept {
+    if (times <= worst.times) return;
+    worst.times = times;
+    worst.reached = reached;
+  }
+
   /// A ramp whose torque the motors do not have is stretched by the controller.
   double stretched(double ramp) const noexcept { return std::min(kLongestRamp, std::min(kStretch * ramp, ramp + 1)); }
 
@@ -214,18 +240,20 @@ class Rehearsal {
 
 }  // namespace
 
-Excess rehearse(const DriveControllerParameters& parameters, const RobotModel& described, const RobotModel& plant,
-                double period) {
+std::vector<Excess> rehearse(const DriveControllerParameters& parameters, const RobotModel& described,
+                             const RobotModel& plant, double period) {
   Rehearsal rehearsal(parameters, described, plant, period);
   const double linear = parameters.max_linear_speed;
   const double angular = parameters.max_angular_speed;
-  Excess worst;
-  rehearsal.drive({linear, 0}, true, worst);
-  rehearsal.drive({0, angular}, true, worst);
-  rehearsal.drive({0.5 * linear, 0.5 * angular}, false, worst);
-  rehearsal.drive({kSlowPart * linear, 0}, false, worst);
-  rehearsal.drive({0, kSlowPart * angular}, false, worst);
-  return worst;
+  std::vector<Excess> excesses;
+  rehearsal.drive({linear, 0}, true, excesses);
+  rehearsal.drive({0, angular}, true, excesses);
+  rehearsal.drive({0.5 * linear, 0.5 * angular}, false, excesses);
+  for (const double part : kSlowerParts) {
+    rehearsal.drive({part * linear, 0}, false, excesses);
+    rehearsal.drive({0, part * angular}, false, excesses);
+  }
+  return excesses;
 }
 
 }  // namespace robot_control

@@ -20,7 +20,8 @@ void Standstill::step(const WheelValues& angles, std::uint64_t cycle) noexcept {
     since_ = cycle;
     anchored_ = true;
   }
-  standing_ = inside && cycle - since_ >= cycles_needed_;
+  cycles_ = cycle - since_;
+  standing_ = inside && cycles_ >= cycles_needed_;
 }
 
 }  // namespace robot_control

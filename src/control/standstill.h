@@ -25,9 +25,12 @@ class Standstill {
   void step(const WheelValues& angles, std::uint64_t cycle) noexcept;
 
   bool standing() const noexcept { return standing_; }
+  std::uint64_t cycles() const noexcept { return cycles_; }  ///< since when all angles have stayed in the window
+  std::uint64_t cycles_needed() const noexcept { return cycles_needed_; }  ///< kStandstillTime
 
  private:
   std::uint64_t cycles_needed_;
+  std::uint64_t cycles_ = 0;
   WheelValues anchor_{};
   std::uint64_t since_ = 0;
   bool anchored_ = false;

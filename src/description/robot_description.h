@@ -1,5 +1,5 @@
 #pragma once
-/// The text of a robot description, and how what is wrong with one is said.
+/// The text of a robot description, and the form of the messages about what is wrong with it.
 
 #include <stdexcept>
 #include <string>

@@ -7,6 +7,7 @@
 
 #include "description/urdf_document.h"
 #include "description/wording.h"
+#include "files/message_text.h"
 
 namespace robot_control {
 namespace {
@@ -105,6 +106,15 @@ void check_percent(const RobotDescription& description, const TiXmlElement& elem
   }
 }
 
+/// Elements of xacro stand for links and joints that would be missing.
+void check_expanded(const RobotDescription& description, const TiXmlElement& robot) {
+  for (const TiXmlElement* child = robot.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    if (!child->ValueStr().starts_with("xacro:")) continue;
+    refuse(at_line(description, *child), "<" + child->ValueStr() + ">", "it is xacro, which is not expanded here",
+           "Let the file's name end in .xacro, or expand it: xacro FILE > robot.urdf");
+  }
+}
+
 void check_size(const RobotDescription& description, const TiXmlElement& robot) {
   std::size_t links = 0;
   for (const TiXmlElement* link = robot.FirstChildElement("link"); link != nullptr;
@@ -178,6 +188,11 @@ void check_text(const RobotDescription& description) {
   }
   if (const std::size_t at = text.find('\0'); at != std::string::npos) {
     refuse(source, "XML", "it has a NUL character, at byte " + std::to_string(at), "Write text alone");
+  }
+  if (const std::size_t at = utf8_end(text); at != text.size()) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    refuse(source + " line " + std::to_string(line), "XML", printable(text.substr(at, 1)) + " is not UTF-8",
+           "Save it as UTF-8, for instance iconv -f ISO-8859-1 -t UTF-8 FILE");
   }
   for (std::size_t i = text.find("<!"); i != std::string::npos; i = text.find("<!", i + 2)) {
     if (text.compare(i, 4, "<!--") == 0) {
@@ -261,6 +276,7 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
            "a second outermost element, beside <robot> in line " + std::to_string(root->Row()),
            "Keep one: one file is one robot");
   }
+  check_expanded(description, *root);
   for (const char* kind : {"link", "joint"}) {
     for (const TiXmlElement* element = root->FirstChildElement(kind); element != nullptr;
          element = element->NextSiblingElement(kind)) {

@@ -1,8 +1,8 @@
 #pragma once
 /// The XML of a URDF, before urdfdom sees it.
 ///
-/// urdfdom refuses, or prints about, things that have no use here or whose meaning is plain. They are mended in the
-/// markup, so that what remains to be refused is really wrong:
+/// urdfdom refuses, or prints messages about, elements that have no use here or whose meaning is clear. They are
+/// repaired in the markup, so that only what is wrong is refused:
 ///   <material>, <safety_controller>, <calibration>, whatever stands beside <link> and <joint>   left out
 ///   <visual> without a shape, <axis> without `xyz`                                              left out
 ///   <limit> without effort or velocity                                                          0: unknown
@@ -25,7 +25,8 @@ inline constexpr std::size_t kMostLinks = 2000;  ///< what is built on them desc
 /// Fills `xml` and returns its `<robot>`. Throws RobotError with the line: not well-formed, another or a second root
 /// element, a joint whose type is unknown, floating or planar, a revolute joint without limits, a link with two
 /// parents, links in a ring, elements nested deeper than kDeepest, more than kMostLinks links, a percent sign
-/// outside file names; UTF-16, NUL characters, a git-LFS pointer, entities of its own.
+/// outside file names; bytes that are not UTF-8, NUL characters, a git-LFS pointer, entities of its own, elements of
+/// xacro.
 TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& xml);
 
 /// The joints that something drives, in the words of ROS 1, ROS 2 and Gazebo: named by a <transmission>, given a

@@ -2,7 +2,7 @@
 /// A .xacro file as the URDF it stands for.
 ///
 /// xacro (PyPI `xacro`, https://github.com/ros/xacro) runs in a Python process of its own, through
-/// robot_control/expand_xacro.py, which lets rospkg answer `$(find PACKAGE)`: PyPI's xacro asks ROS 2's index. Its
+/// robot_control/expand_xacro.py, which resolves `$(find PACKAGE)` with rospkg: PyPI's xacro uses ROS 2's index. Its
 /// default arguments hold; another choice is made by expanding the file by hand.
 ///
 /// Python is what the environment calls ROBOT_CONTROL_XACRO_PYTHON, else that of build/xacro, which scripts/setup

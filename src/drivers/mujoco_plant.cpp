@@ -9,6 +9,7 @@
 #include "description/wording.h"
 #include "drivers/contact/rest.h"
 #include "drivers/mujoco_errors.h"
+#include "robot/suspicions.h"
 
 namespace robot_control {
 namespace {
@@ -92,6 +93,10 @@ void MujocoPlant::settle() {
   std::string where = model_.robot.source + " in scene " + parameters_.scene;
   if (parameters_.payload > 0) where.append(" with a payload of ").append(number(parameters_.payload)).append(" kg");
   where += ": ";
+  const auto refuse = [&](const std::string& text) {
+    const std::string suspicions = suspicions_of(model_.robot);
+    throw DriverError(where + text + (suspicions.empty() ? "" : " " + suspicions));
+  };
   const double step = model_.model->opt.timestep;
   mj_step1(model_.model.get(), data_.get());
   wheels_.observe(*data_);
@@ -101,24 +106,23 @@ void MujocoPlant::settle() {
   for (double time = 0; time < kSettleTime && rested < kRestTime; time += model_.substeps * step) {
     simulate(brakes_);
     if (state_ == DriverState::kFault) {
-      throw DriverError(where + "the simulation fails while the robot settles: " + fault_message());
+      refuse(std::string("the simulation fails while the robot settles: ").append(fault_message()).append("."));
     }
     if (fallen(model_, *data_)) {
-      throw DriverError(where +
-                        "the robot falls over where it is set down. Look at its centre of gravity and at what "
-                        "it stands on, and at the ground around the site \"start\".");
+      refuse(
+          "the robot falls over where it is set down. Look at its centre of gravity and at what it stands on, and at "
+          "the ground around the site \"start\".");
     }
     rested = at_rest(model_, *data_, kRestSpeed, kJointRestSpeed) ? rested + model_.substeps * step : 0;
   }
   const std::string side = unloaded_side(model_, wheels_);
   const std::string standing = links_on_ground(model_, *data_);
   if (!side.empty() && !standing.empty()) {
-    throw DriverError(where + "its " + side + " wheels bear no load, what stands on the ground is " + standing +
-                      ". Look at how low the wheels reach, and the <collision> shapes of the rest.");
+    refuse("its " + side + " wheels bear no load, what stands on the ground is " + standing +
+           ". Look at how low the wheels reach, and the <collision> shapes of the rest.");
   }
   if (rested < kRestTime && !at_rest(model_, *data_, kLastRestSpeed, kLastJointSpeed)) {
-    throw DriverError(
-        where +
+    refuse(
         "with its brakes on the robot does not come to rest at the site \"start\". Put the site "
         "on a plane, z upwards from it, less steep than brakes and friction can hold; where the centre of "
         "gravity lies over the only axle, put it where casters carry a part of it.");

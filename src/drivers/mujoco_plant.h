@@ -67,7 +67,7 @@ class MujocoPlant final : public Driver {
   bool truth(TruthFrame& truth) noexcept override;
   bool inject(const InjectedFaults& faults) noexcept override;
 
-  /// What MuJoCo said when the fault came; "" without one.
+  /// MuJoCo's message about the fault; "" without one.
   const char* fault_message() const noexcept { return fault_message_.data(); }
 
   /// "left_wheel_joint bears no load at rest, on the ground stand skid": of the first `start`; "" where all drive

@@ -35,6 +35,7 @@ struct MujocoPlantParameters : Errors {
   double left_radius_error = 0;  ///< true radius = radius · (1 + error)
   double right_radius_error = 0;
   double wheel_base_error = 0;                         ///< true wheel base = wheel base · (1 + error)
+  double wheel_friction_error = 0;                     ///< true dry friction of a wheel's joint, likewise
   double payload = 0;                                  ///< kg, fixed to the base
   double payload_x = 0, payload_y = 0, payload_z = 0;  ///< m, base axes
 

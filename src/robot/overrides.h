@@ -1,5 +1,5 @@
 #pragma once
-/// What the `robot:` block says otherwise than the URDF.
+/// What the `robot:` block sets differently from the URDF.
 
 #include <optional>
 #include <string>

@@ -16,7 +16,8 @@
 namespace robot_control {
 
 /// What a user may say about the robot beside its URDF (the `robot:` block). It is what estimator and controller
-/// use; a simulated plant stays as the URDF says. Where both speak and differ by more than 1 %, a note reports it.
+/// use; a simulated plant stays as the URDF says. Where both give a value and these differ by more than 1 %, a note
+/// reports it.
 struct RobotParameters {
   std::vector<std::string> left_wheel_joints;           ///< both empty: found, see drive_wheels.h
   std::vector<std::string> right_wheel_joints;          ///< as many as left ones
@@ -84,7 +85,7 @@ struct WheelModel {
 
 inline constexpr std::size_t kMaxWheels = 8;
 
-/// Something that was not simply taken from the URDF, for the user's eyes.
+/// A note for the user about a value that was not simply taken from the URDF.
 struct RobotNote {
   enum class Kind {
     kAssumed,     ///< the URDF is silent

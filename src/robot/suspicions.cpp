@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "description/wording.h"
 #include "robot/bodies/rigid_bodies.h"
@@ -81,10 +82,56 @@ std::optional<double> given_deceleration(const RobotModel& robot) {
 void note_tipping(RobotModel& robot) {
   const double limit = given_deceleration(robot).value_or(kRamp);
   const double lifting = lifting_deceleration(robot);
-  if (!(lifting > 0) || lifting >= limit) return;
+  if (!(lifting > 0)) {
+    // Springs give way until other parts stand on the ground than at the zero pose.
+    if (std::ranges::any_of(robot.joints, [](const JointModel& joint) {
+          return joint.prismatic && joint.role == JointRole::kPassive;
+        })) {
+      return;
+    }
+    note(robot, "<robot>",
+         "nothing within 3° of the ground carries it on one side of its centre of gravity (x " +
+             number(robot.centre_of_gravity_base[0]) +
+             " m): it falls over, or leans on what should not touch the ground. Look at where its wheels and casters "
+             "stand, and how low they reach");
+    return;
+  }
+  if (lifting >= limit) return;
   note(robot, "<robot>",
        "its centre of gravity lies so high, or so near to where it stands, that it tips from " + number(lifting) +
            " m/s² on; its own limit is " + number(limit) + " m/s²");
+}
+
+void note_weak_wheels(RobotModel& robot) {
+  double force = 0, effort = 0, friction = 0;
+  for (const WheelModel& wheel : robot.wheels) {
+    const JointModel& joint = robot.joints[wheel.joint];
+    force += std::max(0.0, joint.effort_limit - joint.friction) / wheel.radius;
+    effort = joint.effort_limit;
+    friction = joint.friction;
+  }
+  const double acceleration = force / robot.mass;
+  if (acceleration >= kWeak) return;
+  note(robot, joint_element(robot.joints[robot.wheels.back().joint].name),
+       "an effort limit of " + number(effort) + " N·m and a friction of " + number(friction) +
+           " N·m: the wheels accelerate the robot by no more than " + number(acceleration) +
+           " m/s². A URDF's efforts are those of the joint, behind its gear");
+}
+
+void note_far_root(RobotModel& robot) {
+  double nearest = std::numeric_limits<double>::infinity();
+  Eigen::AlignedBox3d box;
+  for (const WheelModel& wheel : robot.wheels) {
+    nearest = std::min(nearest, Eigen::Vector3d(wheel.centre_base.data()).norm());
+  }
+  for (const RigidBody& body : robot.bodies->bodies) {
+    for (const Shape& shape : body.shapes) box.extend(box_of(body, shape));
+  }
+  if (box.isEmpty() || nearest <= kFar * box.sizes().norm()) return;
+  note(robot, link_element(robot.base_link),
+       "it lies " + number(nearest) +
+           " m from the next wheel, farther than the robot is large: odom and cmd_vel are "
+           "those of this frame. Where it is the world, leave it and its joint out");
 }
 
 void note_mecanum(RobotModel& robot) {
@@ -94,10 +141,20 @@ void note_mecanum(RobotModel& robot) {
 
 }  // namespace
 
+std::string suspicions_of(const RobotModel& robot) {
+  std::string text;
+  for (const RobotNote& note : robot.notes) {
+    if (note.kind == RobotNote::Kind::kSuspicious) text += "; " + note.element + ": " + note.text;
+  }
+  return text.empty() ? text : "Suspicious" + text.replace(0, 1, ":");
+}
+
 void note_suspicions(RobotModel& robot) {
   note_lengths(robot);
   note_masses(robot);
   note_tipping(robot);
+  note_weak_wheels(robot);
+  note_far_root(robot);
   note_mecanum(robot);
 }
 

@@ -15,7 +15,7 @@ namespace {
 using Break = std::function<void(ControlBench&)>;
 
 const std::map<std::uint64_t, Break> kBreaks{
-    {kReasonNoCommand, [](ControlBench& bench) { bench.controller.reset(bench.request); }},
+    {kReasonNoCommand, [](ControlBench& bench) { bench.controller.enter_run(bench.request); }},
     {kReasonTimedOut, [](ControlBench& bench) { bench.run(1.25); }},
     {kReasonRefused, [](ControlBench& bench) { bench.send(0.5, std::nan("")); }},
     {kReasonSpeedLimited, [](ControlBench& bench) { bench.send(1.5, 0); }},

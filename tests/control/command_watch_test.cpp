@@ -176,7 +176,7 @@ TEST_F(CommandWatchTest, ForgetsInANewRunWhatTheInboxHolds) {
   send(0.5);
   watch.step(request, 100);
   ++request.stale;
-  watch.reset(request);
+  watch.enter_run(request);
   EXPECT_EQ(watch.step(request, 0).linear[0], 0);
   EXPECT_EQ(watch.reasons(), kReasonNoCommand);
   EXPECT_EQ(watch.received(), 0u);
@@ -231,11 +231,23 @@ TEST_F(CommandWatchTest, WhatTheInboxHoldsAtTheFirstStepIsNoZeroRequest) {
 }
 
 TEST_F(CommandWatchTest, ARunMayBeginWithAZeroRequest) {
-  watch.reset({}, true);
+  watch.enter_run({}, true);
   send(1);
   EXPECT_EQ(watch.step(request, 0).linear[0], 1);
   EXPECT_EQ(watch.zero_requests(), 1u);
   EXPECT_FALSE(watch.zero_requested());
+}
+
+TEST_F(CommandWatchTest, WhatNoSenderSentIsNoZeroRequestAndNoEndOfASilence) {
+  request.contested = kNoMessage;
+  for (std::uint64_t k = 0; k < 3000; ++k) {
+    send(0);
+    watch.step(request, k);
+  }
+  EXPECT_EQ(watch.reasons(), 0u) << "a zero in force";
+  EXPECT_EQ(watch.zero_requests(), 0u);
+  EXPECT_FALSE(watch.zero_requested());
+  EXPECT_EQ(watch.silent_cycles(3000), 3000u);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class ControlBench {
   explicit ControlBench(const RobotModel& model = make_test_robot(), const DriveControllerParameters& parameters = {},
                         double period_s = 1e-3, const std::optional<RobotModel>& truth = {})
       : period(period_s), controller(parameters, model, period_s), plant(truth.value_or(model)), robot(model) {
-    controller.reset();
+    controller.enter_run();
     permit.action = PermitAction::kDrive;
     permit.speed_limit = kNoSpeedLimit;
     state.flags = kStateValid;

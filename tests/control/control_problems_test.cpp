@@ -6,6 +6,7 @@
 #include <string>
 
 #include "control/test_robot.h"
+#include "control/wheel_loops/wheel_loop_gains.h"
 
 namespace robot_control {
 namespace {
@@ -59,6 +60,18 @@ TEST(ControlProblems, RefusesALoopThatOscillatesAndItsRemedyIsAccepted) {
   for (const std::string& problem : control_problems(parameters, make_test_robot(), 1e-3)) {
     EXPECT_EQ(problem.find("oscillates"), std::string::npos) << problem;
   }
+}
+
+// Every mode of these loops is damped by 0.3; the counts of an encoder keep the one of 80 Hz oscillating.
+TEST(ControlProblems, RefusesALoopThatTheCountsOfAnEncoderMakeOscillate) {
+  RobotModel robot = make_test_robot();
+  for (JointModel& joint : robot.joints) joint.effort_limit = 3.5;
+  DriveControllerParameters parameters;
+  parameters.tracking_bandwidth = 80;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3),
+              ElementsAre(AllOf(HasSubstr("tracking_bandwidth 80 Hz"), HasSubstr("4096 counts"), HasSubstr("lifted"))));
+  parameters.tracking_bandwidth = 50;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty());
 }
 
 TEST(ControlProblems, RefusesAWheelWithoutTorque) {
@@ -154,6 +167,73 @@ TEST(ControlProblems, BlameNoSetForWhatDerivedGainsWouldDoAsWell) {
   parameters.pid_kp = 2.0;
   parameters.pid_ki = 20.0;
   EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty());
+}
+
+// At 8 m/s² derived gains overshoot a straight stop as well; a turn with four times the yaw inertia is the set's doing.
+TEST(ControlProblems, ExcuseNoMotionByWhatDerivedGainsDoInAnother) {
+  DriveControllerParameters parameters;
+  parameters.max_linear_acceleration = 8;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3), IsEmpty());
+  parameters.feed_forward.yaw_inertia = 2;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3),
+              ElementsAre(AllOf(HasSubstr("rad/s on its way to"), HasSubstr("commanded 0 m/s"))));
+}
+
+// A ramp to 0.1 m/s ends before the loops have found what is too much; one to 0.3 m/s does not, one to 0.03 is short.
+TEST(ControlProblems, RefuseAMassThatIsTooMuchForShortRampsAlone) {
+  DriveControllerParameters parameters;
+  parameters.max_linear_speed = 0.32;
+  parameters.max_linear_acceleration = 1.35;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3), IsEmpty());
+  parameters.feed_forward.mass = 31.6;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3), ElementsAre(HasSubstr("commanded 0.096 m/s")));
+}
+
+// It drives back at 0.0305 m/s where it stops; with an exact encoder at less than the 0.03 that are allowed.
+TEST(ControlProblems, RefuseASetThatTheCountsOfAnEncoderMakeTooFast) {
+  DriveControllerParameters parameters;
+  parameters.feed_forward.mass = 8.633;
+  parameters.feed_forward.wheel_friction = 0.3;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3), ElementsAre(HasSubstr("to rest")));
+  parameters.feed_forward.wheel_friction = 0.25;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3), IsEmpty());
+}
+
+// The simulated pmb2 with such a set turned 12 % too fast at 0.7 of full speed.
+TEST(ControlProblems, RefuseAYawInertiaThatIsTooLittleForRampsOfMiddleLength) {
+  RobotModel robot = make_test_robot();
+  robot.mass = 53;
+  robot.yaw_inertia = 2.76;
+  robot.wheel_base = 0.4044;
+  for (JointModel& joint : robot.joints) joint.effort_limit = 6;
+  for (WheelModel& wheel : robot.wheels) wheel.inertia = 0.0129;
+  DriveControllerParameters parameters;
+  parameters.max_angular_jerk = 1294;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty());
+  parameters.feed_forward.yaw_inertia = 1.5;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), ElementsAre(HasSubstr("1.4 rad/s (commanded 0 m/s")));
+}
+
+// A twentieth of the ground's friction turns the wheels of a skid steer faster than a push of 1 % of its weight does.
+TEST(ControlProblems, RefuseGainsThatDoNotHoldASkidSteerWhereItsTreadsGripLess) {
+  const RobotModel robot = make_skid_steer();
+  DriveControllerParameters parameters;
+  const double derived = wheel_loop_gains(parameters, robot, robot.wheels[0], 1e-3).kp;
+  parameters.pid_kp = 0.5 * derived;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty());
+  parameters.pid_kp = 0.1 * derived;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), ElementsAre(HasSubstr("(commanded 0 m/s, ")));
+}
+
+// With the ramps of its set the wrong inertia matters little; in the ramp that it meets it does.
+TEST(ControlProblems, JudgeASetByTheRampsInWhichItIsTakenOver) {
+  const DriveControllerParameters in_force;
+  DriveControllerParameters parameters;
+  parameters.max_angular_acceleration = 0.2;
+  parameters.feed_forward.yaw_inertia = 7 * make_test_robot().yaw_inertia;
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3), IsEmpty());
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3, &in_force), ElementsAre(HasSubstr("rad/s")));
+  EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3, &parameters), IsEmpty());
 }
 
 }  // namespace

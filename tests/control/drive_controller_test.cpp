@@ -275,7 +275,7 @@ TEST_F(DriveControllerTest, DrivesAWheelThatIsMountedTheOtherWayRound) {
 // The right wheel is held. Taken for one of 45 counts a turn, its encoder would not contradict 0.5 rad/s for 0.3 s.
 TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
   DriveController controller({}, make_test_robot(), 1e-3);
-  controller.reset();
+  controller.enter_run();
   SensorFrame sensors;
   sensors.valid = kValidJoints;
   sensors.joint_count = 2;
@@ -306,7 +306,7 @@ TEST(DriveControllerOfAHeldWheel, KnowsByTheCountsOfTheOtherThatItStands) {
 TEST(DriveControllerOfFourWheels, DrivesEveryWheelOfASideAlikeAndBrakesForAnyThatFails) {
   const RobotModel robot = make_skid_steer();
   DriveController controller({}, robot, 1e-3);
-  controller.reset();
+  controller.enter_run();
   SensorFrame sensors;
   sensors.valid = kValidJoints;
   sensors.joint_count = 4;
@@ -352,7 +352,7 @@ TEST_F(DriveControllerTest, BrakesTheJointsThatAreNotWheels) {
 }
 
 TEST_F(DriveControllerTest, StartsANewRunFromNothing) {
-  bench.controller.reset(bench.request);
+  bench.controller.enter_run(bench.request);
   bench.cycle = 0;
   bench.plant = TwoWheelPlant(make_test_robot());
   bench.plant.angle = {123, -456};
@@ -454,7 +454,7 @@ TEST_F(DriveControllerTest, DoesNotAllocate) {
     bench.permit.action = k % 500 < 20 ? PermitAction::kBrake : PermitAction::kDrive;
     bench.controller.step(input, out);
   }
-  bench.controller.reset();
+  bench.controller.enter_run();
   EXPECT_EQ(guard.count(), 0u);
 }
 

@@ -40,17 +40,6 @@ TEST(FeedForward, SharesTheLoadOverAllWheels) {
   }
 }
 
-// 59 N a wheel, of which the rolling direction takes 0.16/√(0.16² + 0.2²): 3.7 N·m at friction 1, 2.6 at 0.7.
-TEST(FeedForward, TurnsTreadsThatScrub) {
-  const RobotModel robot = make_skid_steer();
-  const FeedForward law(robot);
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(law.efforts({0, 1}, {})[i], kGroundFriction * 3.677, 0.02);  // left ones backward, mirrored
-    EXPECT_NEAR(law.efforts({0, -1}, {})[i], -kGroundFriction * 3.677, 0.02);
-    EXPECT_EQ(law.efforts({0.5, 0}, {})[i], 0);
-  }
-}
-
 // 0.5 m/s and 0.2 rad/s turn the wheels with 4.5 and 5.5 rad/s; far above 0.1 rad/s dry friction counts in full.
 TEST(FeedForward, OvercomesWhatTheJointItselfTakes) {
   RobotModel robot = make_test_robot();

@@ -39,13 +39,34 @@ TEST_F(HandOver, BeginsWithTheTorqueThatTheBrakeWasHolding) {
   EXPECT_FALSE(bench.command.reasons & kReasonHolding);
   for (const JointCommand& joint : {bench.command.joints[0], bench.command.joints[1]}) {
     EXPECT_EQ(joint.mode, JointMode::kEffort);
-    EXPECT_NEAR(joint.effort, kLoad, 1e-12);
+    EXPECT_NEAR(joint.effort, kLoad, 0.01 * kLoad) << "a mean, whose first sample was 0";
+  }
+}
+
+TEST_F(HandOver, TakesNoTremblingOfTheBrakeForALoad) {
+  // As after a hard stop: ±8 mm/s at 6 Hz, held by springs of the brake.
+  for (int phase = 0; phase < 160; phase += 20) {
+    ControlBench level{make_test_robot(), straight_ramps()};
+    level.spoil = [&](SensorFrame& sensors) {
+      const double angle = 2 * std::numbers::pi * 6 * 1e-3 * static_cast<double>(level.cycle);
+      for (std::size_t i = 0; i < 2; ++i) {
+        sensors.joints[i].position = 0.0021 * std::sin(angle);
+        sensors.joints[i].effort = -0.2 * std::sin(angle);
+      }
+    };
+    level.permit.action = PermitAction::kBrake;
+    level.run(0.4 + 1e-3 * phase);
+    level.permit.action = PermitAction::kDrive;
+    level.send(0.1, 0);
+    level.step();
+    EXPECT_EQ(level.command.joints[0].mode, JointMode::kEffort);
+    EXPECT_LT(std::abs(level.command.joints[0].effort), 0.1) << phase;
   }
 }
 
 TEST_F(HandOver, DoesNotSagOnTheSlope) {
   bench.run(0.4);
-  EXPECT_GT(lowest_while_creeping(), -1e-9);
+  EXPECT_GT(lowest_while_creeping(), -1e-7);
   EXPECT_NEAR(bench.plant.distance, 0.005 * 0.5, 1e-4);
 }
 

@@ -122,6 +122,12 @@ TEST(SpeedLimiter, ViolatesNoPropertyInTenThousandRandomSequences) {
   }
 }
 
+// A step that ends at the target by rounding alone left an acceleration that led away from it in the next one. One
+// sequence in a million.
+TEST(SpeedLimiter, StaysAtATargetThatItReachedByRounding) {
+  EXPECT_EQ(limiter_violation(5'712'238).value_or(""), "");
+}
+
 /// Cycles until `limiter` is at `target`.
 int cycles_to(SpeedLimiter& limiter, const PlanarTwist& target, bool emergency = false) {
   for (int k = 1; k < 100'000; ++k) {
@@ -282,6 +288,18 @@ TEST(SpeedLimiter, AJerkLimitLoweredDuringARampHoldsUpNoStop) {
       limiter.step({1, 0}, kDt);
       ASSERT_LE(limiter.acceleration().linear, acceleration + jerk * kDt + 1e-9) << "the old limit is over";
     }
+  }
+}
+
+TEST(SpeedLimiter, ALowerJerkHoldsBothWaysForARampThatBeginsAfterIt) {
+  SpeedLimiter limiter(kSmooth);
+  SpeedLimits lower = kSmooth;
+  lower.linear.jerk = 1;
+  limiter.set_limits(lower);
+  while (limiter.value().linear < 0.2) limiter.step({1, 0}, kDt);
+  for (double before = limiter.acceleration().linear; before > 0.1; before = limiter.acceleration().linear) {
+    limiter.step({0.3, 0}, kDt);
+    ASSERT_GE(limiter.acceleration().linear, before - 1 * kDt - 1e-9);
   }
 }
 

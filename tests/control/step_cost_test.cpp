@@ -2,12 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
 #include <functional>
 #include <iostream>
-#include <limits>
-#include <thread>
 #include <vector>
 
 #include "bench/kernel.h"
@@ -21,11 +17,6 @@ namespace {
 constexpr double kPromisedNs = 200;  // the median on a quiet machine, whose kernel takes 92
 constexpr std::size_t kCycles = 1000;
 constexpr int kBlocks = 21;
-// A neighbour on the same core halves throughput, for seconds, and hardly touches the kernel's latency. A step that
-// costs too much does so in every round; one good round proves that it does not. The rounds are spread over ten
-// seconds.
-constexpr int kRounds = 40;
-constexpr std::chrono::milliseconds kBetweenRounds(250);
 
 /// Commands, cycle by cycle, and the sensors that answered to them.
 struct Recording {
@@ -55,7 +46,7 @@ class StepCost : public testing::Test {
     for (int block = 0; block < kBlocks; ++block) {
       kernels.push_back(bench::kernel_block(kCycles));
       DriveController controller({}, bench_.robot, bench_.period);
-      controller.reset();
+      controller.enter_run();
       const AllocationGuard guard;
       const std::int64_t start = monotonic_ns();
       for (std::size_t k = 0; k < kCycles; ++k) {
@@ -70,11 +61,7 @@ class StepCost : public testing::Test {
 
   void expect_cheap(const Recording& recording) {
     constexpr double kBound = kPromisedNs / bench::kKernelNs;
-    double best = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < kRounds && best > kBound; ++round) {
-      if (round > 0) std::this_thread::sleep_for(kBetweenRounds);
-      best = std::min(best, ratio(recording));
-    }
+    const double best = bench::best_ratio(kBound, [&] { return ratio(recording); });
     std::cout << "step over kernel: " << best << ", allowed " << kBound << "\n";
     EXPECT_LE(best, kBound);
   }

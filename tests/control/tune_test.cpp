@@ -81,7 +81,7 @@ TEST_F(Tune, LeavesTheControllerThatAStartWithTheseValuesMakes) {
       .mass = 13, .yaw_inertia = 0.6, .wheel_inertia = 0.006, .wheel_damping = 0.03, .wheel_friction = 0.1};
   ControlBench tuned;
   tune(tuned, given);
-  tuned.controller.reset();
+  tuned.controller.enter_run();
   ControlBench started(make_test_robot(), given);
   for (ControlBench* bench : {&tuned, &started}) bench->send(1.0, 0.5);
   for (int k = 0; k < 1500; ++k) {  // ramp, timeout, emergency ramp, rest
@@ -275,7 +275,7 @@ TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
   bench.send(0.5, 0);
   bench.step();
   const double load = 0.5 * 12 * TwoWheelPlant::kGravity * std::sin(0.05) * 0.1;
-  EXPECT_NEAR(bench.command.joints[0].effort, load, kTuneRounding);
+  EXPECT_NEAR(bench.command.joints[0].effort, load, 0.01 * load) << "a mean, whose first sample was 0";
 }
 
 TEST_F(Tune, WhileBrakedAtSpeedChangesNothingThatTheIntegratorsKnow) {

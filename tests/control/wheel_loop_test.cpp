@@ -65,6 +65,21 @@ TEST(WheelLoop, TakesTheLoadAtTheHandOverForNoAcceleration) {
   }
 }
 
+// A slope that began on the way. Left in the residual it made 2 rad/s of a wheel that the brake holds.
+TEST(WheelLoop, TakesALoadThatTheBrakeTakesOverForNoAcceleration) {
+  WheelLoop loop = seeded();
+  double effort = 0;
+  for (int k = 0; k < 1000; ++k) {
+    loop.measure({.position = 1e-6, .effort = effort}, 1, true);
+    effort = loop.step({.velocity = 0.05}, 1);
+  }
+  ASSERT_GT(effort, 0.5);
+  for (int k = 0; k < 100; ++k) {
+    loop.measure({.position = 1e-6, .effort = -effort}, 1, false);
+    ASSERT_LT(std::abs(loop.velocity()), 0.05);
+  }
+}
+
 TEST(WheelLoop, ComparesWithThePlanOfTwoCyclesAgo) {
   WheelLoop loop = seeded(0, {.kp = 2, .ki = 0});
   EXPECT_EQ(loop.step({.velocity = 1}, 1), 0);

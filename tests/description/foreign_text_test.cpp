@@ -64,6 +64,25 @@ TEST_F(ForeignText, Utf16IsNamed) {
   EXPECT_THAT(reading("n.urdf", std::string("<robot name=\"r\"><link name=\"a\"/>\0</robot>", 41)), HasSubstr("NUL"));
 }
 
+TEST_F(ForeignText, BytesThatAreNotUtf8AreNamedWithTheirLine) {
+  for (const std::string bytes : {"gr\xf6\xdf", "\x80", "\xed\xa0\x80", "\xe0\x80\x80", "\xf4\x90\x80\x80"}) {
+    for (const bool comment : {false, true}) {
+      const std::string name = comment ? "r" : bytes;
+      EXPECT_THAT(reading("r.urdf", "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>\n<!-- " + bytes +
+                                        " -->\n<robot name=\"" + name + "\"><link name=\"a\"/></robot>"),
+                  AllOf(HasSubstr("r.urdf line 2"), HasSubstr("not UTF-8"), HasSubstr("iconv")));
+    }
+  }
+  EXPECT_EQ(reading("r.urdf", "<robot name=\"größe 機器人 \xf0\x9f\xa4\x96\"><link name=\"a\"/></robot>"), "accepted");
+}
+
+TEST_F(ForeignText, XacroInAFileOfAnotherNameIsNamed) {
+  EXPECT_THAT(reading("r.urdf",
+                      "<robot name=\"r\" xmlns:xacro=\"http://ros.org/wiki/xacro\">\n<xacro:property name=\"a\" "
+                      "value=\"1\"/>\n<link name=\"${a}\"/></robot>"),
+              AllOf(HasSubstr("r.urdf line 2"), HasSubstr("<xacro:property>"), HasSubstr(".xacro")));
+}
+
 TEST_F(ForeignText, AUtf8MarkIsNoMatter) {
   EXPECT_EQ(reading("r.urdf", "\xef\xbb\xbf<?xml version=\"1.0\"?><robot name=\"r\"><link name=\"a\"/></robot>"),
             "accepted");

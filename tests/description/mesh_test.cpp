@@ -9,6 +9,7 @@
 
 #include "description/robot_description.h"
 #include "mesh_texts.h"
+#include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -36,17 +37,7 @@ class Mesh : public testing::Test {
   Points read(const std::string& name, const std::string& bytes) { return read_mesh(folder_.write(name, bytes)); }
 
   std::string refusal(const std::string& name, const std::string& bytes) {
-    testing::internal::CaptureStderr();
-    testing::internal::CaptureStdout();
-    std::string message = "accepted";
-    try {
-      read(name, bytes);
-    } catch (const RobotError& error) {
-      message = error.what();
-    }
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-    return message;
+    return quiet_refusal<RobotError>([&] { read(name, bytes); });
   }
 
   auto says(const std::string& what) { return AllOf(HasSubstr(folder_.path().string()), HasSubstr(what)); }

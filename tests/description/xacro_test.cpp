@@ -5,6 +5,7 @@
 
 #include "description/other_process.h"
 #include "description/robot_description.h"
+#include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -33,15 +34,7 @@ class Xacro : public testing::Test {
   }
 
   std::string refusal(const std::string& name) {
-    testing::internal::CaptureStderr();
-    std::string message = "accepted";
-    try {
-      expand_xacro(folder_.path() / name);
-    } catch (const RobotError& error) {
-      message = error.what();
-    }
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    return message;
+    return quiet_refusal<RobotError>([&] { expand_xacro(folder_.path() / name); });
   }
 
   TemporaryFolder folder_;

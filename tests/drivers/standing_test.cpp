@@ -46,6 +46,18 @@ TEST_F(Standing, OnItsBodyWithTheWheelsInTheAirIsRefused) {
   }
 }
 
+// What makes the description suspicious may be the reason, and is read with the refusal.
+TEST_F(Standing, ARefusalNamesWhatIsSuspiciousInTheDescription) {
+  MadeRobot robot;
+  robot.body_x = 0.05;
+  try {
+    stood(robot);
+    FAIL() << "accepted";
+  } catch (const DriverError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(" Suspicious: <robot>: nothing within 3° of the ground carries it"));
+  }
+}
+
 // A ball 0.3 m behind the axle ends 1 cm above the ground: the robot leans back on it by θ with
 // 0.3 sin θ + 0.04 cos θ = 0.05. Truth says so, and that the ground is level: nothing sinks as it drives.
 TEST_F(Standing, LeaningBackIsInTheTruthAndTheGroundStaysLevel) {

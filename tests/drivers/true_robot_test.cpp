@@ -61,6 +61,18 @@ TEST_F(TrueRobotTest, AWiderWheelBaseMovesTheWheelsOutwards) {
   EXPECT_NEAR(robot.bodies->moved_by("left_wheel_joint")->in_root.translation().y(), 0.255, 1e-12);
 }
 
+TEST_F(TrueRobotTest, TheJointsFrictionErrs) {
+  auto [text, source] = MadeRobot{}.description();
+  const std::string end = "velocity=\"100\"/>";
+  for (std::size_t at = text.find(end); at != std::string::npos; at = text.find(end, at + end.size())) {
+    text.insert(at + end.size(), "<dynamics friction=\"0.4\"/>");
+  }
+  believed_ = read_robot({text, source}, MadeRobot{}.names());
+  parameters_.wheel_friction_error = 2;
+  EXPECT_NEAR(real().joints[0].friction, 1.2, 1e-12);
+  EXPECT_NEAR(real().bodies->moved_by("right_0")->joint.friction, 1.2, 1e-12);
+}
+
 TEST_F(TrueRobotTest, TheRotorTurnsWithTheSquareOfTheGear) {
   parameters_.gear_ratio = 10;
   parameters_.rotor_inertia = 2e-5;

@@ -7,16 +7,21 @@ in the folder named by ROBOT_CORPUS, else beside the repository in `shared/robot
 from __future__ import annotations
 
 import json
+import math
 import os
+from functools import cache
 from pathlib import Path
 
+from robot_control.inspect.description import describe, stand
 from robot_control.installed_files import share_file
 
 DIFFBOT = "diffbot"
 REFUSED = ("my_bot", "p3dx_amr")  # an empty template; wheels on fixed joints
-STOP_DECELERATION = 0.5  # m/s², the parameter's default; on the ice of the scenes robots slide to a stop with 0.77
-WEAK_STOP_DECELERATIONS = {"create_2": 0.05}  # its nose slides and its wheels carry little: on ice it spins for seconds
+STOP_DECELERATION = 0.5  # m/s², the parameter's default
 SCENES = ("flat", "slope_5deg", "bumps", "low_friction_patch", "walls")
+ICE = 0.1  # friction of the patch
+BRAKED_SLOPE = math.sin(math.radians(5))
+GRAVITY = 9.81  # m/s²
 
 
 def corpus_folder() -> Path | None:
@@ -54,9 +59,19 @@ def urdf_of(name: str) -> str:
     return str(folder / name / "robot.urdf")
 
 
-def stop_deceleration_of(name: str) -> float:
-    """m/s², that its brakes reach in every one of `SCENES`."""
-    return WEAK_STOP_DECELERATIONS.get(name, STOP_DECELERATION)
+@cache
+def stop_deceleration_of(name: str, friction: float = ICE) -> float:
+    """m/s² of the faster side, at least, of a robot that brakes; no more than the parameter's default.
+
+    Wheels on half the base b from the middle carry the part c of the mass m, which has the yaw inertia I; brakes hold a
+    robot on a slope of 5°, and may do no more (brake_limits.h). Sliding straight slows down with a = g·min(μ·c, sin5°),
+    a spin with a·m·(b/2)²/I: seconds on ice, of a long robot on a short base. A fifth less, because casters take weight
+    off the wheels while it slows down.
+    """
+    robot = describe(urdf_of(name))
+    lever = float(robot["mass"] * (robot["wheel_base"] / 2) ** 2 / robot["yaw_inertia"])
+    grip = GRAVITY * min(friction * float(stand(urdf_of(name))["carried"]), BRAKED_SLOPE)
+    return min(STOP_DECELERATION, 0.8 * grip, 0.8 * grip * lever)
 
 
 def scene_of(name: str) -> str:

@@ -8,6 +8,7 @@
 #include "robot/robot_model.h"
 #include "robot/urdf_text.h"
 #include "support/diffbot_urdf.h"
+#include "support/quiet_refusal.h"
 
 namespace robot_control {
 namespace {
@@ -20,17 +21,7 @@ const std::string kFirstJoint = "<joint name=\"left_wheel_joint\"";
 const std::string kLeftLink = "<link name=\"left_wheel_link\">";
 
 std::string refusal(const RobotDescription& description, const RobotParameters& parameters = {}) {
-  testing::internal::CaptureStderr();
-  testing::internal::CaptureStdout();
-  std::string message = "accepted";
-  try {
-    read_robot(description, parameters);
-  } catch (const RobotError& error) {
-    message = error.what();
-  }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  return message;
+  return quiet_refusal<RobotError>([&] { read_robot(description, parameters); });
 }
 
 RobotParameters named() {

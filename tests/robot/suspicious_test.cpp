@@ -133,6 +133,60 @@ TEST(Suspicious, ACentreOfGravityThatTipsTheRobotWhenItBrakes) {
   }
 }
 
+TEST(Suspicious, ARobotThatOnlyItsDriveWheelsCarry) {
+  expect_suspicion(
+      20, [](Made& m, Random&) { m.casters = false; }, "carries it on one side of its centre of gravity");
+}
+
+TEST(Suspicious, NothingOfARobotWhoseSpringsLetItStandOtherwise) {
+  std::string text = made({.casters = false});
+  for (const std::string side : {"left", "right"}) {
+    const std::string hung = "<parent link=\"base_link\"/><child link=\"" + side + "_link\"/>";
+    const std::size_t at = text.find(hung);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, hung.size(), "<parent link=\"" + side + "_spring\"/><child link=\"" + side + "_link\"/>");
+    text += link(side + "_spring", inertial("0.5")) +
+            joint({.name = side + "_hub",
+                   .child = side + "_spring",
+                   .type = "prismatic",
+                   .axis = "<axis xyz=\"0 0 1\"/>",
+                   .rest = "<limit lower=\"-0.05\" upper=\"0.05\" effort=\"500\" velocity=\"1\"/>"});
+  }
+  EXPECT_THAT(suspicion(text), Not(HasSubstr("carries it")));
+}
+
+TEST(Suspicious, WheelsThatCannotMoveTheRobot) {
+  const auto limited = [](double effort, double friction) {
+    std::string text = made({});
+    const std::string axis = "<axis xyz=\"0 1 0\"/>";
+    EXPECT_NE(text.find(axis), std::string::npos);
+    for (std::size_t at = text.find(axis); at != std::string::npos; at = text.find(axis, at + 1)) {
+      text.insert(at, "<limit effort=\"" + std::to_string(effort) + "\" velocity=\"10\"/><dynamics friction=\"" +
+                          std::to_string(friction) + "\"/>");
+      at = text.find(axis, at);
+    }
+    return text;
+  };
+  EXPECT_EQ(suspicion(limited(2, 0.1)), "");
+  EXPECT_THAT(suspicion(limited(0.002, 0)), HasSubstr("accelerate the robot by no more than"));
+  EXPECT_THAT(suspicion(limited(2, 2)), HasSubstr("accelerate the robot by no more than 0 m/s²"));
+}
+
+TEST(Suspicious, AWorldThatTheRobotIsFixedToFarAway) {
+  const auto world = [](double x) {
+    return link("world", "") +
+           joint({.name = "fix",
+                  .child = "base_link",
+                  .xyz = xyz(x, 0, 0),
+                  .type = "fixed",
+                  .axis = "",
+                  .parent = "world"}) +
+           made({});
+  };
+  EXPECT_EQ(suspicion(world(0.5)), "");
+  EXPECT_THAT(suspicion(world(50)), HasSubstr("<link name=\"world\">: it lies 50"));
+}
+
 class Files : public testing::Test {
  protected:
   RobotDescription with(const std::string& text) {

@@ -7,6 +7,7 @@
 
 #include "robot/bodies/rigid_bodies.h"
 #include "robot/urdf_text.h"
+#include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -15,13 +16,8 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string quiet_refusal(const std::string& content) {
-  testing::internal::CaptureStderr();
-  testing::internal::CaptureStdout();
-  const std::string message = refusal_of(robot_of(content));
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  return message;
+std::string refusal(const std::string& content) {
+  return quiet_refusal<RobotError>([&] { read_robot(robot_of(content), {}); });
 }
 
 std::string decorated(const std::string& visual) {
@@ -30,30 +26,29 @@ std::string decorated(const std::string& visual) {
 }
 
 TEST(UrdfTraps, ForeignElementsAndAttributesAreNoMatter) {
-  EXPECT_EQ(quiet_refusal(two_wheels() + "<sim_create/><create><x/></create><ros2_control/><material name=\"m\"/>"),
+  EXPECT_EQ(refusal(two_wheels() + "<sim_create/><create><x/></create><ros2_control/><material name=\"m\"/>"),
             "accepted");
-  EXPECT_EQ(
-      quiet_refusal(base() + wheel("left", "0 0.25 0", "0.1", "<limit effort=\"1\" k_velocity=\"0\" velocity=\"1\"/>") +
+  EXPECT_EQ(refusal(base() + wheel("left", "0 0.25 0", "0.1", "<limit effort=\"1\" k_velocity=\"0\" velocity=\"1\"/>") +
                     wheel("right", "0 -0.25 0", "0.1", "<safety_controller/><calibration rising=\"x\"/>")),
-      "accepted");
+            "accepted");
 }
 
 TEST(UrdfTraps, UndefinedAndTwiceDefinedMaterialsAreNoMatter) {
-  EXPECT_EQ(quiet_refusal(two_wheels() + decorated("<geometry><box size=\"1 1 1\"/></geometry><material "
-                                                   "name=\"nowhere\"/>")),
+  EXPECT_EQ(refusal(two_wheels() + decorated("<geometry><box size=\"1 1 1\"/></geometry><material "
+                                             "name=\"nowhere\"/>")),
             "accepted");
-  EXPECT_EQ(quiet_refusal("<material name=\"m\"/><material name=\"m\"/>" + two_wheels()), "accepted");
+  EXPECT_EQ(refusal("<material name=\"m\"/><material name=\"m\"/>" + two_wheels()), "accepted");
 }
 
 TEST(UrdfTraps, VisualMeshesAreNeitherReadNorJudged) {
-  EXPECT_EQ(quiet_refusal(two_wheels() + decorated("<geometry><mesh filename=\"package://nowhere/x.dae\" "
-                                                   "scale=\"\"/><mesh filename=\"y.stl\"/></geometry>")),
+  EXPECT_EQ(refusal(two_wheels() + decorated("<geometry><mesh filename=\"package://nowhere/x.dae\" "
+                                             "scale=\"\"/><mesh filename=\"y.stl\"/></geometry>")),
             "accepted");
-  EXPECT_EQ(quiet_refusal(two_wheels() + decorated("<geometry/>")), "accepted");
+  EXPECT_EQ(refusal(two_wheels() + decorated("<geometry/>")), "accepted");
 }
 
 TEST(UrdfTraps, CommentsSayNothing) {
-  EXPECT_EQ(quiet_refusal("<!-- ${x} <mesh filename=\"package://nowhere/x.stl\" scale=\"\"/> -->" + two_wheels()),
+  EXPECT_EQ(refusal("<!-- ${x} <mesh filename=\"package://nowhere/x.stl\" scale=\"\"/> -->" + two_wheels()),
             "accepted");
 }
 
@@ -90,7 +85,7 @@ TEST(UrdfTraps, DegreesInTheLimitsAreNoted) {
 }
 
 TEST(UrdfTraps, AWheelThatTurnsOnlySoFarIsNone) {
-  EXPECT_THAT(quiet_refusal(revolute_wheels("<limit lower=\"-1\" upper=\"1\"/>")),
+  EXPECT_THAT(refusal(revolute_wheels("<limit lower=\"-1\" upper=\"1\"/>")),
               HasSubstr("left: it turns only from -1 to 1 rad"));
 }
 

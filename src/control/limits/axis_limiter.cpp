@@ -47,34 +47,36 @@ bool slows_down(double speed, double target) noexcept {
   return opposite(speed, target - speed);
 }
 
-AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limits, double jerk, double dt) noexcept {
+AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limits, double release_jerk,
+                   double dt) noexcept {
   const double ahead = std::copysign(1.0, target - state.speed);
   const double distance = std::abs(target - state.speed);
   const double before = ahead * state.acceleration;
   const double aim = largest_acceleration(ahead * state.speed, distance, limits, dt);
-  const double lowest = before - jerk * dt;
-  const double highest =
-      before < 0 ? std::max(std::min(before + jerk * dt, 0.0), before + limits.jerk * dt) : before + limits.jerk * dt;
+  const double lowest = before - release_jerk * dt;
+  const double highest = before < 0 ? std::max(std::min(before + release_jerk * dt, 0.0), before + limits.jerk * dt)
+                                    : before + limits.jerk * dt;
   const double next = std::clamp(aim, lowest, highest);
 
   const double arriving = distance / dt;
   AxisStep step;
   step.state.speed = next == arriving ? target : state.speed + ahead * next * dt;
+  const bool arrives = step.state.speed == target;  // by rounding, too
   // An acceleration that rounding lifted above the jerk of one step would lead beyond the target.
-  const bool faster = next > jerk * dt * (1 + kRounding);
-  step.state.acceleration = ahead * (next == arriving && !faster ? std::min(next, jerk * dt) : next);
+  const bool faster = next > release_jerk * dt * (1 + kRounding);
+  step.state.acceleration = ahead * (arrives && !faster ? std::min(next, release_jerk * dt) : next);
   const bool beyond_zero = state.speed == 0 ? step.state.speed != 0 : opposite(state.speed, step.state.speed);
   const bool stops = beyond_zero && (target == 0 || opposite(step.state.speed, target));
   if (stops) step.state.speed = 0;
   step.acceleration = (step.state.speed - state.speed) / dt;
 
   const double bound = slows_down(state.speed, target) ? limits.deceleration : limits.acceleration;
-  step.planned = next == aim;
+  step.released = next >= 0 && next <= aim;
   step.acceleration_limited = next < arriving && next >= bound;
   step.jerk_limited = next < arriving && next < bound;
   if (stops) {
     const double jerked = std::max(std::abs(step.acceleration - state.acceleration), std::abs(step.acceleration));
-    step.jerk_yielded = jerked > jerk * dt;
+    step.jerk_yielded = jerked > release_jerk * dt;
     step.state.acceleration = step.jerk_yielded ? 0 : step.acceleration;
   }
   return step;

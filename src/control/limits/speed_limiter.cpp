@@ -115,8 +115,8 @@ PlanarTwist SpeedLimiter::step(const PlanarTwist& target, double dt, bool emerge
 
   const AxisStep linear = axis_step(linear_, goal.linear, linear_plan, release_jerk_.linear, dt);
   const AxisStep angular = axis_step(angular_, goal.angular, angular_plan, release_jerk_.angular, dt);
-  if (linear.planned) release_jerk_.linear = limits_.linear.jerk;
-  if (angular.planned) release_jerk_.angular = limits_.angular.jerk;
+  if (linear.released) release_jerk_.linear = limits_.linear.jerk;
+  if (angular.released) release_jerk_.angular = limits_.angular.jerk;
   const std::uint64_t shaped = reasons_of(linear) | reasons_of(angular);
   const bool kept = scaled(linear_plan, linear_approach.own) || scaled(angular_plan, angular_approach.own);
   if (kept && (shaped & (kReasonAccelerationLimited | kReasonJerkLimited)) != 0) reasons_ |= kReasonCurvatureKept;

@@ -32,8 +32,7 @@ double turning_inertia(const RobotModel& robot, const WheelModel& wheel) noexcep
 }
 
 FeedForward::FeedForward(const RobotModel& robot)
-    : scrub_(robot),
-      mass_(robot.mass),
+    : mass_(robot.mass),
       yaw_inertia_(robot.yaw_inertia),
       centre_ahead_(robot.centre_of_gravity_base[0] - middle_of_wheels(robot)),
       wheel_base_(robot.wheel_base),
@@ -67,9 +66,9 @@ WheelValues FeedForward::efforts(const PlanarTwist& twist, const PlanarTwist& ac
   const double difference = moment / wheel_base_;
   const double rim_difference = half_base_ * acceleration.angular;
   const double rim_speed_difference = half_base_ * twist.angular;
-  WheelValues efforts = scrub_.efforts(twist.linear, twist.angular);
+  WheelValues efforts{};
   for (std::size_t i = 0; i < wheels_; ++i) {
-    efforts[i] = kGroundFriction * efforts[i] + effort_per_force_[i] * (0.5 * force + side_[i] * difference) +
+    efforts[i] = effort_per_force_[i] * (0.5 * force + side_[i] * difference) +
                  effort_per_acceleration_[i] * (acceleration.linear + side_[i] * rim_difference);
     const double velocity = turn_per_rim_[i] * (twist.linear + side_[i] * rim_speed_difference);
     efforts[i] += damping_[i] * velocity;

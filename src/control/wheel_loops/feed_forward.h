@@ -20,18 +20,14 @@
 ///   straight: J + m·r²/(2·h)      turning: J + 2·I·r²/(h·b·b_eff)      lifted: J
 /// With 12 kg, r = 0.1 m, J = 0.005, I = 0.5 kg·m², b = 0.5 m, h = 1: 0.065, 0.045 and 0.005 kg·m².
 ///
-/// Wheels behind each other need the torque of scrub.h in a turn, at the friction kGroundFriction. What the real ground
-/// differs from it, and slopes, are compensated by the integrator.
+/// Wheels behind each other need the torque of scrub.h in a turn besides, times the friction of the ground
+/// (ground_friction.h). Slopes are compensated by the integrator.
 
 #include "control/planar_twist.h"
 #include "robot/robot_model.h"
-#include "robot/wheels/scrub.h"
 #include "signals/drive_tuning.h"
 
 namespace robot_control {
-
-/// Between smooth wet floors, 0.5, and rubber on dry concrete, 1: the integrator has to take at most a third.
-inline constexpr double kGroundFriction = 0.7;
 
 /// kg·m² about the axle of one wheel.
 double straight_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept;
@@ -44,11 +40,10 @@ class FeedForward {
   /// Another mass, yaw inertia, and per wheel inertia, damping and friction, from now on.
   void tune(const DriveTuning& tuning) noexcept;
 
-  /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²), that of the joint included.
+  /// N·m per wheel for moving at `twist` with `acceleration` (m/s², rad/s²), that of the joint included, without scrub.
   WheelValues efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) const noexcept;
 
  private:
-  Scrub scrub_;
   double mass_;
   double yaw_inertia_;
   double centre_ahead_;  ///< m, x_c

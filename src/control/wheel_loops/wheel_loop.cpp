@@ -25,14 +25,19 @@ void WheelLoop::reset() noexcept {
 }
 
 void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, const FeedForwardDecrease& decrease) noexcept {
-  tracking_.tune(bandwidth, effort_residual_ / gains_.model_inertia - effort_residual_ / gains.model_inertia);
+  tracking_.tune(bandwidth);
+  tracking_.know_less(effort_residual_ / gains_.model_inertia - effort_residual_ / gains.model_inertia);
   if (!last_gains_ && (gains.kp != gains_.kp || gains.kd != gains_.kd)) last_gains_ = gains_;
   gains_ = gains;
-  integral_ = std::clamp(integral_ + decrease.steady, -effort_limit_, effort_limit_);
   planned_hand_over_ += decrease.inertial;
+  move_to_feed_forward(-decrease.steady);
+}
+
+void WheelLoop::move_to_feed_forward(double part) noexcept {
+  integral_ = std::clamp(integral_ - part, -effort_limit_, effort_limit_);
   // The torques under way were planned with the old feed-forward: without this the tracking loop would see a residual.
-  load_ += decrease.steady;
-  for (WheelPlan& plan : plans_) plan.feed_forward -= decrease.steady;
+  load_ -= part;
+  for (WheelPlan& plan : plans_) plan.feed_forward += part;
 }
 
 void WheelLoop::measure(const JointSample& sample, double periods, bool driven) noexcept {
@@ -46,6 +51,7 @@ void WheelLoop::measure(const JointSample& sample, double periods, bool driven) 
   // While cycles were skipped the driver held the last command.
   if (periods > 1) plans_[1] = plans_[0];
   const WheelPlan& plan = plans_[1];
+  if (!driven) tracking_.know_less(effort_residual_ / gains_.model_inertia);
   effort_residual_ = driven ? sample.effort - plan.feed_forward - load_ : 0;
   tracking_.step(sample.position, driven ? plan.acceleration + effort_residual_ / gains_.model_inertia : 0.0, periods);
 }

@@ -13,13 +13,14 @@
 ///   known acceleration over [t_k-1, t_k)
 ///     = acceleration_plan(k−2) + (effort_measured − feed_forward(k−2) − load)/model_inertia
 /// with the constant load = integral at the last hand-over; under the brake, whose torque is not this loop's, the known
-/// acceleration is 0. Without it the lag of the tracking loop makes a lifted wheel unstable at every useful kp. Plan
-/// and torque need not be exact: the loop's residual estimates the rest.
+/// acceleration is 0, and what followed from the torque before goes to the residual, which had to cancel it wherever
+/// load or integral have changed since the hand-over. Without it the lag of the tracking loop makes a lifted wheel
+/// unstable at every useful kp. Plan and torque need not be exact: the loop's residual estimates the rest.
 ///
 /// Anti-windup by conditional integration: the integrator stops while its change would increase a clamped sum, clamped
 /// here or by the gate, and |integral| ≤ effort_limit. With ki = 0 a preloaded integrator would never change: it decays
 /// with 0.1 s, the pace of derived gains. Bumpless: `preload_integrator` sets the integrator to the load that the brake
-/// was holding, so the first torque after a brake equals the torque before it, and a robot on a slope does not sag.
+/// was holding, so that a robot on a slope does not sag.
 ///
 /// Bumpless change of gains and feed-forward (`tune`): torque, up to ki·error·dt, and tracked speed continue without a
 /// jump, and nothing remains of it when the present ramp has ended. A difference of feed-forward at constant speed is a
@@ -42,7 +43,7 @@
 #include <array>
 #include <optional>
 
-#include "control/wheel_loops/tracking_loop.h"
+#include "robot/encoders/tracking_loop.h"
 #include "signals/joint.h"
 
 namespace robot_control {
@@ -83,6 +84,9 @@ class WheelLoop {
 
   /// Between two cycles: other gains and bandwidth, Hz.
   void tune(const WheelLoopGains& gains, double bandwidth, const FeedForwardDecrease& decrease) noexcept;
+
+  /// `part` of the integral, N·m, from now on comes with the feed-forward.
+  void move_to_feed_forward(double part) noexcept;
 
   /// Until this wheel's angle changes for the first time, its encoder is taken for that of `other`.
   void assume_encoder_of(const WheelLoop& other) noexcept { tracking_.assume_encoder_of(other.tracking_); }

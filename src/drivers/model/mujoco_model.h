@@ -58,8 +58,8 @@ MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& 
 /// Fresh data, the robot at its start pose, at rest, not yet settled.
 MujocoData set_down(const MujocoModel& robot);
 
-/// Robot and scene as one MJCF text that stands for itself, as `mujoco-simulate` opens it; with native friction,
-/// which is all it knows. Files that the scene loads (textures, meshes) keep their names. Throws as compile_model.
+/// Robot and scene as one self-contained MJCF text, as `mujoco-simulate` opens it; with native friction, the only
+/// one that it has. Files that the scene loads (textures, meshes) keep their names. Throws as compile_model.
 std::string exported_mjcf(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
 }  // namespace robot_control

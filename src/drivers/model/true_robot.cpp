@@ -56,7 +56,11 @@ RobotModel true_robot(const RobotModel& described, const MujocoPlantParameters& 
     wheel.centre_base[1] += outwards;
     wheel.rotor_inertia += rotor;
     wheel.inertia += rotor;
-    moved_by(*bodies, robot.joints[wheel.joint].name).in_root.translation().y() += outwards;
+    JointModel& joint = robot.joints[wheel.joint];
+    RigidBody& body = moved_by(*bodies, joint.name);
+    joint.friction *= 1 + parameters.wheel_friction_error;
+    body.joint.friction *= 1 + parameters.wheel_friction_error;
+    body.in_root.translation().y() += outwards;
   }
   robot.wheel_base *= 1 + parameters.wheel_base_error;
   if (parameters.payload > 0) {

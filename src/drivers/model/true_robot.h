@@ -4,6 +4,7 @@
 ///
 ///   radius      (1 + left_radius_error) or (1 + right_radius_error) times the URDF's
 ///   wheel base  every wheel moved sideways by wheel_base_error · wheel_base / 2, outwards
+///   friction    dry, of a wheel's joint: (1 + wheel_friction_error) times the URDF's
 ///   inertia     of a wheel about its axle: + gear_ratio² · rotor_inertia
 ///   payload     a point mass, fixed to the base
 ///   centre of gravity   in the field (errors.h), ahead and to the left of the described one by

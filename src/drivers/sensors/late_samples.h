@@ -6,10 +6,10 @@
 ///
 /// and in cycle k the driver reports the newest one that has arrived, the first sample until there is one: one sample
 /// may be reported in several cycles, another in none, and their order holds. The frame's stamp is the time of the
-/// cycle, not of the sample, as a driver's is that knows no better: how old a sample is, its receiver has to find out
-/// or to cover.
+/// cycle, not of the sample, as that of a driver that cannot measure the delay: the receiver has to estimate or to
+/// tolerate the age of a sample.
 ///
-/// Holds all that is on its way itself: no allocation after construction.
+/// Holds all samples that have not arrived yet itself: no allocation after construction.
 
 #include <algorithm>
 #include <cmath>

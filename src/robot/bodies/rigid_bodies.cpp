@@ -151,7 +151,7 @@ class Lumper {
     }
   }
 
-  /// What RViz would draw. Wheels may get their shapes from there, so it is said before they are measured.
+  /// What RViz would draw. Wheels may get their shapes from there, so it is noted before they are measured.
   void note_missing_visuals() {
     if (missing_visuals_.empty()) return;
     std::string files;

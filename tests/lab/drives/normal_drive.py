@@ -14,6 +14,7 @@ STEP = 0.1  # s, between two commands
 LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default parameters
 ARRIVED = 0.15  # m
 TIMEOUT = 15.0  # s, then another waypoint
+WHEEL_COLUMNS = ("effort", "velocity_measured", "velocity_command")
 COLUMNS = ("permit_causes", "permit_warnings", "gate_verdict", "supervisor_state", "truth_x", "truth_y", "truth_yaw")
 
 
@@ -59,14 +60,15 @@ class NormalDrive:
         self._paused_until: float | None = None
 
     def run(self, seconds: float) -> Log:
-        """Log of the `COLUMNS` that there are, and path length [m] as `distance`, shape (1,)."""
+        """Log of the `COLUMNS`, of each wheel's `WHEEL_COLUMNS`, and path length [m] as `distance`, shape (1,)."""
         parts: list[Log] = []
+        wheels = [f"{wheel['joint']}_{name}" for wheel in self._loop.robot["wheels"] for name in WHEEL_COLUMNS]
         log = self._loop.step(self._cycles)
         until = self._loop.time + seconds
         while self._loop.time < until:
             self._command(log)
             log = self._loop.step(self._cycles)
-            parts.append({name: log[name] for name in (*COLUMNS, "cycle")})
+            parts.append({name: log[name] for name in (*COLUMNS, *wheels, "cycle")})
         whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
         whole["distance"] = np.array([np.hypot(np.diff(whole["truth_x"]), np.diff(whole["truth_y"])).sum()])
         return whole

@@ -1,6 +1,6 @@
 """Hours of normal driving, over all scenes, robots and rates: the safety monitor has nothing to say, but that wheels
 slip where they do: on ice, and of robots that turn astride a bump; and that who got stuck there is stalled. Beside
-them the turns of turning_drive.py, of every robot.
+them the turns of turning_drive.py, of every robot. So is a wheel that stands before a bump under all of its torque.
 
 python3 -m lab.drives.normal_driving --share 0.1     # a tenth of the two hours
 """
@@ -19,7 +19,7 @@ from robot_control.closed_loop import ClosedLoop, Log
 from robot_control.common.cause_names import causes_in
 
 from lab.drives import turning_drive
-from lab.drives.normal_drive import LINEAR_LIMIT, NormalDrive, area_of
+from lab.drives.normal_drive import LINEAR_LIMIT, WHEEL_COLUMNS, NormalDrive, area_of
 from lab.drives.sensor_errors import LEVELS, plant_parameters
 from lab.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
 from lab.runs.runner import Processes, Runner
@@ -29,6 +29,7 @@ SLOW = 500  # Hz; below, the loops are too weak for bumps: wheels stand before t
 SKID_ICE_SPEED = 0.4  # m/s
 OTHERS_SECONDS = 15.0  # in each scene, of each real robot
 TRUE_WARNINGS = {"low_friction_patch": {"yaw_rate"}, "bumps": {"yaw_rate"}}
+HARDLY = 0.3  # of the target
 TURNS = 40  # seeds of turning_drive.py, of each robot
 LONGEST = 300.0  # s, of one drive: so that all processors have something to do to the end
 
@@ -90,6 +91,19 @@ def stuck(log: Log, rate: int) -> bool:
     return bool(moved < 0.01 and abs(log["truth_yaw"][stop] - log["truth_yaw"][before]) < 0.05)
 
 
+def pushed_in_vain(log: Log, loop: ClosedLoop) -> bool:
+    """In the quarter second before the first stop a motor was at its torque limit, and its wheel hardly turned."""
+    stop = int(np.argmax(log["permit_causes"] > 0))
+    before = slice(max(0, stop - round(0.25 / loop.period)), stop)
+    limits = {joint["name"]: joint["effort_limit"] for joint in loop.robot["joints"]}
+    for wheel in loop.robot["wheels"]:
+        effort, speed, target = (log[f"{wheel['joint']}_{name}"][before] for name in WHEEL_COLUMNS)
+        at_limit = np.abs(effort) > 0.99 * limits[wheel["joint"]]
+        if at_limit.all() and abs(speed[-1]) < HARDLY * abs(target[-1]):
+            return True
+    return False
+
+
 def top_speed(loop: ClosedLoop, scene: str) -> float:
     """m/s. Skid steers that slide sideways off the ice stand on blocked wheels: a person slows down there."""
     return SKID_ICE_SPEED if scene == "low_friction_patch" and len(loop.robot["wheels"]) > 2 else LINEAR_LIMIT
@@ -106,7 +120,7 @@ def carry_out(drive: Drive) -> Driven:
     log = NormalDrive(loop, area_of(drive.scene), drive.seed, top_speed(loop, drive.scene)).run(drive.seconds)
     warnings = set(causes_in(log["permit_warnings"])) - TRUE_WARNINGS.get(drive.scene, set())
     causes = causes_in(log["permit_causes"])
-    if causes == ["stall"] and stuck(log, drive.rate):
+    if causes == ["stall"] and (stuck(log, drive.rate) or pushed_in_vain(log, loop)):
         causes = []
     return Driven(drive, causes, sorted(warnings), float(log["distance"][0]))
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Position, velocity and acceleration of a joint from its encoder angle and the acceleration that its motor explains:
-/// a third-order tracking loop (PLL) that knows what an encoder count says.
+/// a third-order tracking loop (PLL) with a model of an encoder's counts.
 ///
 /// Per sample, with dt since the last one and p = exp(−2π·f·dt):
 ///
@@ -11,17 +11,18 @@
 /// `known` is the part of the acceleration that the caller knows (0: the plain PLL), `residual` the part that the loop
 /// estimates, and acceleration = known + residual.
 ///
-/// An encoder count of angle q says no more than that the true angle lies in the cell measured ± q/2, and that it lay
+/// An encoder count of angle q shows only that the true angle lies in the cell measured ± q/2, and that it lay
 /// in the last cell one sample ago. [l, h]: the part of the cell that is reached from the last one with velocity⁻. So
 ///
 ///   e_out = the way from position⁻ to [l, h]; 0 inside     what contradicts the encoder
 ///   e_in  = from there to the middle of [l, h]             what the encoder does not know
-///   e     = e_out + κ²·e_in,      e_acc = e_out·|e_out|/(|e_out| + q'/4)
+///   e     = e_out + κ²·e_in,      e_acc = e_out·max(|e_out|/(|e_out| + q'/4), n)
 ///
 ///   f_in = min(bandwidth/5, |velocity|/q/40)      pace inside the cell: at most a fortieth of the rate of counts
-///   f    = max(5·f_in, m·bandwidth·min(|e_out|/q', 1), bandwidth·clamp(s/q − 1, 0, 1), bandwidth/10)   κ = f_in/f
+///   f    = max(5·f_in, m·bandwidth·min(|e_out|/q', 1), n·bandwidth, bandwidth/10)   κ = f_in/f
 ///   q'   = q·min(1, q/(2π/512))                   by how much counts have to be contradicted: less of fine ones
-///   s    = |∫ velocity⁻ dt| since the last count: a wheel that should have shown one, and did not
+///   n    = clamp(s/q − 1, 0, 1), s = |∫ velocity⁻ dt| since the last count: a wheel that should have shown one, and
+///          did not, is held; without n, torque that grows against friction passes for a speed
 ///   m    = min(1, max(|velocity|, 1.5 rad/s)/(2π·bandwidth·q))     a count may change the velocity by 2π·f·q
 ///
 /// While prediction and counts agree, as in every steady motion, counts hardly appear in the velocity; what contradicts
@@ -38,7 +39,7 @@
 /// not. Steady-state errors, w = 2π·bandwidth: constant position, velocity and acceleration 0. Constant jerk j: j/w³ in
 /// position, 3·j/w² in velocity (both to first order in w·dt), for all jerk that is not in `known`.
 
-#include "control/wheel_loops/encoder_quantum.h"
+#include "robot/encoders/encoder_quantum.h"
 
 namespace robot_control {
 
@@ -56,9 +57,11 @@ class TrackingLoop {
   /// What was learned of the encoder stays.
   void restart_from(double position, double velocity) noexcept;
 
-  /// Another bandwidth, Hz > 0, from the next sample on; the tracked state stays. `known_decrease`, rad/s²: decrease of
-  /// the known acceleration; it is added to the residual.
-  void tune(double bandwidth, double known_decrease) noexcept;
+  /// Another bandwidth, Hz > 0, from the next sample on; the tracked state stays.
+  void tune(double bandwidth) noexcept;
+
+  /// From the next sample on the caller knows `decrease` less of the acceleration, rad/s²; the residual has it.
+  void know_less(double decrease) noexcept { residual_ += decrease; }
 
   /// The sample `periods` ≥ 1 periods after the last one.
   void step(double position_measured, double known_acceleration, double periods) noexcept;
@@ -78,7 +81,7 @@ class TrackingLoop {
 
   static Gains gains(double pole, double dt) noexcept;
   void derive() noexcept;  ///< what follows from bandwidth and quantum
-  double part_of_bandwidth(double pace, double beyond) const noexcept;
+  double part_of_bandwidth(double pace, double beyond, double silent) const noexcept;
 
   double bandwidth_;
   double period_;

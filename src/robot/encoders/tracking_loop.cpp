@@ -1,4 +1,4 @@
-#include "control/wheel_loops/tracking_loop.h"
+#include "robot/encoders/tracking_loop.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,19 +62,17 @@ void TrackingLoop::restart_from(double position, double velocity) noexcept {
   known_ = 0;
 }
 
-void TrackingLoop::tune(double bandwidth, double known_decrease) noexcept {
+void TrackingLoop::tune(double bandwidth) noexcept {
   bandwidth_ = bandwidth;
   derive();
-  residual_ += known_decrease;
 }
 
-double TrackingLoop::part_of_bandwidth(double pace, double beyond) const noexcept {
+double TrackingLoop::part_of_bandwidth(double pace, double beyond, double silent) const noexcept {
   const double quantum = quantum_.value();
   const double quick = std::max(kQuick, std::abs(velocity_));       // rad/s
   const double loud = 2 * std::numbers::pi * bandwidth_ * quantum;  // rad/s
   const double most = loud > quick ? quick / loud : 1;              // m of the header
   const double evidence = beyond < doubt_ ? beyond / doubt_ : 1;
-  const double silent = std::clamp(std::abs(travelled_) / quantum - 1, 0.0, 1.0);
   return std::max({pace, most * evidence, silent, kLeast});
 }
 
@@ -101,14 +99,15 @@ void TrackingLoop::step(double position_measured, double known_acceleration, dou
 
   const double pace =
       std::abs(velocity_) < slowest_ ? std::abs(velocity_) / slowest_ : 1;  // f_in, of its largest value
-  const double part = pace < 1 ? part_of_bandwidth(pace, std::abs(beyond)) : 1;
+  const double silent = pace < 1 ? std::clamp(std::abs(travelled_) / quantum_.value() - 1, 0.0, 1.0) : 0;
+  const double part = pace < 1 ? part_of_bandwidth(pace, std::abs(beyond), silent) : 1;
   const double ratio = pace < 1 ? kInside * pace / part : kInside;  // κ
   const Gains gain = part == 1 && periods == 1 ? nominal_ : gains(cheap_pole(part * bandwidth_, dt), dt);
   const double innovation = beyond + ratio * ratio * centre;
   position_ += gain.position * innovation;
   velocity_ += gain.velocity * innovation;
   const double trust = doubt_ > 0 ? std::abs(beyond) / (std::abs(beyond) + kDoubt * doubt_) : 1;
-  residual_ += gain.residual * trust * beyond;
+  residual_ += gain.residual * std::max(trust, silent) * beyond;
 }
 
 }  // namespace robot_control

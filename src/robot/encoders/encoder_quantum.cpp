@@ -1,4 +1,4 @@
-#include "control/wheel_loops/encoder_quantum.h"
+#include "robot/encoders/encoder_quantum.h"
 
 #include <cmath>
 #include <initializer_list>
@@ -11,7 +11,7 @@ bool EncoderQuantum::refine(double turned) noexcept {
   const double before = value_;
   if (!changed_ && std::abs(turned) > kLeast) {
     changed_ = true;
-    value_ = kCoarsest;  // what another wheel's encoder said no longer counts
+    value_ = kCoarsest;  // what another wheel's encoder has shown no longer counts
   }
   for (const double step : {turned, turned - last_}) {
     const double size = std::abs(step);
