@@ -40,6 +40,10 @@ class FaultyFrameOutput final : public OutputDecorator<Frame> {
       publish_token(channel, head);
       return false;
     }
+    if (kind == FaultKind::kOk) {
+      channel.publish_sealed(frame);
+      return true;
+    }
     frame.head = head;
     seal(frame);
     if (broken) frame.head.checksum = ~frame.head.checksum;

@@ -4,7 +4,7 @@
 ///
 ///   kOk            the healthy value
 ///   kOff           nothing
-///   kStuck         the value of the cycle in which the fault began, for ever
+///   kStuck         the value of the cycle in which the fault began, as long as the fault lasts
 ///   kGarbage       what `distort` makes of it, from random numbers
 ///   kWrong         what `distort` makes of it
 ///   kSlow          a new value when the fault begins and every kFaultCycles cycles after; in between none

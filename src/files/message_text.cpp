@@ -9,6 +9,12 @@ bool continues(char c) {
   return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
 }
 
+/// The first two of three or four bytes: longer than needed, a surrogate, or beyond U+10FFFF.
+bool is_forbidden(unsigned char first, unsigned char second) {
+  return (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) || (first == 0xf0 && second < 0x90) ||
+         (first == 0xf4 && second >= 0x90);
+}
+
 /// Bytes of the UTF-8 character that begins `text`; 0: none does.
 std::size_t character_bytes(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
@@ -22,7 +28,7 @@ std::size_t character_bytes(std::string_view text) {
   for (std::size_t i = 1; i < bytes; ++i) {
     if (!continues(text[i])) return 0;
   }
-  return bytes;
+  return bytes > 2 && is_forbidden(first, static_cast<unsigned char>(text[1])) ? 0 : bytes;
 }
 
 bool is_control(std::string_view character) {
@@ -49,6 +55,16 @@ std::size_t end_of_part(std::string_view text, std::size_t from) {
 }
 
 }  // namespace
+
+std::size_t utf8_end(std::string_view text) {
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t bytes = character_bytes(text.substr(at));
+    if (bytes == 0) return at;
+    at += bytes;
+  }
+  return at;
+}
 
 std::string printable(std::string_view text, std::size_t most) {
   std::string result;

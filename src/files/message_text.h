@@ -16,6 +16,9 @@ inline constexpr std::size_t kLongestSentence = 1500;  ///< bytes, of a sentence
 /// characters, with … behind.
 std::string printable(std::string_view text, std::size_t most = kLongestEcho);
 
+/// Bytes from the beginning that are UTF-8: all, or the place of the first byte that is not.
+std::size_t utf8_end(std::string_view text);
+
 /// A whole sentence in which inputs stand already: every word and every quoted part longer than kLongestEcho is cut as
 /// by `printable`, the sentence at kLongestSentence. Lines stay lines.
 std::string fit_for_message(std::string_view sentence);

@@ -45,8 +45,8 @@ class OutputDescriptor {
     if (::close(std::exchange(number_, -1)) != 0) fail();
   }
 
-  /// False: this user may not give the file away.
-  bool take_after(const struct stat& old) const {
+  /// False: this user may not change the owner.
+  bool copy_owner_and_mode(const struct stat& old) const {
     struct stat own {};
     if (fstat(number_, &own) != 0) fail();
     const bool other = own.st_uid != old.st_uid || own.st_gid != old.st_gid;
@@ -62,7 +62,7 @@ class OutputDescriptor {
   int number_;
 };
 
-/// Where symbolic links lead to, be it there or not.
+/// Where symbolic links lead to, whether it exists or not.
 fs::path behind_links(fs::path path) {
   constexpr int kLongestChain = 40;  // of the kernel's
   for (int links = 0; links < kLongestChain; ++links) {
@@ -87,7 +87,7 @@ bool replace(const fs::path& path, const struct stat* old, const std::string& te
   unlink(fresh.c_str());  // of a process that was killed
   try {
     OutputDescriptor file(fresh, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
-    if (old != nullptr && !file.take_after(*old)) {
+    if (old != nullptr && !file.copy_owner_and_mode(*old)) {
       unlink(fresh.c_str());
       return false;
     }

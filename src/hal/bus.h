@@ -41,7 +41,7 @@ struct ChannelNames {
   static constexpr const char* kPermit = "permit";
   static constexpr const char* kTruth = "truth";
   static constexpr const char* kTraceRead = "trace_read";
-  // rings: "trace_plant" "trace_estimator" "trace_controller" "trace_monitor"
+  // rings: "trace_" and "snapshot_" "plant", "estimator", "controller", "monitor"
 };
 
 /// The layout of LatestFrames<Frame>, Ring<Row>, RingPositions.
@@ -53,9 +53,9 @@ struct BusLayoutOf<LatestFrames<Frame>> {
   static constexpr BusLayout value{sizeof(LatestFrames<Frame>), sizeof(Frame), kFrameSlots};
 };
 
-template <class Row>
-struct BusLayoutOf<Ring<Row>> {
-  static constexpr BusLayout value{sizeof(Ring<Row>), sizeof(Row), kRingRows};
+template <class Row, std::size_t Rows>
+struct BusLayoutOf<Ring<Row, std::atomic, Rows>> {
+  static constexpr BusLayout value{sizeof(Ring<Row, std::atomic, Rows>), sizeof(Row), Rows};
 };
 
 template <>

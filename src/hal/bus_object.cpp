@@ -39,7 +39,7 @@ static_assert(offsetof(ChannelHead, retired) == offsetof(HeadStart, retired));
 enum class Finding {
   kUsable,
   kEmpty,      ///< being made, or its maker died
-  kTruncated,  ///< shorter than a head, or than its head says
+  kTruncated,  ///< shorter than a head, or than its head states
   kForeign,    ///< not of this software
   kOtherLayout,
   kRetired,

@@ -21,7 +21,7 @@ class BusError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the head of a channel's object must say, and how long the object must be.
+/// What the head of a channel's object must contain, and how long the object must be.
 struct BusLayout {
   std::uint64_t object_bytes = 0;
   std::uint64_t frame_bytes = 0;

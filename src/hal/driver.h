@@ -39,7 +39,7 @@ class Driver {
   /// the cycle number jumps by the periods missed.
   virtual bool simulated() const noexcept { return false; }
 
-  /// What really is at t_k, where the driver knows (a simulator). False: no truth to be had.
+  /// The true state at t_k, of a simulator. False: this driver has none.
   virtual bool truth(TruthFrame& /*truth*/) noexcept { return false; }
 
   /// From the next `read` on the machine has these faults. False: it is no simulator.

@@ -27,8 +27,8 @@ class OutputDecorator {
  public:
   virtual ~OutputDecorator() = default;
 
-  /// Publishes the frame of this cycle, or a token. `sensors`: of the same cycle. `frame`: complete but for its head;
-  /// afterwards what was published. False: a token was.
+  /// Publishes the frame of this cycle, or a token. `sensors`: of the same cycle. `frame`: sealed; afterwards what was
+  /// published. False: a token was.
   virtual bool publish(FrameWriter<Frame> channel, const FrameHead& head, const SensorFrame& sensors,
                        Frame& frame) noexcept = 0;
 
@@ -50,24 +50,36 @@ class FrameOutput {
 
   /// As OutputDecorator::publish.
   bool publish(const FrameHead& head, const SensorFrame& sensors, Frame& frame) noexcept {
-    if (decorator_ != nullptr) return decorator_->publish(channel_, head, sensors, frame);
-    publish_frame(head, frame);
-    return true;
+    complete(head, frame);
+    if (decorator_ == nullptr) {
+      channel_.publish_sealed(frame);
+      return true;
+    }
+    if (decorator_->publish(channel_, head, sensors, frame)) return true;
+    frame.head = head;
+    frame.head.kind = FrameKind::kToken;
+    return false;
   }
 
   /// Once more in the same cycle, with other content.
   void publish_again(const FrameHead& head, const SensorFrame& sensors, Frame& frame) noexcept {
-    if (decorator_ == nullptr || decorator_->may_publish_again(sensors)) publish_frame(head, frame);
+    complete(head, frame);
+    if (decorator_ == nullptr || decorator_->may_publish_again(sensors)) channel_.publish_sealed(frame);
   }
 
+  /// Checksum of the frame that the node computed last, before the decorator changed it.
+  std::uint64_t computed() const noexcept { return computed_; }
+
  private:
-  void publish_frame(const FrameHead& head, Frame& frame) noexcept {
+  void complete(const FrameHead& head, Frame& frame) noexcept {
     frame.head = head;
-    channel_.publish(frame);
+    seal(frame);
+    computed_ = frame.head.checksum;
   }
 
   FrameWriter<Frame> channel_;
   OutputDecoratorPtr<Frame> decorator_;
+  std::uint64_t computed_ = 0;
 };
 
 /// Any thread: does the writer of this channel publish through a decorator?

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "hal/joint_clamp.h"
 
@@ -35,18 +34,21 @@ bool needs_sample(const JointLimits& limits) noexcept {
 
 }  // namespace
 
-Gate::Gate(std::vector<JointLimits> limits, const GateParameters& parameters, double period)
-    : limits_(std::move(limits)), parameters_(parameters), period_(period) {
-  if (limits_.size() > kMaxJoints) {
-    throw std::invalid_argument("gate: " + std::to_string(limits_.size()) + " joints, at most " +
+Gate::Gate(const std::vector<JointLimits>& limits, const GateParameters& parameters, double period)
+    : parameters_(parameters), period_(period) {
+  if (limits.size() > kMaxJoints) {
+    throw std::invalid_argument("gate: " + std::to_string(limits.size()) + " joints, at most " +
                                 std::to_string(kMaxJoints) + " are possible");
   }
   if (!(period > 0)) throw std::invalid_argument("gate: period " + std::to_string(period) + " s, must be > 0");
-  for (std::size_t i = 0; i < limits_.size(); ++i) check(limits_[i], i);
-  memory_.resize(limits_.size(), JointMemory{.speed = JointSpeed(period)});
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    check(limits[i], i);
+    limits_.emplace_back(limits[i]);
+    memory_.emplace_back(JointMemory{.speed = JointSpeed(period)});
+  }
 }
 
-void Gate::reset() noexcept {
+void Gate::enter_run() noexcept {
   for (JointMemory& memory : memory_) memory = {.speed = JointSpeed(period_)};
   last_cycle_.reset();
   newest_permit_ = ramp_began_ = 0;
@@ -58,8 +60,9 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
   read_samples(input);
-  if (!passes(input)) brake(parameters_.fail_action);
+  if (!check_and_clamp(input)) brake(parameters_.fail_action);
   remember();
+  samples_ = {};
   last_cycle_ = input.cycle;
   return {commands_.data(), limits_.size()};
 }
@@ -73,7 +76,7 @@ void Gate::read_samples(const GateInput& input) noexcept {
   }
 }
 
-bool Gate::passes(const GateInput& input) noexcept {
+bool Gate::check_and_clamp(const GateInput& input) noexcept {
   if (input.cycle == 0) {
     report_.reasons = kGateFirstTick;
     return false;
@@ -192,10 +195,6 @@ bool Gate::command_is_valid(const CommandFrame& command) noexcept {
   return wrong == 0;
 }
 
-bool Gate::has_position(std::size_t joint) const noexcept {
-  return joint < samples_.size() && std::isfinite(samples_[joint].position);
-}
-
 bool Gate::samples_suffice(const CommandFrame& command) noexcept {
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (is_brake(command.joints[i]) || !needs_sample(limits_[i]) || has_position(i)) continue;
@@ -211,6 +210,7 @@ void Gate::clamp(double elapsed) noexcept {
     JointCommand& command = commands_[i];
     report_.reasons |= clamp_effort(limits, command);
     if (is_brake(command)) continue;
+    report_.reasons |= clamp_gains(command);
     const JointMemory& memory = memory_[i];
     const bool measured = has_position(i) && std::isfinite(samples_[i].effort);
     const double from = memory.driven ? memory.effort : 0.0;

@@ -1,9 +1,9 @@
 #pragma once
 /// The last check before the motors. It checks in this order, and brakes at the first check that fails:
-///   1. the permit has not expired (safety_monitor is running)
+///   1. the permit is whole (checksum) and has not expired: safety_monitor is running
 ///   2. the permit allows motion
-///   3. the command is of a recent cycle (diff_drive_controller is running)
-///   4. all numbers are finite and all checksums are right
+///   3. the command is whole and of a recent cycle: diff_drive_controller is running
+///   4. the command fits the robot, and all its numbers are finite
 /// Then it clamps the command. Up to 3 missed commands the last one is held; after that the gate brakes, which is
 /// counted and not latched.
 ///
@@ -15,17 +15,18 @@
 ///   command  k − kCommandLife ≤ cycle ≤ k − 1; one of cycle k − 1 is on time, an older one is *held*
 ///   numbers  every field of every joint finite, every mode a JointMode, joint_count that of the robot. Of a joint that
 ///            is to move and has a speed limit or end stops, the position sample, too
-///   clamps   joint_clamp.h, in this order:
-///            |effort| ≤ limit · |Δeffort| ≤ effort_rate·Δt · speed limit · end stops
+///   clamps   joint_clamp.h, in this order: |effort| ≤ limit; gains ≥ 0; |Δeffort| ≤ effort_rate·Δt; speed limit; end
+///            stops
 ///
-/// The torque of a brake is the driver's and may be large. It ends at once when the brake ends, so the first effort
-/// after it may lie anywhere between the measured torque and zero, plus one step of effort_rate·Δt.
+/// The torque of a brake is the driver's and may be large. When a brake ends, its torque is removed at once. The first
+/// effort command after it may therefore lie between the torque measured last and zero, ± effort_rate·Δt.
 ///
 /// Tick 0 brakes. A brake is JointCommand{} on every joint. Under FailAction::kCoast, wheels get no torque (kEffort 0)
-/// instead, unless the command itself requests the brake on every joint. GateReport counts: `refused` frames that
-/// arrived and failed a check, `missed` ticks in which the permit was good and the command was missing.
+/// instead, unless the command itself requests the brake on every joint. GateReport counts: `refused` frames (checksum,
+/// future cycle, joint count, finiteness, mode), `missed` ticks in which the permit was good and the command missing.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -35,6 +36,7 @@
 #include "hal/joint_speed.h"
 #include "rt/latest_frames.h"
 #include "signals/command_frame.h"
+#include "signals/fixed_vector.h"
 #include "signals/gate_report.h"
 #include "signals/joint.h"
 #include "signals/permit.h"
@@ -55,11 +57,11 @@ struct GateInput {
 class Gate {
  public:
   /// One entry per joint; `period` > 0, s. Throws std::invalid_argument: a limit outside the range that
-  /// JointLimits names, or more than kMaxJoints joints.
-  Gate(std::vector<JointLimits> limits, const GateParameters& parameters, double period);
+  /// JointLimits names, a period that is not, or more than kMaxJoints joints.
+  Gate(const std::vector<JointLimits>& limits, const GateParameters& parameters, double period);
 
   /// A new run: counters restart.
-  void reset() noexcept;
+  void enter_run() noexcept;
 
   /// The commands for the driver in tick k, one per joint. `report()` holds the verdict and its reasons.
   std::span<const JointCommand> step(const GateInput& input) noexcept;
@@ -75,22 +77,25 @@ class Gate {
   };
 
   void read_samples(const GateInput& input) noexcept;
-  bool passes(const GateInput& input) noexcept;  ///< all checks; then `commands_` is what the driver gets
+  /// All checks; false: brake. Else `commands_` is the clamped command and the verdict is set.
+  bool check_and_clamp(const GateInput& input) noexcept;
   bool permit_is_alive(const GateInput& input) noexcept;
   bool permit_allows_motion(const Permit& permit, std::uint64_t cycle) noexcept;
   bool command_is_fresh(const GateInput& input) noexcept;
   bool command_is_valid(const CommandFrame& command) noexcept;
   bool samples_suffice(const CommandFrame& command) noexcept;
-  bool has_position(std::size_t joint) const noexcept;
+  bool has_position(std::size_t joint) const noexcept {
+    return joint < samples_.size() && std::isfinite(samples_[joint].position);
+  }
   void clamp(double elapsed) noexcept;
   void brake(FailAction wheels) noexcept;
   void remember() noexcept;
 
-  std::vector<JointLimits> limits_;
+  FixedVector<JointLimits, kMaxJoints> limits_;
   GateParameters parameters_;
   double period_;
-  std::vector<JointMemory> memory_;
-  std::span<const JointSample> samples_;     ///< of this tick; empty: missing
+  FixedVector<JointMemory, kMaxJoints> memory_;
+  std::span<const JointSample> samples_;     ///< of this tick; empty: missing, or between two ticks
   std::optional<std::uint64_t> last_cycle_;  ///< of the last tick
   std::uint64_t newest_permit_ = 0;          ///< cycle of the newest permit seen in this run
   bool ramping_ = false;                     ///< the last permit that had not expired was a ramp

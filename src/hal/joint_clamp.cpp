@@ -33,6 +33,12 @@ std::uint64_t clamp_effort(const JointLimits& limits, JointCommand& command) noe
   return kGateEffortClamped;
 }
 
+std::uint64_t clamp_gains(JointCommand& command) noexcept {
+  bool clamped = has_velocity(command) && drop_if_negative(command.damping);
+  if (command.mode == JointMode::kImpedance) clamped |= drop_if_negative(command.stiffness);
+  return clamped ? std::uint64_t{kGateSpeedClamped} : 0;
+}
+
 std::uint64_t clamp_rate(double low, double high, JointCommand& command) noexcept {
   if (command.effort >= low && command.effort <= high) return 0;
   command.effort = command.effort < low ? low : high;
@@ -42,9 +48,7 @@ std::uint64_t clamp_rate(double low, double high, JointCommand& command) noexcep
 std::uint64_t clamp_speed(const JointLimits& limits, double position, double speed, JointCommand& command) noexcept {
   bool clamped = false;
   if (has_velocity(command)) {
-    clamped |= drop_if_negative(command.damping);
-    if (command.mode == JointMode::kImpedance) clamped |= drop_if_negative(command.stiffness);
-    clamped |=
+    clamped =
         bound_towards(1, limits.velocity, command.velocity) || bound_towards(-1, limits.velocity, command.velocity);
   }
   const double part = std::abs(speed) / limits.velocity;

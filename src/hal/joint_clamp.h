@@ -14,6 +14,9 @@ namespace robot_control {
 /// The effort that may be pushed towards more speed tapers to nothing from this part of the speed limit on.
 inline constexpr double kTaperStart = 0.9;
 
+/// Gains below zero, which would accelerate every motion, are 0.
+std::uint64_t clamp_gains(JointCommand& command) noexcept;
+
 /// |e| ≤ limits.effort. The driver clamps the total torque of its law.
 std::uint64_t clamp_effort(const JointLimits& limits, JointCommand& command) noexcept;
 
@@ -23,7 +26,7 @@ std::uint64_t clamp_rate(double low, double high, JointCommand& command) noexcep
 /// Towards more speed, with x = |v|/limits.velocity and taper = (1 − x)/(1 − kTaperStart) within 0 … 1:
 ///   e ≤ taper·limits.effort        kImpedance: stiffness · taper while its spring pulls that way
 ///   kVelocity, kImpedance: |velocity| ≤ limits.velocity
-/// Against the motion everything is free. Gains below zero, which would feed every motion, are 0.
+/// Against the motion everything is free.
 std::uint64_t clamp_speed(const JointLimits& limits, double position, double speed, JointCommand& command) noexcept;
 
 /// Towards an end stop, with d the way left to it and taper = d/soft_zone within 0 … 1:

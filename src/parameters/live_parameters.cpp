@@ -6,7 +6,7 @@
 #include "files/ascii.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 #include "parameters/tree_reader.h"
 #include "parameters/value_reader.h"
 

@@ -5,7 +5,7 @@
 #include "control/limits/drive_limits.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 #include "parameters/suggestion.h"
 #include "parameters/tree_reader.h"
 #include "parameters/value_reader.h"
@@ -87,6 +87,9 @@ class TreeReader {
       if (const std::string_view now = word_now(entry->second, key.field(parameters_)); !now.empty()) {
         parameters_.warnings.push_back(path + " = " + as_written(entry->second) + " is an old value: write " +
                                        std::string(now) + " [" + entry->second.origin + "]");
+      }
+      if ((key.traits & kNoEffect) != 0) {
+        parameters_.warnings.push_back(path + " has no effect any more: leave it out [" + entry->second.origin + "]");
       }
     } else if ((key.traits & kOptional) == 0) {
       const auto map = tree_.entries.find(group);

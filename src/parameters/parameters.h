@@ -1,12 +1,14 @@
 #pragma once
-/// Everything a user sets, as structs. schema.h is the only place that knows a YAML key.
+/// Everything a user sets, as structs. The YAML keys stand in schema.h alone.
 ///
 /// A tree of values (YAML file first, then overlays: a parameter server, a Python dict) is read into
 /// `Parameters` at once. Missing, unknown, mistyped, NaN, infinite and out-of-range values are collected, and
 /// one ParameterError lists them all: path, value, rule, unit, origin.
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "robot/robot_model.h"
 #include "rt/realtime_thread.h"
 #include "safety/safety_monitor.h"
+#include "telemetry/log_parameters.h"
 
 namespace robot_control {
 
@@ -44,22 +47,22 @@ struct LoopParameters {
   std::int64_t period_ns() const { return std::llround(1.0e9 / rate); }  ///< ns
 };
 
+/// Variances of x, y, z, in m² or m²/s², and about x, y, z, in rad² or rad²/s².
+using CovarianceDiagonal = std::array<double, 6>;
+
 /// Rates and names of what the nodes publish; nothing of it touches the loop.
 struct ReportParameters {
   double joint_states_rate = 100;  ///< Hz
   double odom_rate = 50;           ///< Hz, odom and wheel_odom
   bool publish_tf = true;
   std::string odom_frame = "odom";
-  std::string base_frame;      ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
+  std::string base_frame;  ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
+  std::optional<CovarianceDiagonal> pose_covariance_diagonal;   ///< of odom; none: as estimated
+  std::optional<CovarianceDiagonal> twist_covariance_diagonal;  ///< likewise
   double command_rate = 50;    ///< Hz, joint_commands, joint_targets, cmd_vel_out and drive_state
   double imu_rate = 100;       ///< Hz, imu/data_raw
   double imu_data_rate = 100;  ///< Hz, imu/data
   double truth_rate = 50;      ///< Hz
-};
-
-struct TelemetryParameters {
-  std::string directory;  ///< where runs are written; empty or relative: from where the node was started
-  double quota = 5;       ///< GB (10⁹ bytes) of all runs in `directory` together; 0: no limit
 };
 
 struct Parameters {
@@ -75,6 +78,7 @@ struct Parameters {
   std::string latch_file;  ///< path, see runtime/latch_file.h; empty: none
   ReportParameters report;
   TelemetryParameters telemetry;
+  std::optional<double> no_effect;    ///< of a key of an earlier version
   std::vector<std::string> warnings;  ///< values that were accepted although they are written in an old way
 };
 
@@ -88,7 +92,7 @@ struct Overlay {
 
 /// Throws ParameterError. The file consists of the blocks `robot`, `mujoco_plant`, `state_estimator`,
 /// `diff_drive_controller`, `safety_monitor`, `telemetry`; every key must be there, in the file or in an overlay,
-/// except what the URDF knows (`robot.wheel_base`, …) or what is derived from it (`pid_kp`, …): those that are
+/// except what the URDF gives (`robot.wheel_base`, …) or what is derived from it (`pid_kp`, …): those that are
 /// kOptional in the schema. With an empty `yaml_path` the overlays are everything there is.
 ///
 /// `base_path`: a complete file over which that of `yaml_path` is laid key by key, so that it may hold only the keys

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "files/message_text.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 namespace robot_control {
 namespace {
@@ -73,8 +73,8 @@ constexpr auto kPeerKeys = std::to_array<PeerKey>({
     {"enable_odom_tf", "state_estimator.publish_tf"},
     {"odom_frame_id", "state_estimator.odom_frame"},
     {"base_frame_id", "state_estimator.base_frame"},
-    {"pose_covariance_diagonal", "state_estimator.wheel_slip_noise"},
-    {"twist_covariance_diagonal", "state_estimator.wheel_slip_noise"},
+    {"pose_covariance_diagonal", "state_estimator.pose_covariance_diagonal"},
+    {"twist_covariance_diagonal", "state_estimator.twist_covariance_diagonal"},
     {"velocity_rolling_window_size", "state_estimator.speed_bandwidth"},
 });
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "parameters/peer_file.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 namespace robot_control {
 namespace {

@@ -7,12 +7,13 @@
 #include "parameters/parameter_tree.h"
 #include "parameters/parameters.h"
 #include "parameters/problem_list.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 namespace robot_control {
 
 /// `base` with what `blocks` have in `tree`; what is refused or missing stays as in `base` and becomes a problem,
-/// reported of `source` where it stands nowhere. Of the loop's rate `base` knows where the tree does not.
+/// reported with the name `source` if it stands in no file. A loop rate that the tree does not contain is that of
+/// `base`.
 Parameters read_blocks(ParameterTree tree, std::span<const Block> blocks, const std::string& source,
                        const Parameters& base, ProblemList& problems);
 

@@ -58,8 +58,9 @@ class Reader {
     return true;
   }
 
-  bool operator()(Vector3* to) { return vector(*to); }
-  bool operator()(std::optional<Vector3>* to) { return vector(*to); }
+  bool operator()(Vector3* to) { return numbers<Vector3>(*to); }
+  bool operator()(std::optional<Vector3>* to) { return numbers<Vector3>(*to); }
+  bool operator()(std::optional<CovarianceDiagonal>* to) { return numbers<CovarianceDiagonal>(*to); }
 
   bool operator()(std::vector<std::string>* to) {
     // A single name stands for a list of one.
@@ -101,6 +102,7 @@ class Reader {
   bool operator()(ErrorLevel* to) { return word(*to); }
   bool operator()(Reaction* to) { return word(*to); }
   bool operator()(FailAction* to) { return word(*to); }
+  bool operator()(RecordMode* to) { return word(*to); }
 
  private:
   bool plain() const { return entry_.kind == Entry::Kind::kPlain; }
@@ -128,14 +130,13 @@ class Reader {
     return true;
   }
 
-  template <class To>
-  bool vector(To& to) {
-    constexpr std::size_t kComponents = 3;
-    if (entry_.kind != Entry::Kind::kList || entry_.items.size() != kComponents) {
+  template <class Array, class To>
+  bool numbers(To& to) {
+    Array value{};
+    if (entry_.kind != Entry::Kind::kList || entry_.items.size() != value.size()) {
       return refuse("must be " + rule_of(key_));
     }
-    Vector3 value{};
-    for (std::size_t i = 0; i < kComponents; ++i) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
       if (!number(entry_.items[i], value[i])) return false;
     }
     to = value;

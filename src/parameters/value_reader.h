@@ -3,7 +3,7 @@
 
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 namespace robot_control {
 

@@ -12,9 +12,13 @@ std::int64_t monotonic_ns() noexcept {
 }
 
 std::int64_t utc_seconds() noexcept {
+  return utc_ns() / 1'000'000'000;
+}
+
+std::int64_t utc_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
-  return now.tv_sec;
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
 void sleep_until(std::int64_t deadline_ns) noexcept {

@@ -15,13 +15,13 @@
 /// this code that the memory model of C++ allows, and shows that no order and no check can be left out.
 ///
 /// `sequence` counts publications over all writers' lives and is the futex word that readers wait on.
-/// Readers need only read access to the memory.
+/// Readers need only read access to the memory. After Lookup::kMissing the content of `out` has no meaning.
 
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "rt/futex.h"
 #include "signals/frame_head.h"
@@ -62,9 +62,6 @@ struct LatestFrames {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// What a look-up found.
-enum class Lookup { kMissing, kFrame, kToken, kCorrupt };
-
 /// Which waiting threads a publication wakes. A loop in one thread, on private memory, saves the system call.
 enum class Wake { kReaders, kNobody };
 
@@ -90,12 +87,12 @@ class FrameWriter {
 
   /// Stores without sealing or waking: for tests that plant a broken frame.
   void store(const Frame& frame) noexcept {
-    const auto words = std::bit_cast<std::array<std::uint64_t, kFrameWords<Frame>>>(frame);
     const std::size_t index = frame.head.cycle % SlotCount;
     auto& slot = memory_->slots[index];
     const std::uint64_t version = slot.version.load(std::memory_order_relaxed) | 1;  // odd also after a crash
     slot.version.store(version, std::memory_order_release);
-    for (std::size_t i = 0; i < words.size(); ++i) slot.words[i].store(words[i], std::memory_order_release);
+    for (std::size_t i = 0; i < kFrameWords<Frame>; ++i)
+      slot.words[i].store(word_of(frame, i), std::memory_order_release);
     slot.version.store(version + 1, std::memory_order_release);
     memory_->newest.store(index + 1, std::memory_order_release);
   }
@@ -193,7 +190,7 @@ class FrameReader {
 
   /// Waits until `sequence()` differs from `seen`, or the timeout (negative: none) has passed. True if it
   /// differs, or if the channel was mapped or mapped again meanwhile: noticed within kRemapNs, also by a
-  /// thread that waits for ever. Take `seen` before looking for a frame, not after.
+  /// thread that waits without a timeout. Take `seen` before looking for a frame, not after.
   bool wait(std::uint32_t seen, std::int64_t timeout_ns) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);
     for (std::int64_t left_ns = timeout_ns; left_ns != 0;) {
@@ -214,14 +211,16 @@ class FrameReader {
   const Frames* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
 
  private:
+  /// False: `out` is not whole.
   static bool copy(const typename Frames::Slot& slot, Frame& out) noexcept {
     const std::uint64_t before = slot.version.load(std::memory_order_acquire);
     if (before % 2 != 0) return false;
-    std::array<std::uint64_t, kFrameWords<Frame>> words;
-    for (std::size_t i = 0; i < words.size(); ++i) words[i] = slot.words[i].load(std::memory_order_acquire);
-    if (slot.version.load(std::memory_order_acquire) != before) return false;
-    out = std::bit_cast<Frame>(words);
-    return true;
+    auto* const bytes = reinterpret_cast<std::byte*>(&out);
+    for (std::size_t i = 0; i < kFrameWords<Frame>; ++i) {
+      const std::uint64_t word = slot.words[i].load(std::memory_order_acquire);
+      std::memcpy(bytes + 8 * i, &word, sizeof(word));
+    }
+    return slot.version.load(std::memory_order_acquire) == before;
   }
 
   static Lookup judge(const Frame& frame) noexcept {

@@ -6,9 +6,9 @@
 /// SCHED_FIFO are applied by that thread to itself as its last step before the body runs, so no other thread inherits
 /// them.
 ///
-/// What was asked and not granted is said in a few words each, with the remedy: "<what> (<why>; remedy: <line of
-/// /etc/security/limits.d or capability>)". Under kRequired that is an error at start-up. The
-/// core needs no privilege and is applied whatever the policy says.
+/// What was requested and not granted is reported in a few words each, with the remedy: "<what> (<why>; remedy: <line
+/// of /etc/security/limits.d or capability>)". Under kRequired that is an error at start-up. The core needs no
+/// privilege and is applied whatever the policy says.
 
 #include <cstddef>
 #include <functional>

@@ -44,6 +44,7 @@ struct Ring {
   ChannelHead head;
   alignas(64) Atomic<std::uint64_t> written;  ///< rows ever appended
   Atomic<std::uint64_t> dropped;              ///< rows ever dropped by the writer
+  Atomic<std::uint64_t> began;                ///< rows appended before its present writer
   alignas(64) std::array<Slot, SlotCount> slots;
 };
 
@@ -53,6 +54,11 @@ class RingWriter {
   using Rows = Ring<Row, Atomic, SlotCount>;
 
   explicit RingWriter(Rows* memory = nullptr) noexcept : memory_(memory) {}
+
+  /// What is there is of an earlier writer.
+  void begin() noexcept {
+    memory_->began.store(memory_->written.load(std::memory_order_relaxed), std::memory_order_release);
+  }
 
   /// `read`: the reader's position, null when no reader is present. False: dropped and counted.
   bool append(const Row& row, const Atomic<std::uint64_t>* read) noexcept {
@@ -130,6 +136,9 @@ class RingReader {
   std::uint64_t position() const noexcept { return position_; }
   std::uint64_t overwritten() const noexcept { return overwritten_; }
   std::uint64_t dropped() const noexcept { return memory_->dropped.load(std::memory_order_relaxed); }
+
+  /// Position of the first row of the present writer.
+  std::uint64_t began() const noexcept { return memory_->began.load(std::memory_order_acquire); }
 
  private:
   const Rows* memory_;

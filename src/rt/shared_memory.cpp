@@ -63,7 +63,8 @@ SharedMemory::~SharedMemory() {
 
 std::optional<SharedMemory> SharedMemory::open(const std::string& name, Access access) {
   const int mode = access == Access::kReadOnly ? O_RDONLY : O_RDWR;
-  const int descriptor = shm_open(name.c_str(), mode | O_NONBLOCK, 0);  // a pipe of this name would hold us for ever
+  const int descriptor =
+      shm_open(name.c_str(), mode | O_NONBLOCK, 0);  // opening a pipe of this name would block without end
   if (descriptor >= 0) return SharedMemory(name, descriptor, access);
   if (errno != ENOENT) fail(errno, "shm_open", name);
   return std::nullopt;

@@ -37,7 +37,7 @@ struct ScriptEvents {
 
 class CommandScript {
  public:
-  /// Nothing ever happens.
+  /// A script without events.
   CommandScript() = default;
 
   /// Reads a CSV file; throws ParameterError with every bad line (line, column, value, rule).
@@ -73,7 +73,7 @@ class CommandScript {
   bool begins_with_zero_ = false;
 };
 
-/// The script of the parameter `command_script`: where that is empty, one in which nothing ever happens.
+/// The script of the parameter `command_script`: where that is empty, one without events.
 inline CommandScript load_script(const std::string& path) {
   return path.empty() ? CommandScript() : CommandScript(path);
 }

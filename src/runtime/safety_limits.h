@@ -18,7 +18,7 @@ double commanded_wheel_speed(const DriveControllerParameters& controller, const 
 
 /// N·m/rad: RMS of the torque that the derived gains of control/wheel_loops/wheel_loop_gains.h make of encoder counts,
 /// by the size q of a count. A step by q moves the tracked speed by up to 0.8·w·q, w = 2π·bandwidth (the critically
-/// damped third-order loop of control/wheel_loops/tracking_loop.h); over a turn that is an RMS of at most 0.5·w·q,
+/// damped third-order loop of robot/encoders/tracking_loop.h); over a turn that is an RMS of at most 0.5·w·q,
 /// times kp.
 double count_ripple(const RobotModel& robot, const WheelModel& wheel, double period);
 

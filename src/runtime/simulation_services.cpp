@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
-#include <random>
 #include <utility>
 
 #include "rt/clock.h"
 #include "rt/futex.h"
+#include "runtime/mint_number.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::int64_t kTimeout = 2'000'000'000;     // ns; a loop that has not stopped by then waits for another node
 constexpr std::int64_t kStandstill = 5'000'000'000;  // ns without a cycle; a period is 10 ms at most
-constexpr std::int64_t kLook = 500'000;              // ns
 
 ServiceAnswer busy() {
   return {false, "another step or reset is under way"};
@@ -38,13 +37,6 @@ ServiceAnswer ended() {
 }
 
 }  // namespace
-
-std::uint64_t mint_number() {
-  std::random_device device;
-  std::uint64_t number = 0;
-  while (number == 0) number = (std::uint64_t{device()} << 32) | device();
-  return number;
-}
 
 SimulationServices::SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
                                        std::function<std::vector<std::string>()> missing,
@@ -98,7 +90,7 @@ ServiceAnswer SimulationServices::step(std::uint64_t cycles) {
       }
     }
     if (monotonic_ns() > end_ns) return {false, "time stands still anyway" + waiting_for()};
-    sleep_ns(kLook);
+    sleep_ns(LoopHold::kLook);
   }
   return await_steps(steps);
 }
@@ -107,7 +99,7 @@ ServiceAnswer SimulationServices::await_steps(const Steps& steps) {
   std::uint64_t seen = steps.first;
   std::int64_t seen_ns = monotonic_ns();
   while (!hold_.stands(steps.number)) {
-    sleep_ns(kLook);
+    sleep_ns(LoopHold::kLook);
     if (!hold_.looping()) return ended();
     if (const std::uint64_t next = hold_.next_cycle(); next != seen) {
       seen = next;

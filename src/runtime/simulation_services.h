@@ -21,9 +21,6 @@ struct ServiceAnswer {
   std::string message;
 };
 
-/// A random number, never 0: of a run, of a process.
-std::uint64_t mint_number();
-
 class SimulationServices {
  public:
   /// Called by any thread: `missing`, the nodes that the loop waits for; `takes_faults`, whether a node's program is

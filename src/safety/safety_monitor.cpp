@@ -39,7 +39,7 @@ SafetyMonitor::SafetyMonitor(const SafetyParameters& parameters, const RobotMode
       warnings_(period),
       supervisor_(static_cast<std::uint64_t>(std::llround(parameters.ramp_time / period))) {}
 
-void SafetyMonitor::reset(const OperatorInput& operator_input) noexcept {
+void SafetyMonitor::enter_run(const OperatorInput& operator_input) noexcept {
   presence_.enter_run();
   sensor_presence_.enter_run();
   frame_conditions_.enter_run();
@@ -76,11 +76,11 @@ void SafetyMonitor::restore(std::uint64_t causes, std::uint64_t first_cause) noe
 }
 
 void SafetyMonitor::driver_lost() noexcept {
-  if (driver_ && !driver_paused_) pending_ |= kCauseDriverLost;
+  if (driver_ && !driver_silence_expected_) pending_ |= kCauseDriverLost;
 }
 
 void SafetyMonitor::driver_ended() noexcept {
-  driver_paused_ = true;
+  driver_silence_expected_ = true;
   presence_.enter_run();
   release_.enter_run();
   supervisor_.enter_run();
@@ -112,7 +112,8 @@ void SafetyMonitor::check_driver_instance(const SensorFrame& sensors) noexcept {
   if (!driver_) detect_monitor_restart(sensors);
   if (driver_ && *driver_ != sensors.driver_instance) pending_ |= kCauseDriverLost;
   driver_ = sensors.driver_instance;
-  driver_paused_ = sensors.driver_state == DriverState::kPaused || sensors.driver_state == DriverState::kEnded;
+  driver_silence_expected_ =
+      sensors.driver_state == DriverState::kPaused || sensors.driver_state == DriverState::kEnded;
 }
 
 void SafetyMonitor::evaluate_conditions(const MonitorInput& input) noexcept {

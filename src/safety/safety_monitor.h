@@ -13,15 +13,16 @@
 ///   body_conditions.h                                    does the gate obey, does the driver report a fault, does the
 ///                                                        body tilt, fall or collide
 ///
-/// Calls: after construction `restore` where an earlier permit or a latch file is there, and `begin` where the run is
-/// already going on; `reset` at the start of every run; `step` once per cycle with that cycle's sensors. In between,
-/// what does not come from a sensor frame: `driver_lost`, `driver_ended`, `sensors_corrupt`, `note_emergency_stop`,
-/// `refuse_reset` (runtime/cycles/monitor_cycle.h).
+/// Calls: after construction `restore` where an earlier permit or a latch file is there, and `enter_run` at the
+/// start of every run; `begin` with the cycle of the first frame; `step` once per cycle with that cycle's sensors. In
+/// between, what does not come from a sensor frame: `driver_lost`, `driver_ended`, `sensors_corrupt`,
+/// `note_emergency_stop`, `refuse_reset` (runtime/cycles/monitor_cycle.h).
 ///
 /// States: INIT until sensors, state and command of this run were each received once and motion is released
 /// (motion_release.h). READY and DRIVE permit motion until a node is restarted or a cause latches a stop
-/// (fixed_reactions.h, SafetyParameters). The permit of cycle k expires after cycle k + kPermitLife, so a monitor that
-/// makes no progress permits no motion.
+/// (fixed_reactions.h, SafetyParameters); STOPPING permits a ramp at most, STOPPED and FAULT nothing:
+/// supervisor_table.h. The permit of cycle k expires after cycle k + kPermitLife, so a monitor that makes no progress
+/// permits no motion.
 ///
 /// Driver lost: latched when no current sensor frame arrives (wall clock), and when a frame carries another
 /// SensorFrame::driver_instance than the frame before it (any clock). A restarted driver therefore counts as lost,
@@ -32,8 +33,8 @@
 /// A latch outlives all processes: a restarted monitor restores the causes of the last permit in the channel, for any
 /// driver instance, and those of latch_file. Only an accepted reset clears them.
 ///
-/// The speed limit of a permit is the smaller of slow_speed, while a cause with Reaction::kSlow is active, and of the
-/// limit that the clearance gives. A speed limit never latches.
+/// The speed limit of a permit is the smaller of slow_speed, while a cause with Reaction::kSlow is active and for
+/// kWarningHold after it (warnings.h), and the limit that the clearance gives. A speed limit never latches.
 
 #include <cstdint>
 #include <optional>
@@ -76,13 +77,14 @@ class SafetyMonitor {
   SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
   /// A new run: counters and "was received" flags restart; latched causes stay. `operator_input` is the current inbox:
-  /// resets and heartbeats in it are dropped; emergency stops that were not yet processed are kept.
-  void reset(const OperatorInput& operator_input) noexcept;
+  /// heartbeats in it are dropped, resets are refused (kRefusalInit); emergency stops that were not yet processed are
+  /// kept.
+  void enter_run(const OperatorInput& operator_input) noexcept;
 
-  /// After a restart of the monitor: `last` is the permit that the channel still holds. Its causes are latched at once.
-  /// If the driver instance that `last` was issued for still runs at the first step, kCauseMonitorRestarted is added.
-  /// If `last` is not readable, the gate report decides: a gate that has already used a permit of this run was served
-  /// by an earlier monitor.
+  /// After a restart of the monitor: `last` is the permit that the channel still holds. Its causes are latched at once,
+  /// and an `e_stop` topic that was true counts as true until it sends false. kCauseMonitorRestarted is added at the
+  /// first step if the driver instance that `last` was issued for still runs, and, with or without `restore`, if the
+  /// gate has already used a permit of this run.
   void restore(const Permit& last) noexcept;
 
   /// Latches `causes` at once, as read from another record of an earlier stop (latch_file).
@@ -107,11 +109,12 @@ class SafetyMonitor {
   /// `why`, and has no effect later.
   void refuse_reset(const OperatorInput& operator_input, ResetRefusal why = kRefusalSilent) noexcept;
 
-  /// While no sensor frame arrives an emergency stop may still be requested; returns true if it was. It latches with
-  /// the next step.
+  /// While no sensor frame arrives an emergency stop may still be requested. It latches with the next step. True: one
+  /// that was not active yet.
   bool note_emergency_stop(const OperatorInput& operator_input) noexcept;
 
-  /// Fills everything but `out.head`. A second step in the same cycle is allowed and counts nothing twice.
+  /// Fills everything but `out.head`. A second step in the same cycle evaluates no condition and answers no reset; it
+  /// only adds causes reported since.
   void step(const MonitorInput& input, Permit& out) noexcept;
 
   /// The same before the first sensor frame: latches pending causes, evaluates no condition.
@@ -159,7 +162,7 @@ class SafetyMonitor {
   double last_speed_limit_ = kNoSpeedLimit;
   std::uint64_t pending_ = 0;            ///< causes that were reported between two steps
   std::optional<std::uint64_t> driver_;  ///< SensorFrame::driver_instance of the last step
-  bool driver_paused_ = false;
+  bool driver_silence_expected_ = false;
   std::uint64_t resets_handled_ = 0;
   std::uint64_t reset_refusal_ = 0;
 };

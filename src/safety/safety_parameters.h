@@ -2,7 +2,7 @@
 /// The user's parameters of the safety monitor.
 ///
 /// A condition is active when a quantity measured from raw sensors and the command is beyond `limit` without
-/// interruption for `persistence`. An active condition is a cause, and `reaction` says what the monitor does. The
+/// interruption for `persistence`. An active condition is a cause, and `reaction` is what the monitor does. The
 /// conditions and their defaults: signals/stop_causes.def. The quantities are defined in wheel_limits.h,
 /// wheel_following.h, yaw_agreement.h, torque_oscillation.h, body_conditions.h, sensor_presence.h and
 /// machine_conditions.h.

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 namespace robot_control {
@@ -17,6 +18,9 @@ enum class FrameKind : std::uint64_t {
   kFrame = 1,  ///< A frame with content.
   kToken = 2,  ///< Cycle k was processed without a frame, because an injected fault suppresses it. Content is zero.
 };
+
+/// What a look-up of a frame found.
+enum class Lookup : std::uint64_t { kMissing, kFrame, kToken, kCorrupt };
 
 struct FrameHead {
   std::uint64_t checksum = 0;  ///< Of all words behind this one; written by `seal`.
@@ -34,6 +38,14 @@ inline constexpr std::size_t kFrameWords = [] {
   return sizeof(Frame) / 8;
 }();
 
+/// Word `i` of a frame, in place: a bit_cast of the whole frame copies it first.
+template <class Frame>
+std::uint64_t word_of(const Frame& frame, std::size_t i) noexcept {
+  std::uint64_t word = 0;
+  std::memcpy(&word, reinterpret_cast<const std::byte*>(&frame) + 8 * i, sizeof(word));
+  return word;
+}
+
 /// 64-bit multiply-rotate hash over the words behind `head.checksum`, in eight independent lanes
 /// (so that the multiplier's throughput counts, not its latency).
 /// Detects torn, truncated and overwritten frames; it is no protection against an attacker.
@@ -41,15 +53,15 @@ template <class Frame>
 std::uint64_t checksum_of(const Frame& frame) noexcept {
   constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio, odd
   constexpr std::size_t kLanes = 8;
-  const auto words = std::bit_cast<std::array<std::uint64_t, kFrameWords<Frame>>>(frame);
+  constexpr std::size_t kWords = kFrameWords<Frame>;
   const auto mix = [](std::uint64_t hash, std::uint64_t word) { return std::rotl((hash ^ word) * kOdd, 29); };
   std::array<std::uint64_t, kLanes> lanes{1, 2, 3, 4, 5, 6, 7, 8};
   std::size_t i = 1;
-  for (; i + kLanes <= words.size(); i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane] = mix(lanes[lane], words[i + lane]);
+  for (; i + kLanes <= kWords; i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane] = mix(lanes[lane], word_of(frame, i + lane));
   }
-  for (; i < words.size(); ++i) lanes[0] = mix(lanes[0], words[i]);
-  std::uint64_t hash = words.size();
+  for (; i < kWords; ++i) lanes[0] = mix(lanes[0], word_of(frame, i));
+  std::uint64_t hash = kWords;
   for (const std::uint64_t lane : lanes) hash = mix(hash, lane);
   return hash;
 }

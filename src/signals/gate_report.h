@@ -16,7 +16,7 @@ enum class GateVerdict : std::uint64_t {
 /// Why a verdict is not kPassed; bits of GateReport::reasons.
 enum GateReason : std::uint64_t {
   kGateFirstTick = 1u << 0,         ///< Tick 0 of a run.
-  kGateNoPermit = 1u << 1,          ///< No permit of this run, of cycles k-4 … k-1.
+  kGateNoPermit = 1u << 1,          ///< No permit of this run in the last 7 cycles.
   kGatePermitExpired = 1u << 2,     ///< The newest permit expired: the monitor made no progress.
   kGatePermitBrake = 1u << 3,       ///< The permit orders the brake.
   kGateRampOver = 1u << 4,          ///< The ramp's last cycle has passed.

@@ -27,7 +27,7 @@ inline constexpr std::size_t kFaultComponents = 11;
 enum class FaultKind : std::uint64_t {
   kOk,            ///< healthy again
   kOff,           ///< no output
-  kStuck,         ///< the last output, for ever
+  kStuck,         ///< the last output again and again
   kGarbage,       ///< random output
   kWrong,         ///< plausible and wrong
   kSlow,          ///< a new output every 10 cycles only

@@ -108,7 +108,7 @@ inline constexpr auto kDriverFaultNames = std::to_array<BitName>({
 inline constexpr auto kStateFlagNames = std::to_array<BitName>({
     {kStateValid, "valid", "pose and twist may be used", ""},
     {kStateSlip, "slip", "wheels and inertial sensors disagree", ""},
-    {kStateStandstill, "standstill", "all sensors are quiet", ""},
+    {kStateStandstill, "standstill", "wheels and gyro are quiet", ""},
     {kStateRestarted, "restarted", "the estimator continues an earlier process's state", ""},
     {kStateSkipped, "skipped", "a cycle of sensors was never seen", "look whether state_estimator gets its core"},
     {kStateNoGyro, "no_gyro", "yaw comes from the wheels alone", "look at the IMU"},
@@ -118,17 +118,16 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
     {kStateNoRightEncoder, "no_right_encoder", "no valid readings of the right encoders", "look at the right encoder"},
     {kStateNoAccelerometer, "no_accelerometer", "tilt, and slip of all wheels together, are not noticed",
      "look at the IMU"},
-    {kStateDegraded, "degraded", "pose and twist are those of wheels and gyro alone",
-     "look at the IMU's mounting and accelerometer_noise"},
+    {kStateDegraded, "degraded", "the pose does without a correction of slip or without the gyro's bias",
+     "read the reason in degraded"},
 });
 
 inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
-    {kDegradedPosition, "position", "the accelerometer contradicts the way of the wheels, and no slip explains it",
-     "set accelerometer_noise to what the robot shakes it by"},
-    {kDegradedHeading, "heading", "calibration or bias contradict the gyro's heading", "start with a second of rest"},
-    {kDegradedSpeed, "speed", "the accelerometer contradicts the speed of the wheels, and no slip explains it",
-     "set accelerometer_noise to what the robot shakes it by"},
-    {kDegradedTilt, "tilt", "the estimated tilt contradicts gravity", "look at the IMU's mounting"},
+    {kDegradedPosition, "position", "the correction of a slide was not believable and was taken back",
+     "look at the IMU's mounting; a robot that shakes: slip_detection false"},
+    {kDegradedHeading, "heading", "the gyro's bias is not known before the first rest", "let the robot rest for a second"},
+    {kDegradedSpeed, "speed", "of an earlier version: the accelerometer contradicted the wheels' speed", ""},
+    {kDegradedTilt, "tilt", "of an earlier version: the estimated tilt contradicted gravity", ""},
 });
 
 inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
@@ -138,7 +137,7 @@ inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
     {kSlipStalled, "stalled", "a wheel turns slower than the ground passes", "brake less"},
     {kSlipTurn, "turn", "the wheels' yaw rate contradicts the gyro", ""},
     {kSlipSideways, "sideways", "the robot slides sideways", "turn less fast"},
-    {kSlipLifted, "lifted", "the robot moves up or down: lifted, or over a kerb", ""},
+    {kSlipLifted, "lifted", "of an earlier version: the robot moved up or down", ""},
 });
 
 /// By SensorIndex.

@@ -10,7 +10,7 @@
 namespace robot_control {
 
 /// Index into StateFrame::confidence, nis and rejected. The last two are what contact with the ground says: wheels do
-/// not slide sideways, the robot neither sinks nor flies.
+/// not slide sideways, the robot neither sinks nor flies (which is never doubted).
 enum SensorIndex : std::size_t {
   kLeftEncoder = 0,
   kRightEncoder = 1,
@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxWheelVelocities = 8;  ///< kMaxWheels of robot/
 enum StateFlag : std::uint64_t {
   kStateValid = 1u << 0,            ///< Pose and twist may be used.
   kStateSlip = 1u << 1,             ///< Wheels and inertial sensors disagree.
-  kStateStandstill = 1u << 2,       ///< All sensors are quiet.
+  kStateStandstill = 1u << 2,       ///< The robot stands: wheels and gyro are quiet.
   kStateRestarted = 1u << 3,        ///< Continued from the last frame of an earlier process; covariance grown.
   kStateSkipped = 1u << 4,          ///< At least one cycle of sensors was never seen since the last frame.
   kStateNoGyro = 1u << 5,           ///< Yaw from the wheels alone.
@@ -35,16 +35,15 @@ enum StateFlag : std::uint64_t {
   kStateNoLeftEncoder = 1u << 7,    ///< No valid readings of the left encoders.
   kStateNoRightEncoder = 1u << 8,   ///< No valid readings of the right encoders.
   kStateNoAccelerometer = 1u << 9,  ///< Tilt and slip of all wheels together are not noticed.
-  kStateDegraded = 1u << 10,        ///< Pose and twist are the simple part's; StateFrame::degraded says why.
+  kStateDegraded = 1u << 10,        ///< The pose is plainer than it could be; StateFrame::degraded says why.
 };
 
-/// Bits of StateFrame::degraded: in what the full law contradicted the simple part (estimation/simple/supervision.h)
-/// beyond what both can explain, without proof of slip. They last until the full law has agreed for a while.
+/// Bits of StateFrame::degraded: what the pose does without.
 enum DegradedReason : std::uint64_t {
-  kDegradedPosition = 1u << 0,  ///< The way travelled.
-  kDegradedHeading = 1u << 1,   ///< The yaw.
-  kDegradedSpeed = 1u << 2,     ///< The speed, which neither wheels nor a slide explain; at rest any speed.
-  kDegradedTilt = 1u << 3,      ///< Roll or pitch.
+  kDegradedPosition = 1u << 0,  ///< The correction of a slide: not believable, taken back (slip/slip_correction.h).
+  kDegradedHeading = 1u << 1,   ///< The gyro's bias: the robot moves before its first rest.
+  kDegradedSpeed = 1u << 2,     ///< No longer set; in earlier logs.
+  kDegradedTilt = 1u << 3,      ///< No longer set; in earlier logs.
 };
 
 /// Bits of StateFrame::slip: which contact is not trusted, and what contradicts it.
@@ -55,7 +54,7 @@ enum SlipReason : std::uint64_t {
   kSlipStalled = 1u << 3,   ///< A wheel turns slower than the ground passes, or stands.
   kSlipTurn = 1u << 4,      ///< The wheels' yaw rate contradicts the gyro.
   kSlipSideways = 1u << 5,  ///< The robot slides sideways.
-  kSlipLifted = 1u << 6,    ///< The robot moves up or down: lifted, or over a kerb.
+  kSlipLifted = 1u << 6,    ///< No longer set; in earlier logs: the robot moves up or down.
 };
 
 /// The estimated calibration of wheels and gyro relative to RobotModel, with standard deviations.
@@ -92,7 +91,7 @@ struct StateFrame {
   std::array<double, kMaxConfidences> confidence{};          ///< 0 (not used) … 1 (agrees fully), by SensorIndex
   std::array<double, kMaxConfidences>
       nis{};  ///< normalised innovation squared per degree of freedom, smoothed; ideal 1
-  std::array<std::uint64_t, kMaxConfidences> rejected{};  ///< samples of this run that the chi-square gate refused
+  std::array<std::uint64_t, kMaxConfidences> rejected{};  ///< comparisons of this run beyond their gate, not used
   std::uint64_t slip = 0;                                 ///< SlipReason bits
   std::uint64_t degraded = 0;                             ///< DegradedReason bits
   double residual_level = 0;  ///< wheels against accelerometer: residual over what the sensors' noise explains; 0: none

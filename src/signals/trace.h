@@ -1,10 +1,12 @@
 #pragma once
-/// One row per cycle and node for the log: the frame it published and when.
+/// One row per cycle and node for the log: the frame it published, when, and what its law was given. Where an injected
+/// fault suppressed the frame, its head is that of a token, and its content is not published.
 
 #include <cstdint>
 
 #include "signals/command_frame.h"
 #include "signals/drive_tuning.h"
+#include "signals/law_calls.h"
 #include "signals/permit.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -28,22 +30,40 @@ struct DriverTrace {
   TruthFrame truth;
   GateReport gate;  ///< of tick k itself (SensorFrame::gate is that of k-1)
   CycleTiming timing;
+  GateCalls calls;
 };
 
 struct EstimatorTrace {
   StateFrame state;
   CycleTiming timing;
+  EstimatorCalls calls;
 };
 
 struct ControllerTrace {
   CommandFrame command;
   DriveTuning tuning;  ///< with which it was computed
   CycleTiming timing;
+  ControllerCalls calls;
 };
 
 struct MonitorTrace {
   Permit permit;
   CycleTiming timing;
+  MonitorCalls calls;
 };
+
+/// Of the frame that the node published, or would have.
+inline const FrameHead& head_of(const DriverTrace& row) noexcept {
+  return row.sensors.head;
+}
+inline const FrameHead& head_of(const EstimatorTrace& row) noexcept {
+  return row.state.head;
+}
+inline const FrameHead& head_of(const ControllerTrace& row) noexcept {
+  return row.command.head;
+}
+inline const FrameHead& head_of(const MonitorTrace& row) noexcept {
+  return row.permit.head;
+}
 
 }  // namespace robot_control

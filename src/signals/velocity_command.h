@@ -7,6 +7,15 @@
 
 namespace robot_control {
 
+/// VelocityCommand::contested of what no sender sent: no request, and no end of a silence.
+inline constexpr std::uint64_t kNoMessage = 2;
+
+/// s without a message that count as a zero request, where cmd_vel_timeout is `timeout` s; 0: messages never time out.
+inline double silence_needed(double timeout) noexcept {
+  constexpr double kWithoutTimeout = 1;  // s
+  return timeout > 0 ? timeout : kWithoutTimeout;
+}
+
 /// The last command on `cmd_vel` or `cmd_vel_stamped` that may be used, and how many may not. `count` grows by one with
 /// every usable one: that, not a clock, distinguishes a new command from an old one. A stamp becomes an age once, when
 /// the message arrives (bridge/inputs/command_input.h); from then on only cycles count, which no clock moves.
@@ -18,8 +27,9 @@ struct VelocityCommand {
   std::uint64_t crowded = 0;       ///< grows with every message refused because more than one node sends
   std::uint64_t many_senders = 0;  ///< 1: more than one node sends now, and one_sender forbids it
 
-  /// 1: when the command arrived, another sender's newest message within cmd_vel_timeout (1 s where that is 0) was not
-  /// a zero velocity, or was refused. A zero velocity then is no evidence that no motion is requested.
+  /// 1: when the command arrived, another sender's newest message within silence_needed was not a zero velocity, or was
+  /// refused. A zero velocity then is no evidence that no motion is requested.
+  /// kNoMessage: not a message, but the zero velocity in force while no source commands (command_mux.h).
   std::uint64_t contested = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "drivers/mujoco_plant.h"
 #include "faults/faulty_frame_output.h"
@@ -14,6 +15,7 @@
 #include "runtime/safety_limits.h"
 #include "runtime/start_check.h"
 #include "signals/names.h"
+#include "telemetry/log_error.h"
 
 namespace robot_control {
 namespace {
@@ -48,8 +50,8 @@ struct ClosedLoop::Parts {
       : parameters(given),
         robot(load_robot(given)),
         plant(robot, given.plant, given.loop.period()),
-        driver(plant, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, given.loop.period_ns(),
-               nullptr, gate_parameters(given)),
+        driver(plant, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
+               given.loop.period_ns(), nullptr, gate_parameters(given)),
         estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr,
                   faulty_estimator_output()),
         controller(given.controller, robot, given.loop.period(),
@@ -73,7 +75,6 @@ struct ClosedLoop::Parts {
   RobotModel robot;
   MujocoPlant plant;
   Channel<SensorFrame> sensors;
-  Channel<TruthFrame> truth;
   Channel<StateFrame> state;
   Channel<CommandFrame> command;
   Channel<Permit> permit;
@@ -86,6 +87,8 @@ struct ClosedLoop::Parts {
   OperatorInput operator_input;
   InjectedFaults faults{};
   JoinedRow row;
+  std::unique_ptr<RowLog> log;
+  std::string log_problem;
 };
 
 ClosedLoop::ClosedLoop(const Parameters& parameters) : parts_(std::make_unique<Parts>(parameters)) {}
@@ -118,10 +121,33 @@ void ClosedLoop::step() noexcept {
   parts.row = {.run = static_cast<std::int64_t>(parts.driver.run()) - 1,
                .cycle = cycle,
                .time = row_time(cycle, parts.parameters.loop.period()),
-               .driver = &parts.driver.trace(),
-               .estimator = estimated ? &parts.estimator.trace() : nullptr,
-               .controller = controlled ? &parts.controller.trace() : nullptr,
-               .monitor = monitored ? &parts.monitor.trace() : nullptr};
+               .driver = &parts.driver.trace()};
+  parts.row.set({.estimator = estimated ? &parts.estimator.trace() : nullptr,
+                 .controller = controlled ? &parts.controller.trace() : nullptr,
+                 .monitor = monitored ? &parts.monitor.trace() : nullptr});
+  write_down();
+}
+
+void ClosedLoop::write_down() noexcept {
+  Parts& parts = *parts_;
+  if (parts.log == nullptr || !parts.log_problem.empty()) return;
+  try {
+    for (const LawSnapshot* snapshot : snapshots()) {
+      if (snapshot != nullptr) parts.log->write(*snapshot);
+    }
+    parts.log->write(parts.row);
+  } catch (const LogError& error) {
+    parts.log_problem = error.what();
+  }
+}
+
+std::unique_ptr<RowLog> ClosedLoop::set_log(std::unique_ptr<RowLog> log) {
+  parts_->log_problem.clear();
+  return std::exchange(parts_->log, std::move(log));
+}
+
+const std::string& ClosedLoop::log_problem() const noexcept {
+  return parts_->log_problem;
 }
 
 void ClosedLoop::reset() {
@@ -153,6 +179,12 @@ double ClosedLoop::time() const noexcept {
 }
 const JoinedRow& ClosedLoop::row() const noexcept {
   return parts_->row;
+}
+std::array<const LawSnapshot*, kLaws> ClosedLoop::snapshots() const noexcept {
+  const JoinedRow::Laws& laws = parts_->row.laws;
+  return {parts_->driver.snapshot(), laws.estimator != nullptr ? parts_->estimator.snapshot() : nullptr,
+          laws.controller != nullptr ? parts_->controller.snapshot() : nullptr,
+          laws.monitor != nullptr ? parts_->monitor.snapshot() : nullptr};
 }
 const RobotModel& ClosedLoop::robot() const noexcept {
   return parts_->robot;

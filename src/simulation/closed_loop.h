@@ -5,6 +5,7 @@
 /// One `step` is: driver tick k, estimator k, controller k, monitor k. Same parameters, seed and inputs give
 /// the same bits, and the same bits as the four nodes in lockstep.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -12,7 +13,9 @@
 #include "parameters/parameters.h"
 #include "robot/robot_model.h"
 #include "signals/geometry.h"
+#include "signals/law_snapshot.h"
 #include "telemetry/joined_row.h"
+#include "telemetry/row_log.h"
 
 namespace robot_control {
 
@@ -58,10 +61,22 @@ class ClosedLoop {
   /// What the four nodes published in the last step.
   const JoinedRow& row() const noexcept;
 
+  /// The states of the laws before the last step, where they were copied; null otherwise. In the order of LawName.
+  std::array<const LawSnapshot*, kLaws> snapshots() const noexcept;
+
+  /// From the next step on, every row and snapshot goes there, too; null: nowhere. The one before is returned, not
+  /// closed.
+  std::unique_ptr<RowLog> set_log(std::unique_ptr<RowLog> log);
+
+  /// Why the log has ended; empty: it has not.
+  const std::string& log_problem() const noexcept;
+
   const RobotModel& robot() const noexcept;
   const Parameters& parameters() const noexcept;
 
  private:
+  void write_down() noexcept;
+
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

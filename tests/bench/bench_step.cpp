@@ -103,7 +103,7 @@ int run(const std::string& path) {
   DriveController controller(parameters.controller, robot, period);
   CommandFrame command;
   add(rows, "controller",
-      measure([&] { controller.reset(); },
+      measure([&] { controller.enter_run(); },
               [&](std::size_t k) {
                 const VelocityCommand request{.twist = drive.commands[k].twist_requested, .count = k};
                 controller.step({.sensors = &drive.sensors[k],
@@ -115,7 +115,7 @@ int run(const std::string& path) {
 
   Gate gate(joint_limits(robot), gate_parameters(parameters), period);
   add(rows, "gate",
-      measure([&] { gate.reset(); },
+      measure([&] { gate.enter_run(); },
               [&](std::size_t k) {
                 gate.step({.run = drive.sensors[k].head.run,
                            .cycle = k,
@@ -129,7 +129,7 @@ int run(const std::string& path) {
   SafetyMonitor monitor(parameters.safety, robot, period);
   Permit permit;
   add(rows, "monitor",
-      measure([&] { monitor.reset({}); },
+      measure([&] { monitor.enter_run({}); },
               [&](std::size_t k) {
                 monitor.step({.sensors = &drive.sensors[k],
                               .command = &drive.commands[k - 1],

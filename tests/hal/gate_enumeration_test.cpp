@@ -105,7 +105,7 @@ TEST_F(GateEnumeration, MovesIfAndOnlyIfAllFourQuestionsAreAnsweredYes) {
     put(permit);
     for (const CommandCase& command : all_commands) {
       put(command);
-      gate_.reset();
+      gate_.enter_run();
       step();
       const bool yes = alive(permit) && allows(permit) && fresh(command) && sound(command);
       const auto which = [&] {

@@ -10,6 +10,16 @@
 namespace robot_control {
 namespace {
 
+// Gains.
+
+TEST_F(GateFixture, AJointWithoutLimitsAndWithoutAPositionGetsNoDampingBelowZero) {
+  sensors_.valid = 0;
+  command_.joints[1].damping = -2.0;
+  step();
+  EXPECT_EQ(verdict(), GateVerdict::kClamped);
+  EXPECT_EQ(joints_[1].damping, 0);
+}
+
 // Ramps.
 
 class GateRamp : public GateFixture {
@@ -117,12 +127,12 @@ TEST_F(GateRate, AfterABrakeItMayBeginWhereTheBrakeHeld) {
 TEST_F(GateRate, AfterABrakeItMayBeginAtZeroAndBetween) {
   sensors_.joints[0].effort = -3;
   for (const double effort : {0.0, -1.2, 0.4, -3.4}) {
-    gate_.reset();
+    gate_.enter_run();
     ask(effort);
     step();
     EXPECT_EQ(joints_[0].effort, effort);
   }
-  gate_.reset();
+  gate_.enter_run();
   ask(0.5);
   step();
   EXPECT_NEAR(joints_[0].effort, 0.4, 1e-15);
@@ -130,7 +140,7 @@ TEST_F(GateRate, AfterABrakeItMayBeginAtZeroAndBetween) {
 
 TEST_F(GateRate, WhatTheBrakeHeldCountsUpToTheEffortLimit) {
   for (const double absurd : {1e9, kInfinity, kNaN}) {
-    gate_.reset();
+    gate_.enter_run();
     sensors_.joints[0].effort = absurd;
     ask(kLimit);
     step();
@@ -216,7 +226,7 @@ TEST_F(GateSpeed, WhatTheDriverMeasuresAsVelocityIsNotAsked) {
 
 TEST_F(GateSpeed, ANewRunBeginsAtRest) {
   turn(30);
-  gate_.reset();
+  gate_.enter_run();
   step();
   EXPECT_EQ(verdict(), GateVerdict::kPassed);
 }
@@ -360,7 +370,7 @@ TEST_F(GateRange, StepsWithoutAllocating) {
     sensors_.joints[0].position = 0.02 * i;
     next();
   }
-  gate_.reset();
+  gate_.enter_run();
   EXPECT_EQ(guard.count(), 0u);
 }
 

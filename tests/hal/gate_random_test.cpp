@@ -46,7 +46,7 @@ TEST_F(GateGarbage, NeverMovesAJointBeyondItsLimitsOrWithoutAPermit) {
   std::uint64_t moved = 0;
   for (unsigned seed = 0; seed < 50000; ++seed) {
     std::mt19937_64 random(seed);
-    gate_.reset();
+    gate_.enter_run();
     input_.cycle = word(random, 100);
     input_.permit_found = lookups[random() % 6];
     input_.command_found = lookups[random() % 6];
@@ -98,7 +98,7 @@ class GateRandomDrive : public GateFixture {
 
   void begin(unsigned seed) {
     random_.seed(seed);
-    gate_.reset();
+    gate_.enter_run();
     tick_at(1);
     for (std::size_t i = 0; i < 2; ++i) {
       position_[i] = within(-1.2, 3.2);

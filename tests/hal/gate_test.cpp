@@ -284,7 +284,7 @@ TEST_F(GateTest, OneBrakingJointAmongDrivingOnesPasses) {
 TEST_F(GateTest, ANewRunRestartsItsCounters) {
   input_.command_found = Lookup::kMissing;
   step();
-  gate_.reset();
+  gate_.enter_run();
   const GateReport fresh;
   EXPECT_EQ(std::memcmp(&gate_.report(), &fresh, sizeof fresh), 0);
 }
@@ -294,7 +294,7 @@ TEST_F(GateTest, ANewRunForgetsWhatItKnew) {
   input_.cycle = 1001;
   command_of(1000);
   step();
-  gate_.reset();
+  gate_.enter_run();
   tick_at(5);  // else a permit of cycle 4 were superseded by that of cycle 1000
   step();
   EXPECT_EQ(gate_.report().verdict, GateVerdict::kPassed);

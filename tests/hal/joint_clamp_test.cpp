@@ -96,14 +96,14 @@ INSTANTIATE_TEST_SUITE_P(BothDirections, SpeedClamp, testing::Values(1.0, -1.0))
 
 TEST(GainClamp, GainsBelowZeroAreZero) {
   JointCommand command{.mode = JointMode::kImpedance, .stiffness = -1, .damping = -2};
-  EXPECT_EQ(clamp_speed({.effort = 4}, 0, 0, command), std::uint64_t{kGateSpeedClamped});
+  EXPECT_EQ(clamp_gains(command), std::uint64_t{kGateSpeedClamped});
   EXPECT_EQ(command.stiffness, 0);
   EXPECT_EQ(command.damping, 0);
 }
 
 TEST(GainClamp, GainsThatTheModeDoesNotUseAreCarried) {
   JointCommand command{.mode = JointMode::kVelocity, .stiffness = -1, .damping = 2};
-  EXPECT_EQ(clamp_speed({.effort = 4}, 0, 0, command), 0u);
+  EXPECT_EQ(clamp_gains(command), 0u);
   EXPECT_EQ(command.stiffness, -1);
 }
 

@@ -3,9 +3,10 @@
 Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
-The trials that judge give results of the same form: faults/campaign.py, drives/normal_driving.py,
-drives/drive_promises.py, odometry/bench.py, hostile.py, tuning.py, bench_limiter, bench_release. There, "not_judged"
-beside the rows names the robots left out, and "table" holds lines to be shown above the rows.
+The trials that judge give results of the same form: faults/campaign.py, faults/replayed.py, drives/normal_driving.py,
+drives/drive_promises.py, odometry/bench.py, log_bench.py, black_box_bench.py, hostile.py, tuning.py, bench_limiter,
+bench_release, bench_bags. There, "not_judged" beside the rows names the robots left out, and "table" holds lines to be
+shown above the rows.
 """
 
 from __future__ import annotations
@@ -30,9 +31,22 @@ from lab.runs.runner import Processes, Runner
 
 MEASURED = ("step", "plant", "lockstep", "frames", "stops")
 # Only when they are named.
-JUDGED = ("campaign", "driving", "limiter", "release", "drive", "odometry", "hostile", "tuning")
+JUDGED = (
+    "campaign",
+    "replay",
+    "driving",
+    "limiter",
+    "release",
+    "drive",
+    "odometry",
+    "hostile",
+    "tuning",
+    "bags",
+    "record",
+    "blackbox",
+)
 NAMES = MEASURED + JUDGED
-SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000}  # sequences; a minute each on two cores
+SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 ON_CLUSTERS = ("campaign", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
@@ -97,6 +111,39 @@ def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, An
     return result, all(row["value"] == 0 for row in result["rows"] if row["name"] == "sequences failed")
 
 
+def _replay(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from lab.faults import replayed
+
+    return replayed.bench(given.first, given.runs or replayed.ALL_RUNS, say)
+
+
+def _hostile(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from lab import hostile
+
+    return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, say)
+
+
+def _record(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from lab import log_bench
+
+    return log_bench.bench(given.share, given.programs, say)
+
+
+def _blackbox(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from lab import black_box_bench
+
+    return black_box_bench.bench(given.first, given.runs or black_box_bench.ALL_TRIALS, given.programs, say)
+
+
+def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from lab.drives import drive_promises
+
+    return drive_promises.bench(say)
+
+
+TRIALS = {"replay": _replay, "hostile": _hostile, "record": _record, "blackbox": _blackbox, "drive": _drive}
+
+
 def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     """What NAME measured, and whether that is as it has to be."""
     if name in SEED_PROGRAMS:
@@ -104,14 +151,8 @@ def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     if name in ON_CLUSTERS:
         with opened_runner(given) as runner:
             return run_many(name, given, runner)
-    if name == "hostile":
-        from lab import hostile
-
-        return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, say)
-    if name == "drive":
-        from lab.drives import drive_promises
-
-        return drive_promises.bench(say)
+    if name in TRIALS:
+        return TRIALS[name](given)
     return run_program(given.programs / f"bench_{name}", given.params), True
 
 
@@ -163,10 +204,12 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    seeds = "campaign, limiter, release, odometry, hostile, tuning"
+    seeds = "campaign, replay, limiter, release, bags, odometry, hostile, tuning, blackbox"
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
-    parser.add_argument("--share", type=_share, default=1.0, help="driving: of the two hours")
+    parser.add_argument(
+        "--share", type=_share, default=1.0, help="driving: of the two hours; record: of the ten minutes"
+    )
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving: of the sensors")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")

@@ -4,16 +4,20 @@ import dataclasses
 
 import numpy as np
 import pytest
+from corpus import ABSENT, FOLDER
 from lab.faults.campaign import campaign, run_seed
-from lab.faults.fault_sequence import ALL_RUNS, COMPONENTS, FaultSequence, draw_sequence
+from lab.faults.fault_sequence import ALL_RUNS, FaultSequence, draw_sequence
 from lab.faults.random_drive import Leg
 from lab.faults.sequence_judge import RULES, judge
 from lab.faults.sequence_run import COLUMNS
-from lab.robot_corpus import robot_names
+from lab.robot_corpus import ICE, robot_names, stop_deceleration_of, urdf_of
+from robot_control import ClosedLoop
+from robot_control.common.signal_names import number_of
 
 PERIOD, WHEEL_BASE, FASTEST = 0.001, 0.5, 1.5  # s, m, m/s
-STOPPED, READY = 4, 1  # SupervisorState
-BRAKE, PASSED, DRIVE = 0, 1, 2  # GateVerdict, PermitAction
+STOPPED, READY = (number_of("SupervisorState", name) for name in ("STOPPED", "READY"))
+BRAKE, PASSED = (number_of("GateVerdict", name) for name in ("brake", "passed"))
+DRIVE = number_of("PermitAction", "drive")
 DRIVEN = 1.0  # s
 
 
@@ -80,7 +84,7 @@ def test_a_healthy_drive_breaks_no_rule(sequence, log):
 
 
 def test_a_passed_command_under_a_brake_permit_is_noticed(sequence, log):
-    log["permit_action"][500] = 0
+    log["permit_action"][500] = number_of("PermitAction", "brake")
     assert rules_broken(sequence, log) == {"permit"}
 
 
@@ -135,14 +139,28 @@ def test_a_lean_is_noticed(sequence, log, scene, limit):
 
 
 def test_a_diverged_simulation_is_noticed(sequence, log):
-    log["driver_state"][500] = 3
+    log["driver_state"][500] = number_of("DriverState", "fault")
     assert rules_broken(sequence, log) == {"machine"}
 
 
 def test_a_robot_without_brakes_need_not_stand(sequence, log):
-    log["injected"][:] = 1 << (3 * COMPONENTS.index("left_motor"))  # off
+    log["injected"][:] = number_of("FaultKind", "off") << (3 * number_of("FaultComponent", "left_motor"))
     log["truth_linear"][rows(2.0, 7.0)] = 0.5
     assert rules_broken(sequence, log) == set()
+
+
+# 0.05, 0.06 and 0.17 m/s² of the wheels' way: their inertia about the vertical is large for their wheel base.
+@pytest.mark.skipif(FOLDER is None, reason=ABSENT)
+@pytest.mark.parametrize("robot", ["create_2", "p3dx_mario", "boxer"])
+def test_a_robot_that_spins_on_ice_slows_down_as_expected_of_it(robot):
+    loop = ClosedLoop({"mujoco_plant": {"sensor_errors": "ideal", "ground_friction": ICE}}, urdf=urdf_of(robot))
+    half_base = loop.robot["wheel_base"] / 2
+    loop.run(5.0, (0.0, 1.0))
+    loop.e_stop()
+    rim = half_base * np.abs(loop.run(4.0, (0.0, 0.0))["truth_angular"])
+    slowed = int(np.argmax(rim < 0.2 * rim[0]))
+    measured = 0.8 * rim[0] / (slowed * loop.period)
+    assert measured / 1.5 < stop_deceleration_of(robot) < measured
 
 
 def test_every_rule_was_broken_above():

@@ -5,8 +5,9 @@ from lab.drives import drive_figures, drive_promises
 from lab.drives.drive_promises import ROBOTS, coarse_encoders, curves, peer, rest, stops, straight
 from lab.robot_corpus import DIFFBOT, robot_names
 from robot_control import ClosedLoop
+from robot_control.common.signal_names import number_of
 
-STOPPED = 4  # SupervisorState
+STOPPED = number_of("SupervisorState", "STOPPED")
 
 
 OTHERS = [pytest.param(name, marks=pytest.mark.nightly) for name in ROBOTS if name != DIFFBOT]

@@ -10,8 +10,10 @@ from robot_control._robot_control import wheel_loops
 from robot_control.common.settings import Settings
 from robot_control.identify.evaluation import Options, evaluate, plan
 from robot_control.identify.fit import identify
+from robot_control.identify.report import ground_friction
 from robot_control.identify.tuning_proposal import base_of
 from robot_control.installed_files import share_file
+from skid_steer import write_skid_steer
 
 PARAMS = share_file("config/robot_params.yaml")
 ERRORS = {"sensor_errors": "data_sheet"}  # identification is a law: its promises are for sensors that are on time
@@ -73,6 +75,20 @@ def test_finds_hidden_inertia_and_friction_within_five_percent(robot):
     # The plan ends where it began, and keeps to its space.
     assert np.hypot(log["truth_x"][-1], log["truth_y"][-1]) < 0.02
     assert log["truth_x"].max() < excitation.reach + 0.02 < OPTIONS.space
+
+
+@pytest.mark.parametrize("ground", [0.5, 1.0])
+def test_finds_the_friction_of_the_ground_under_a_skid_steer(ground, tmp_path):
+    settings = Settings(PARAMS, (("robot.urdf", write_skid_steer(tmp_path)),))
+    excitation = plan(settings, OPTIONS)
+    loop = ClosedLoop({"mujoco_plant": {**ERRORS, "ground_friction": ground}}, urdf=write_skid_steer(tmp_path))
+    loop.run(1.0, (0.0, 0.0))
+    begin = loop.time
+    log = loop.run(excitation.seconds + 0.5, lambda time: excitation.command(time - begin))
+    found = ground_friction(identify(log, base_of(loop.robot)), wheel_loops(settings.path, settings.values))
+    assert found is not None
+    assert found.value == pytest.approx(ground, rel=TOLERANCE)
+    assert "ground friction  " in evaluate(log, settings, None, "test").table
 
 
 def test_finds_the_turning_inertia_that_a_payload_at_the_rim_adds():

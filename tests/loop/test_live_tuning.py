@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, ParameterError
+from robot_control.common.signal_names import number_of
 
 COMMAND = (0.5, 0.2)  # m/s, rad/s
-STOPPED = 4  # SupervisorState
+STOPPED = number_of("SupervisorState", "STOPPED")
 EFFORTS = ("left_wheel_joint_effort_command", "right_wheel_joint_effort_command")
 SETS = (
     {"pid_kp": 1.0, "pid_ki": 5.0, "pid_kd": 0.001},

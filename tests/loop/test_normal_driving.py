@@ -1,9 +1,13 @@
 """Who drives normally is not stopped, and not warned."""
 
 import pytest
+from corpus import ABSENT as NO_CORPUS
+from corpus import FOLDER
+from lab.drives import turning_drive
 from lab.drives.normal_driving import Drive, all_drives, bench, carry_out
 from lab.odometry.recordings import ABSENT, recordings_folder
 from lab.robot_corpus import DIFFBOT, SCENES
+from robot_control import ClosedLoop
 
 ONE_MINUTE, TWO_MINUTES, TEN_MINUTES = 1 / 120, 1 / 60, 1 / 12  # of the two hours
 
@@ -40,3 +44,18 @@ def test_all_of_it_takes_an_hour_and_a_half_of_the_own_robot():
 def test_a_drive_is_the_same_each_time(scene):
     drive = Drive(DIFFBOT, scene, 1000, 5.0, 1)
     assert carry_out(drive) == carry_out(drive)
+
+
+# Its inner wheel nearly stands and holds its side with 0.8 of its torque limit while the other one goes around it.
+@pytest.mark.skipif(FOLDER is None, reason=NO_CORPUS)
+@pytest.mark.parametrize("seed", [42, 52])
+def test_a_wheel_that_stands_while_a_curve_begins_is_not_stalled(seed):
+    turning = turning_drive.carry_out("create_2", seed)
+    assert (turning.causes, turning.warnings) == ((), ())
+
+
+@pytest.mark.parametrize(("ground", "slides"), [(0.02, True), (1.0, False)])
+def test_tyres_slide_by_truth_where_the_ground_is_slippery(ground, slides):
+    loop = ClosedLoop({"mujoco_plant": {"ground_friction": ground}})
+    log = loop.run(1.0, (0.0, 2.0))
+    assert turning_drive.slides(loop, log) == slides

@@ -1,6 +1,7 @@
 /// The disk under the log is full, at full speed: a file system of 512 kB in a mount namespace of telemetry's own,
 /// which ends with it, where that is granted; else a limit on the file's size.
 
+#include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 
 #include "losses_fixture.h"
+#include "recording/trace_reader.h"
 
 namespace robot_control {
 namespace {
@@ -29,7 +31,7 @@ class AFullDisk : public Losses {
     nodes().log_into(folder_);
   }
 
-  void expect_told_and_counted(const std::string& why) {
+  void expect_reported_and_counted(const std::string& why) {
     nodes().start(LoopNode::kTelemetry);
     expect_drives_on(1000);
     EXPECT_TRUE(robot_.await([&] { return nodes().desk().unwritten_rows.load() > 0; })) << "counted";
@@ -47,23 +49,25 @@ class AFullDisk : public Losses {
   std::filesystem::path folder_;
 };
 
-TEST_F(AFullDisk, HarmsNothingAndItsLossesAreReportedAndCounted) {
+using NightlyFullDisk = AFullDisk;
+
+TEST_F(NightlyFullDisk, HarmsNothingAndItsLossesAreReportedAndCounted) {
   if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
     GTEST_SKIP() << "mounting is not granted";
   }
   nodes().prepare(LoopNode::kTelemetry, [this] {
     if (!mount_small_disk(folder_)) throw std::runtime_error("no small disk");
   });
-  expect_told_and_counted("No space left on device");
+  expect_reported_and_counted("No space left on device");
 }
 
-TEST_F(AFullDisk, IsALimitOnTheFileJustSoAndTheLogEndsWithAWholeRow) {
+TEST_F(AFullDisk, OrALimitOnTheFileHarmsNothingIsReportedAndTheLogEndsWithAWholeRow) {
   nodes().prepare(LoopNode::kTelemetry, [] {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{kLimit, kLimit};
     setrlimit(RLIMIT_FSIZE, &limit);
   });
-  expect_told_and_counted("File too large");
+  expect_reported_and_counted("File too large");
   std::ifstream file(folder_ / "run.csv");
   std::string line, last;
   std::size_t columns = 0;
@@ -72,6 +76,65 @@ TEST_F(AFullDisk, IsALimitOnTheFileJustSoAndTheLogEndsWithAWholeRow) {
     last = line;
   }
   EXPECT_EQ(static_cast<std::size_t>(std::count(last.begin(), last.end(), ',')), columns);
+}
+
+TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
+  nodes().start(LoopNode::kTelemetry);
+  expect_drives_on(1500);
+  std::filesystem::remove_all(folder_);
+  EXPECT_TRUE(robot_.await([&] { return nodes().desk().unwritten_rows.load() > 0; })) << "counted";
+  expect_drives_on(kRingRows + 500);
+  EXPECT_EQ(nodes().desk().lost_rows.load(), 0u) << "by the rings";
+  expect_lives(LoopNode::kTelemetry);
+  EXPECT_NE(nodes().said(LoopNode::kTelemetry).find("is not there any more"), std::string::npos);
+}
+
+/// A file system cannot be made read-only while a log on it is open. But one that is may be mounted over the folder:
+/// what is written on then goes where no other process can read it.
+TEST_F(AFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLogsGoOnAfterwards) {
+  if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
+    GTEST_SKIP() << "mounting is not granted";
+  }
+  nodes().prepare(LoopNode::kTelemetry, [] {
+    if (unshare(CLONE_NEWNS) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) {
+      throw std::runtime_error("no mount namespace");
+    }
+  });
+  nodes().start(LoopNode::kTelemetry);
+  expect_drives_on(1500);
+  const std::string space = "/proc/" + std::to_string(nodes().process(LoopNode::kTelemetry).id()) + "/ns/mnt";
+  const auto in_its_space = [&](auto act) {
+    return ChildProcess([&] {
+             const int there = open(space.c_str(), O_RDONLY | O_CLOEXEC);
+             return setns(there, CLONE_NEWNS) == 0 && act() == 0 ? 0 : 1;
+           })
+        .wait();
+  };
+  ASSERT_EQ(in_its_space([&] { return mount("tmpfs", folder_.c_str(), "tmpfs", MS_RDONLY, nullptr); }), 0);
+  EXPECT_TRUE(robot_.await([&] { return nodes().desk().unwritten_rows.load() > 0; })) << "counted";
+  expect_drives_on(kRingRows + 500);
+  EXPECT_EQ(nodes().desk().lost_rows.load(), 0u) << "by the rings";
+  expect_lives(LoopNode::kTelemetry);
+  ASSERT_EQ(in_its_space([&] { return umount2(folder_.c_str(), MNT_DETACH); }), 0);
+  const auto begun_again = [&](const std::string& kind) {  // kept are run.1.csv and run.2.bag, or the other way round
+    return std::filesystem::exists(folder_ / ("run.1" + kind)) || std::filesystem::exists(folder_ / ("run.2" + kind));
+  };
+  EXPECT_TRUE(robot_.await([&] { return begun_again(".csv") && begun_again(".bag"); }, 60));
+}
+
+TEST_F(AFullDisk, LeavesABagThatIsReadToItsLastWholeChunk) {
+  nodes().prepare(LoopNode::kTelemetry, [] {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{3 * kLimit, 3 * kLimit};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  });
+  nodes().start(LoopNode::kTelemetry);
+  EXPECT_TRUE(robot_.await([&] { return nodes().desk().unwritten_bag_rows.load() > 0; }));
+  expect_drives_on(500);
+  std::size_t rows = 0;
+  TraceReader reader(folder_ / "run.bag");
+  reader.read({.row = [&](const TraceRow&, std::int64_t) { ++rows; }});
+  EXPECT_GT(rows, 500u);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "losses_fixture.h"
+#include "recording/trace_reader.h"
 
 namespace robot_control {
 namespace {
@@ -146,6 +147,29 @@ TEST_P(ALostTelemetry, HarmsNothing) {
     expect_drives_on(200);
   }
   for (const LoopNode node : kLoop) expect_lives(node);
+}
+
+using NightlyLostTelemetry = Losses;
+
+TEST_F(NightlyLostTelemetry, StoppedForTenSecondsCountsAndNamesWhatItMissed) {
+  const std::filesystem::path log = nodes().folder() / "log";
+  nodes().log_into(log);
+  nodes().start(LoopNode::kTelemetry);
+  expect_drives_on(1500);
+  nodes().process(LoopNode::kTelemetry).send(SIGSTOP);
+  expect_drives_on(10'000);
+  nodes().process(LoopNode::kTelemetry).send(SIGCONT);
+  EXPECT_TRUE(robot_.await([&] { return nodes().desk().lost_rows.load() > 0; })) << "counted";
+  expect_drives_on(4000);
+
+  std::uint64_t last = 0, missing = 0, lost = 0;
+  TraceReader(log / "run.bag").read({.row = [&](const TraceRow& row, std::int64_t) {
+    if (last != 0 && row.cycle > last + 1) missing += row.cycle - last - 1;
+    last = row.cycle;
+    lost = row.lost;
+  }});
+  EXPECT_GT(missing, 10'000 - kRingRows - 500) << "the rings hold some";
+  EXPECT_GE(lost, 4 * missing) << "named: the row of each of the four nodes";
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, ALostTelemetry, ::testing::Values(SIGSTOP),

@@ -36,52 +36,53 @@ std::string damaged(std::string text, std::mt19937& random) {
   return text;
 }
 
-TEST(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInTheFile) {
-  ParameterFile file;
-  for (unsigned seed = 0; seed < 1500; ++seed) {
-    std::mt19937 random(seed);
-    file.write(damaged(shipped_text(), random));
-    try {
-      read_parameters(file.path());
-    } catch (const ParameterError&) {
-    } catch (const std::exception& error) {
-      FAIL() << "seed " << seed << ": " << error.what();
+/// First and last seed + 1.
+class ReadParametersFuzz : public testing::TestWithParam<std::pair<unsigned, unsigned>> {
+ protected:
+  /// `read(seed, random)` may throw a ParameterError, and nothing else.
+  template <class Read>
+  static void expect_read_or_refused(Read read) {
+    for (unsigned seed = GetParam().first; seed < GetParam().second; ++seed) {
+      std::mt19937 random(seed);
+      try {
+        read(seed, random);
+      } catch (const ParameterError&) {
+      } catch (const std::exception& error) {
+        FAIL() << "seed " << seed << ": " << error.what();
+      }
     }
   }
+};
+INSTANTIATE_TEST_SUITE_P(EveryDay, ReadParametersFuzz, testing::Values(std::pair(0u, 300u)));
+INSTANTIATE_TEST_SUITE_P(Nightly, ReadParametersFuzz, testing::Values(std::pair(300u, 1500u)));
+
+TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInTheFile) {
+  ParameterFile file;
+  expect_read_or_refused([&](unsigned, std::mt19937& random) {
+    file.write(damaged(shipped_text(), random));
+    read_parameters(file.path());
+  });
 }
 
 // The conditions are maps: damage there alone, where braces open and close.
-TEST(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInACondition) {
+TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverStandsInACondition) {
   const std::string text = shipped_text();
   const std::size_t begin = text.find("\n  wheel_speed:");
   const std::size_t end = text.find("\ntelemetry:");
   ASSERT_LT(begin, end);
   ParameterFile file;
-  for (unsigned seed = 0; seed < 1500; ++seed) {
-    std::mt19937 random(seed);
+  expect_read_or_refused([&](unsigned, std::mt19937& random) {
     file.write(text.substr(0, begin) + damaged(text.substr(begin, end - begin), random) + text.substr(end));
-    try {
-      read_parameters(file.path());
-    } catch (const ParameterError&) {
-    } catch (const std::exception& error) {
-      FAIL() << "seed " << seed << ": " << error.what();
-    }
-  }
+    read_parameters(file.path());
+  });
 }
 
-TEST(ReadParametersFuzz, ReadsOrRefusesWhateverAnOverlaySays) {
+TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverAnOverlaySays) {
   const std::vector<std::string> paths = parameter_paths();
-  for (unsigned seed = 0; seed < 1500; ++seed) {
-    std::mt19937 random(seed);
-    const std::string& path = paths[seed % paths.size()];
-    try {
-      const std::string value = seed % 2 == 0 ? "1000.0" : "{limit: 0.3, persistence: 0.1, reaction: warn}";
-      read_parameters(shipped_path(), {{path, damaged(value, random), "server"}});
-    } catch (const ParameterError&) {
-    } catch (const std::exception& error) {
-      FAIL() << "seed " << seed << ", " << path << ": " << error.what();
-    }
-  }
+  expect_read_or_refused([&](unsigned seed, std::mt19937& random) {
+    const std::string value = seed % 2 == 0 ? "1000.0" : "{limit: 0.3, persistence: 0.1, reaction: warn}";
+    read_parameters(shipped_path(), {{paths[seed % paths.size()], damaged(value, random), "server"}});
+  });
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_tree.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 namespace robot_control {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "parameters/parameters.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 namespace robot_control {
 

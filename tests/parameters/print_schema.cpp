@@ -4,7 +4,7 @@
 
 #include <iostream>
 
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 namespace robot_control {
 namespace {

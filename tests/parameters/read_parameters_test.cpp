@@ -7,7 +7,7 @@
 
 #include "parameters/parameter_file.h"
 #include "parameters/parameters.h"
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 #include "parameters/suggestion.h"
 
 namespace robot_control {
@@ -195,6 +195,8 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
       const bool limit = overlay.path.ends_with(".limit");
       overlay.text = none ? "0" : small || limit ? "1" : "10";  // within the range of all the others
       if (overlay.path.ends_with(".reaction")) overlay.text = "warn";
+      if (overlay.path == "telemetry.csv") overlay.text = "false";
+      if (overlay.path == "telemetry.record") overlay.text = "always";
     }
   }
   const Parameters parameters = read_parameters("", all);
@@ -402,6 +404,14 @@ TEST_F(ReadParameters, TakesTheOldTruthValuesOfSensorErrorsWithAWarning) {
   }
 }
 
+TEST_F(ReadParameters, TakesAKeyThatHasNoEffectAnyMoreWithAWarning) {
+  EXPECT_TRUE(read_parameters(file.path()).warnings.empty());
+  const Parameters parameters =
+      read_parameters(file.path(), {{"state_estimator.standstill_acceleration", "0.4", "dict"}});
+  ASSERT_EQ(parameters.warnings.size(), 1u);
+  EXPECT_THAT(parameters.warnings[0], HasSubstr("standstill_acceleration has no effect any more"));
+}
+
 TEST_F(ReadParameters, LeavesGainsAndBrakesToTheRobot) {
   const Parameters parameters = read_parameters(file.path());
   EXPECT_FALSE(parameters.controller.pid_kp);
@@ -554,7 +564,8 @@ TEST(Schema, EveryNumberHasARange) {
       const bool number =
           std::holds_alternative<double*>(field) || std::holds_alternative<std::int64_t*>(field) ||
           std::holds_alternative<std::uint64_t*>(field) || std::holds_alternative<std::optional<double>*>(field) ||
-          std::holds_alternative<Vector3*>(field) || std::holds_alternative<std::optional<Vector3>*>(field);
+          std::holds_alternative<Vector3*>(field) || std::holds_alternative<std::optional<Vector3>*>(field) ||
+          std::holds_alternative<std::optional<CovarianceDiagonal>*>(field);
       EXPECT_EQ(number, key.min < key.max) << path_of(block, key);
     }
   }

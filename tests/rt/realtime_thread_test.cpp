@@ -12,6 +12,7 @@
 #include <atomic>
 #include <thread>
 
+#include "rt/thread_priority.h"
 #include "support/child_process.h"
 
 namespace robot_control {
@@ -197,6 +198,19 @@ TEST(RealtimeThread, AloneHasThePriorityWhereItIsGranted) {
     if (thread.report().priority != Grant::kGranted) return kSkip;
     if (inside.policy != SCHED_FIFO || inside.priority != 80) return 1;
     return self().policy == SCHED_OTHER ? 0 : 2;
+  });
+}
+
+TEST(AnOrdinaryThreadThatPrecedesOthers, HasTheLowestRealTimePriorityAndItsThreadsHaveNone) {
+  expect_in_child([] {
+    if (!precede_ordinary_threads()) return kSkip;
+    sched_param parameter{};
+    int policy = 0;
+    pthread_getschedparam(pthread_self(), &policy, &parameter);
+    if ((policy & ~SCHED_RESET_ON_FORK) != SCHED_FIFO || parameter.sched_priority != 1) return 1;
+    int inherited = SCHED_FIFO;
+    std::thread([&] { inherited = sched_getscheduler(0); }).join();
+    return inherited == SCHED_OTHER ? 0 : 2;
   });
 }
 

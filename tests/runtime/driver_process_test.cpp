@@ -20,8 +20,14 @@ constexpr std::int64_t kMoment = 1'000'000;  // ns
 /// Is set down again slowly, and notes in a plain number that it is in use.
 class SlowMachine final : public Driver {
  public:
+  /// `again`: becomes true once it is being set down again.
+  explicit SlowMachine(std::atomic<bool>& again) : again_(again) {}
+
   void start() override {
-    if (touched > 0) sleep_ns(250 * kMoment);  // more than the 100 ms after which a parked loop looks for its end
+    if (touched > 0) {
+      again_.store(true);
+      sleep_ns(250 * kMoment);  // more than the 100 ms after which a parked loop looks for its end
+    }
     ++touched;
   }
   void read(SensorFrame& sensors) noexcept override {
@@ -34,6 +40,9 @@ class SlowMachine final : public Driver {
   bool simulated() const noexcept override { return true; }
 
   int touched = 0;  // not atomic: a race is the thread sanitizer's to find
+
+ private:
+  std::atomic<bool>& again_;
 };
 
 class DriverProcessTest : public testing::Test {
@@ -42,7 +51,7 @@ class DriverProcessTest : public testing::Test {
 
   DriverProcess& opened() {
     process_ = std::make_unique<DriverProcess>(parameters_, two_wheels(), bus_.name());
-    process_->open_driver(std::make_unique<SlowMachine>());
+    process_->open_driver(std::make_unique<SlowMachine>(reset_under_way_));
     return *process_;
   }
   /// The loop ticks.
@@ -56,6 +65,7 @@ class DriverProcessTest : public testing::Test {
 
   ScopedBus bus_;
   Parameters parameters_;
+  std::atomic<bool> reset_under_way_{false};
   std::unique_ptr<DriverProcess> process_;
 };
 
@@ -90,7 +100,7 @@ TEST_F(DriverProcessTest, AnEndDuringAResetLeavesTheMachineToTheReset) {
   DriverProcess& process = running();
   ServiceAnswer answer;
   std::thread resetting([&] { answer = process.services()->reset(); });
-  sleep_ns(15 * kMoment);
+  while (!reset_under_way_.load()) sleep_ns(kMoment);
   process.stop();
   resetting.join();
   EXPECT_TRUE(answer.success) << answer.message;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bridge/inputs/command_input.h"
+#include "bridge/inputs/command_mux.h"
 #include "cycle_fixture.h"
 
 namespace robot_control {
@@ -22,6 +23,12 @@ constexpr std::int64_t kJudgesMargin = 6;  // ticks, of the judge's T
 constexpr std::int64_t kInTransit = 3;     // driver cycles from a message to the command frame that the monitor reads
 constexpr std::int64_t kBrakesWithin = kPermitLife + 2;  // driver cycles for which the last permit lives at the gate
 constexpr std::int64_t kNever = -1'000'000;
+
+/// One for each sender; the first is silent sooner than cmd_vel_timeout.
+CommandSourceList two_sources() {
+  return {.sources = {{"a", "a", 0.6 * kTimeout, 20, false}, {"b", "b", kTimeout, 10, false}},
+          .locks = {{"pause", "pause", 0, 255}}};
+}
 
 struct Sender {
   std::string name;
@@ -43,6 +50,7 @@ class Sequence {
   Sequence(std::uint64_t seed, ReleaseFigures& figures) : random_(seed), figures_(figures) {
     parameters_.cmd_vel_timeout = kTimeout;
     parameters_.one_sender = chance(3);
+    with_list_ = chance(3);
     for (std::size_t node = 0; node < kNodes; ++node) start(static_cast<Node>(node));
   }
 
@@ -83,6 +91,7 @@ class Sequence {
             ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
             CommandScript(), nullptr);
         inbox_.emplace(kTimeout, parameters_.one_sender);
+        mux_.emplace(two_sources(), kTimeout, parameters_.one_sender);
         for (Sender& sender : senders_) sender.received = Message::kNone;
         break;
       case kMonitorNode:
@@ -162,8 +171,9 @@ class Sequence {
     for (std::size_t i = 0; i < senders_.size(); ++i) {
       if (std::exchange(waiting_[i], false)) receive(senders_[i]);
     }
-    inbox_->look(loop_ns());
-    controller_->inbox().store(inbox_->value());
+    if (with_list_ && chance(200)) mux_->receive_lock(0, chance(3), loop_ns());
+    intake().look(loop_ns());
+    controller_->inbox().store(intake().value());
   }
 
   void receive(Sender& sender) {
@@ -171,13 +181,23 @@ class Sequence {
     if (sender.message == Message::kMotion) arrived.twist.linear[0] = 0.5;
     if (sender.message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
     if (sender.message == Message::kStale) arrived.stamp_ns = 1;
-    inbox_->receive(arrived, {.ros_ns = 1'000'000'000'000, .loop_ns = loop_ns()});
+    const ArrivalTime time{.ros_ns = 1'000'000'000'000, .loop_ns = loop_ns()};
+    if (with_list_) {
+      mux_->receive(static_cast<std::size_t>(&sender - senders_.data()), arrived, time);
+    } else {
+      inbox_->receive(arrived, time);
+    }
     sender.received = sender.message;
     sender.received_at = now_;
     sender.received_cycle = cycles_;
     const bool alone = std::ranges::none_of(
         senders_, [&](const Sender& other) { return &other != &sender && other.requests_motion(now_); });
     if (sender.message == Message::kZero && alone) released_ = true;
+  }
+
+  CommandIntake& intake() {
+    if (with_list_) return *mux_;
+    return *inbox_;
   }
 
   std::int64_t loop_ns() const { return now_ * kPeriodNs; }
@@ -231,7 +251,9 @@ class Sequence {
   std::unique_ptr<EstimatorCycle> estimator_;
   std::unique_ptr<ControllerCycle> controller_;
   std::unique_ptr<MonitorCycle> monitor_;
+  bool with_list_ = false;
   std::optional<CommandInput> inbox_;
+  std::optional<CommandMux> mux_;  ///< instead, with a list of sources
   OperatorInput operator_input_;
   std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
   std::array<bool, 2> waiting_{};

@@ -1,7 +1,8 @@
 #pragma once
 /// Does anything move that nothing released? One random sequence per seed of deaths, restarts, stalls and resets of the
 /// four nodes, of two senders of commands, emergency stops and resets, in virtual time: a restart builds the node's
-/// classes again on the channels that the last ones left, with an empty inbox.
+/// classes again on the channels that the last ones left, with an empty inbox. In a third of the sequences the senders
+/// are two sources of a list with a lock.
 ///
 /// The judge knows only what was sent and what was started. With T = cmd_vel_timeout in cycles:
 ///   motion      the machine is commanded anything but the brake only if, since the last start of a node (or reset of

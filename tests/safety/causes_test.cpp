@@ -395,7 +395,7 @@ TEST_F(CausesTest, StepsWithoutAllocating) {
   step();
   request_reset();
   step();
-  monitor_.reset(input_.operator_input);
+  monitor_.enter_run(input_.operator_input);
   monitor_.restore(permit_);
   monitor_.driver_lost();
   step();

@@ -113,7 +113,7 @@ TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
   input_.operator_input = {};
   monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
   monitor_.restore(last);
-  monitor_.reset({});
+  monitor_.enter_run({});
   step();
   EXPECT_EQ(reported(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));
   EXPECT_EQ(permit_.evidence[0].cycle, last.evidence[0].cycle);

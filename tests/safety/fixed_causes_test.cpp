@@ -51,7 +51,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<Fixed
       case kCauseMonitorRestarted:
         monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
         monitor_.restore(permit_);
-        monitor_.reset(input_.operator_input);
+        monitor_.enter_run(input_.operator_input);
         return 1;
       case kCauseCorruptFrame:
         input_.corrupt = true;

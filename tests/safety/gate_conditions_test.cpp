@@ -108,7 +108,7 @@ TEST_F(GateConditionsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
   const Permit last = permit_;
   monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
   monitor_.restore(last);
-  monitor_.reset({});
+  monitor_.enter_run({});
   steps(10);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});
 }

@@ -108,7 +108,7 @@ class MonitorTest : public testing::Test {
     Permit given = permit_;
     given.head = given_head_;
     if (sensors_.head.run != given.head.run) {
-      gate_.reset();
+      gate_.enter_run();
       next_tick_ = cycle;
     }
     while (next_tick_ < cycle) tick(given);
@@ -127,7 +127,7 @@ class MonitorTest : public testing::Test {
     sensors_.head.cycle = 0;
     begun_ = false;
     command_.zero_requests = command_.first_cycle = input_.state_first_cycle = 0;
-    monitor_.reset(input_.operator_input);
+    monitor_.enter_run(input_.operator_input);
   }
   /// `linear` m/s requested, and the wheels' targets; 0: the brake holds.
   void ask_for(double linear) {

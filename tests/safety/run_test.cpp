@@ -219,7 +219,7 @@ class RestartTest : public RunTest {
     input_.operator_input = {};
     monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
     monitor_.restore(last);
-    monitor_.reset(input_.operator_input);
+    monitor_.enter_run(input_.operator_input);
   }
 };
 
@@ -297,7 +297,7 @@ TEST_F(RestartTest, WithoutItsLastPermitTheGateIsTheWitness) {
   drive();
   sensors_.gate.permit_cycle = cycle();
   monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-  monitor_.reset(input_.operator_input);
+  monitor_.enter_run(input_.operator_input);
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});

@@ -171,14 +171,25 @@ class ScrubbingTest : public WheelFollowingTest {
   }
 };
 
-TEST_F(ScrubbingTest, WheelsWhoseTorqueIsBelowTheirFrictionAndGrowsAreNotStalledYet) {
-  for (int k = 0; k < 1500; ++k) {
+// No later than half again as late as any other.
+TEST_F(ScrubbingTest, WheelsWhoseTorqueIsBelowTheirFrictionAndGrowsAreStalledLater) {
+  const double usual = kStall / kSpeed;
+  int k = 0;
+  for (; permit_.causes == 0 && k < 2000; ++k) {
     turn(0, (-1 + 3.9 * k / 1500) * kScrub);  // the reversal of a weak loop
     step();
-    ASSERT_EQ(permit_.causes, 0u) << k;
   }
-  steps(400);
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall}) << "it grows no more";
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
+  EXPECT_GT(k * kPeriod, (1 + WheelFollowing::kExcused) * usual);
+  EXPECT_LT(k * kPeriod, (1 + WheelFollowing::kExcused) * usual + kSpeedWindow);
+}
+
+TEST_F(ScrubbingTest, WheelsWhoseTorqueDoesNotGrowAreStalledAsAnyOther) {
+  int k = 0;
+  turn(0, 0.5 * kScrub);
+  for (; permit_.causes == 0 && k < 2000; ++k) step();
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
+  EXPECT_LT(k * kPeriod, kStall / kSpeed + kSpeedWindow + 2 * WheelFollowing::kBuildUp);
 }
 
 TEST_F(ScrubbingTest, WheelsThatStandUnderMoreTorqueThanFrictionAre) {

@@ -37,6 +37,7 @@ class NodeProcesses {
   explicit NodeProcesses(const Parameters& parameters)
       : parameters_(parameters), robot_(read_robot(load_description(parameters.urdf), parameters.robot)) {
     new (desk_.get()) ControlDesk();
+    parameters_.telemetry.black_box = 0;     // see give_black_box
     parameters_.loop.wait_for_nodes = true;  // a run begins with all nodes there
   }
 
@@ -86,6 +87,9 @@ class NodeProcesses {
 
   /// Telemetry writes there, from its next start on.
   void log_into(const std::string& directory) { parameters_.telemetry.directory = directory; }
+
+  /// Telemetry keeps a black box of so many GB, from its next start on.
+  void give_black_box(double gigabytes) { parameters_.telemetry.black_box = gigabytes; }
 
  private:
   static constexpr std::int64_t kLookNs = 5'000'000;  // twenty times what a ROS node looks: a test shall not wait
@@ -162,6 +166,7 @@ class NodeProcesses {
         std::fprintf(stderr, "%s\n", telemetry.problem().c_str());
       }
       if (!telemetry.problem().empty()) desk_->unwritten_rows.store(counts.unwritten);
+      desk_->unwritten_bag_rows.store(counts.bag_unwritten);
       sleep_ns(kLookNs);
     }
   }

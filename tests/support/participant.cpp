@@ -19,6 +19,7 @@
 #include "rt/futex.h"
 #include "rt/last_words.h"
 #include "rt/realtime_thread.h"
+#include "rt/thread_priority.h"
 #include "runtime/processes/controller_process.h"
 #include "runtime/processes/driver_process.h"
 #include "runtime/processes/estimator_process.h"
@@ -29,6 +30,7 @@ namespace robot_control {
 namespace {
 
 constexpr std::int64_t kLookNs = 10'000'000;
+constexpr std::int64_t kDrainNs = 2'000'000;  // as telemetry_node.cpp
 
 std::atomic<bool> interrupted{false};
 
@@ -68,9 +70,9 @@ Arguments parse(const std::vector<std::string>& words) {
 }
 
 /// Calls `look` until it says that this is the end.
-void run(double seconds, const std::function<bool()>& look) {
+void run(double seconds, const std::function<bool()>& look, std::int64_t pause_ns = kLookNs) {
   const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
-  while (!interrupted.load() && monotonic_ns() < end_ns && look()) sleep_ns(kLookNs);
+  while (!interrupted.load() && monotonic_ns() < end_ns && look()) sleep_ns(pause_ns);
 }
 
 void run_process(Process& process, double seconds) {
@@ -83,11 +85,16 @@ void run_process(Process& process, double seconds) {
 }
 
 void run_telemetry(TelemetryProcess& telemetry, double seconds) {
-  run(seconds, [&] {
-    telemetry.poll();
+  std::int64_t next_poll_ns = 0;
+  const auto look = [&] {
+    if (const std::int64_t now_ns = monotonic_ns(); now_ns >= next_poll_ns) {
+      telemetry.poll();
+      next_poll_ns = now_ns + kLookNs;
+    }
     telemetry.drain();
     return true;
-  });
+  };
+  run(seconds, look, kDrainNs);
   telemetry.finish();
 }
 
@@ -112,6 +119,7 @@ void participate(const Arguments& arguments) {
     run_process(monitor, arguments.seconds);
   } else if (arguments.node == "telemetry") {
     TelemetryProcess telemetry(parameters, robot, arguments.bus);
+    if (loop.clock == ClockMode::kWall && loop.realtime != RealtimePolicy::kOff) precede_ordinary_threads();
     run_telemetry(telemetry, arguments.seconds);
   } else {
     throw std::invalid_argument("no node is called " + arguments.node);

@@ -15,7 +15,8 @@ ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, co
       channels_(channels),
       output_(channels.command, std::move(decorator)),
       script_(std::move(script)),
-      robot_hash_(robot.hash) {
+      robot_hash_(robot.hash),
+      snapshots_(LawName::kController) {
   trace_.tuning = drive_tuning(parameters, robot, period);
 }
 
@@ -34,7 +35,10 @@ void ControllerCycle::enter_run() noexcept {
   script_.rewind();
   const auto last = published_before(channels_.command, state_.head.run);
   if (last) script_.advance(*last);
-  controller_.reset(request_, script_.begins_with_zero() && !last);
+  calls_.law.new_run = 1;
+  calls_.inbox = request_;
+  calls_.with_zero = script_.begins_with_zero() && !last ? 1 : 0;
+  controller_.enter_run(request_, calls_.with_zero != 0);
 }
 
 void ControllerCycle::receive(std::uint64_t cycle) noexcept {
@@ -63,6 +67,7 @@ void ControllerCycle::tune() noexcept {
   if (tuning.count == trace_.tuning.count) return;
   controller_.tune(tuning);
   trace_.tuning = tuning;
+  calls_.tuned = 1;
 }
 
 bool ControllerCycle::step() noexcept {
@@ -86,6 +91,7 @@ bool ControllerCycle::step() noexcept {
   }
   if (sensors_found != Lookup::kFrame) return false;
 
+  snapshots_.look(controller_, calls_.law, state_.head);
   receive(cycle);
   tune();
   ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};
@@ -94,11 +100,15 @@ bool ControllerCycle::step() noexcept {
           Lookup::kFrame &&
       permit_.expiry >= cycle) {
     input.permit = &permit_;
+    calls_.permit = used(Lookup::kFrame, permit_);
   }
   controller_.step(input, trace_.command);
   const FrameHead head{.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
-  if (!output_.publish(head, sensors_, trace_.command)) return false;
+  output_.publish(head, sensors_, trace_.command);
   trace_.timing = clock_.timing(woke_ns, sensors_);
+  calls_.request = request_;
+  calls_.state = state_.head.checksum;
+  close_row(calls_, sensors_.head.checksum, output_.computed(), trace_.calls);
   return true;
 }
 

@@ -9,7 +9,9 @@
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
+#include "runtime/cycles/close_row.h"
 #include "runtime/cycles/cycle_clock.h"
+#include "runtime/cycles/snapshots.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -33,10 +35,18 @@ class ControllerCycle {
   /// Likewise for other limits and gains: they hold from the next cycle on that computes a command.
   LatestValue<DriveTuning>& tunings() noexcept { return tunings_; }
 
-  /// True when there was a new state of the driver's current run, and a command was published.
+  /// Random number of this process, in every row.
+  void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
+
+  /// True when there was a new state of the driver's current run, and a command was computed from it. Published was
+  /// that, or what an injected fault made of it: a token where `trace().command.head` is one.
   bool step() noexcept;
 
+  /// The row of the last step that returned true.
   const ControllerTrace& trace() const noexcept { return trace_; }
+
+  /// The law's state before the step of the last row, where it was copied; else null.
+  const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
   void take_over(const VelocityCommand& arrived) noexcept;
@@ -58,6 +68,8 @@ class ControllerCycle {
   SensorFrame sensors_;
   StateFrame state_;
   Permit permit_;
+  ControllerCalls calls_ = first_row<ControllerCalls>();  ///< since the last row
+  Snapshots snapshots_;
   ControllerTrace trace_;
 };
 

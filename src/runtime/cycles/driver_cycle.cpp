@@ -4,6 +4,7 @@
 
 #include "hal/bus.h"
 #include "runtime/gate_setup.h"
+#include "signals/gate_digest.h"
 
 namespace robot_control {
 
@@ -13,7 +14,8 @@ DriverCycle::DriverCycle(Driver& driver, const RobotModel& robot, const Channels
       channels_(channels),
       gate_(joint_limits(robot), gate, static_cast<double>(period_ns) * 1e-9),
       period_ns_(period_ns),
-      now_(now) {
+      now_(now),
+      snapshots_(LawName::kGate) {
   announce_robot(channels_.sensors.memory()->head, robot.hash, robot.source);
 }
 
@@ -22,7 +24,8 @@ void DriverCycle::begin_run(std::uint64_t run) noexcept {
   cycle_ = 0;
   overruns_ = 0;
   slipped_ns_ = 0;
-  gate_.reset();
+  gate_.enter_run();
+  calls_.law.new_run = 1;
   trace_ = {};
   auto* memory = channels_.sensors.memory();
   attach_to_run(memory->head, run);
@@ -86,11 +89,16 @@ void DriverCycle::step() noexcept {
 
   if (driver_.truth(trace_.truth)) {
     trace_.truth.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
-    channels_.truth.publish(trace_.truth);
+    if (channels_.truth.memory() != nullptr) channels_.truth.publish(trace_.truth);
   }
 
-  driver_.write(gate_.step(input));
+  snapshots_.look(gate_, calls_.law, sensors.head);
+  const std::span<const JointCommand> commands = gate_.step(input);
+  driver_.write(commands);
   trace_.gate = gate_.report();
+  calls_.command = used(input.command_found, command_);
+  calls_.permit = used(input.permit_found, permit_);
+  close_row(calls_, sensors.head.checksum, digest_of(commands, trace_.gate), trace_.calls);
   ++cycle_;
 }
 

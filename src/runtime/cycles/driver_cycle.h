@@ -12,7 +12,9 @@
 #include "hal/gate.h"
 #include "robot/robot_model.h"
 #include "rt/latest_frames.h"
+#include "runtime/cycles/close_row.h"
 #include "runtime/cycles/cycle_clock.h"
+#include "runtime/cycles/snapshots.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -21,7 +23,7 @@ class DriverCycle {
  public:
   struct Channels {
     FrameWriter<SensorFrame> sensors;
-    FrameWriter<TruthFrame> truth;
+    FrameWriter<TruthFrame> truth;  ///< without memory: no other process reads it
     const FrameReader<CommandFrame>* command;
     const FrameReader<Permit>* permit;
   };
@@ -30,7 +32,9 @@ class DriverCycle {
               const GateParameters& gate = {});
 
   /// The number of this process; see SensorFrame::driver_instance.
-  void set_driver_instance(std::uint64_t driver_instance) noexcept { driver_instance_ = driver_instance; }
+  void set_driver_instance(std::uint64_t driver_instance) noexcept {
+    driver_instance_ = calls_.law.process = driver_instance;
+  }
 
   /// Announces a run in the head of the sensors channel and wakes its readers, so that they attach to it.
   /// `run`: random, not 0. Cycles count from 0.
@@ -68,6 +72,9 @@ class DriverCycle {
 
   const DriverTrace& trace() const noexcept { return trace_; }
 
+  /// The law's state before the step of the last row, where it was copied; else null.
+  const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
+
  private:
   GateInput latch() noexcept;
   void publish_last_as(DriverState state) noexcept;
@@ -88,6 +95,8 @@ class DriverCycle {
   SensorFrame paused_;
   CommandFrame command_;
   Permit permit_;
+  GateCalls calls_ = first_row<GateCalls>();  ///< since the last row
+  Snapshots snapshots_;
   DriverTrace trace_;
 };
 

@@ -12,13 +12,15 @@ EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const Robo
       sensors_channel_(sensors),
       state_channel_(state),
       output_(state, std::move(decorator)),
-      robot_hash_(robot.hash) {}
+      robot_hash_(robot.hash),
+      snapshots_(LawName::kEstimator) {}
 
 void EstimatorCycle::enter_run() noexcept {
   StateFrame last;
   const FrameReader<StateFrame> own(state_channel_.memory());
   first_cycle_ = sensors_.head.cycle;
-  estimator_.reset();
+  calls_.law.new_run = 1;
+  estimator_.enter_run();
   if (own.newest(last) == Lookup::kFrame && last.head.run == sensors_.head.run) estimator_.resume(last);
 }
 
@@ -36,16 +38,21 @@ bool EstimatorCycle::step() noexcept {
     return false;
   }
 
+  snapshots_.look(estimator_, calls_.law, sensors_.head);
   PoseRequest request;
   if (inbox_.load(request) && request.count != received_) {
     received_ = request.count;
+    calls_.pose_set = 1;
+    calls_.pose = request.pose;
     estimator_.set_pose(request.pose);
   }
   estimator_.step(sensors_, trace_.state);
   trace_.state.first_cycle = first_cycle_;
   const FrameHead head{.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
-  if (!output_.publish(head, sensors_, trace_.state)) return false;
+  output_.publish(head, sensors_, trace_.state);
   trace_.timing = clock_.timing(woke_ns, sensors_);
+  calls_.first_cycle = first_cycle_;
+  close_row(calls_, sensors_.head.checksum, output_.computed(), trace_.calls);
   return true;
 }
 

@@ -7,7 +7,9 @@
 #include "hal/frame_output.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
+#include "runtime/cycles/close_row.h"
 #include "runtime/cycles/cycle_clock.h"
+#include "runtime/cycles/snapshots.h"
 #include "signals/trace.h"
 
 namespace robot_control {
@@ -23,7 +25,8 @@ class EstimatorCycle {
                  const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now,
                  OutputDecoratorPtr<StateFrame> decorator = nullptr);
 
-  /// True when there was a new sensor frame of the driver's current run, and a state was published.
+  /// True when there was a new sensor frame of the driver's current run, and a state was computed from it. Published
+  /// was that, or what an injected fault made of it: a token where `trace().state.head` is one.
   bool step() noexcept;
 
   /// One thread: the pose is (x [m], y [m], yaw [rad]) from the next cycle on.
@@ -33,7 +36,14 @@ class EstimatorCycle {
     inbox_.store(requested_);
   }
 
+  /// Random number of this process, in every row.
+  void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
+
+  /// The row of the last step that returned true.
   const EstimatorTrace& trace() const noexcept { return trace_; }
+
+  /// The law's state before the step of the last row, where it was copied; else null.
+  const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
   void enter_run() noexcept;
@@ -49,6 +59,8 @@ class EstimatorCycle {
   std::uint64_t received_ = 0;     ///< requests that were carried out
   std::uint64_t first_cycle_ = 0;  ///< StateFrame::first_cycle
   SensorFrame sensors_;
+  EstimatorCalls calls_ = first_row<EstimatorCalls>();  ///< since the last row
+  Snapshots snapshots_;
   EstimatorTrace trace_;
 };
 

@@ -13,7 +13,9 @@
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
+#include "runtime/cycles/close_row.h"
 #include "runtime/cycles/cycle_clock.h"
+#include "runtime/cycles/snapshots.h"
 #include "safety/safety_monitor.h"
 #include "signals/trace.h"
 
@@ -34,7 +36,11 @@ class MonitorCycle {
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
 
-  /// True when there was a new sensor frame of the driver's current run, and a permit was published.
+  /// Random number of this process, in every row.
+  void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
+
+  /// True when there was a new sensor frame of the driver's current run, and a permit was computed from it. Published
+  /// was that, or what an injected fault made of it: a token where `trace().permit.head` is one.
   bool step() noexcept;
 
   /// Wall clock: no current sensor frame has come for loss_cycles periods. Unless the driver's last frame reported that
@@ -58,7 +64,11 @@ class MonitorCycle {
   /// Permits without a driver; a driver mints random numbers.
   static constexpr std::uint64_t kRunBeforeDriver = 1;
 
+  /// The row of the last step that returned true.
   const MonitorTrace& trace() const noexcept { return trace_; }
+
+  /// The law's state before the step of the last row, where it was copied; else null.
+  const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
   void enter_run() noexcept;
@@ -70,6 +80,11 @@ class MonitorCycle {
   void restore_last_permit() noexcept;
   bool wake_without_sensors(std::int64_t woke_ns) noexcept;
   void idle_without_driver() noexcept;
+  void note(MonitorCall call, const OperatorInput& operator_input = {}, std::uint64_t argument = 0) noexcept;
+  void note_output(std::uint64_t output) noexcept;
+  void close_row() noexcept;
+  bool note_emergency_stop() noexcept;
+  void refuse_reset(ResetRefusal why) noexcept;
   FrameHead head() const noexcept;
 
   SafetyMonitor monitor_;
@@ -85,6 +100,7 @@ class MonitorCycle {
   LatestValue<OperatorInput> inbox_;
   OperatorInput received_;        ///< what the inbox held when last looked at
   OperatorInput operator_input_;  ///< inbox and script added up
+  OperatorInput noted_;           ///< of the last row or note
   bool silent_ = false;
   std::uint64_t corrupt_sensors_ = 0;  ///< in a row
   SensorFrame arrived_;                ///< as read, not yet checked
@@ -92,6 +108,8 @@ class MonitorCycle {
   StateFrame state_;
   CommandFrame command_;
   MonitorInput input_;
+  MonitorCalls calls_ = first_row<MonitorCalls>();  ///< since the last row
+  Snapshots snapshots_;
   MonitorTrace trace_;
 };
 

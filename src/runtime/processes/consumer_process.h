@@ -77,7 +77,7 @@ class ConsumerProcess : public Process {
     while (!stopping().load(std::memory_order_relaxed)) {
       const std::uint32_t seen = wake.sequence();
       attach();
-      if (cycle.step()) trace_.append(cycle.trace(), stopping());
+      if (cycle.step()) trace_.append(cycle.trace(), cycle.snapshot(), stopping());
       if (!wake.wait(seen, wait_ns)) silence();
     }
   }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "runtime/mint_number.h"
+
 namespace robot_control {
 
 ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
@@ -15,6 +17,7 @@ ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotMo
              load_script(parameters.loop.command_script), clock_of(parameters.loop), std::move(decorator)),
       retuning_(parameters, robot_, cycle_.tunings()) {
   require_drivable(parameters, robot);
+  cycle_.set_process(mint_number());
 }
 
 std::vector<std::string> ControllerProcess::missing() const {

@@ -6,6 +6,7 @@
 #include "rt/clock.h"
 #include "rt/periodic.h"
 #include "runtime/gate_setup.h"
+#include "runtime/mint_number.h"
 #include "runtime/start_check.h"
 
 namespace robot_control {
@@ -117,7 +118,7 @@ void DriverProcess::loop() noexcept {
 void DriverProcess::tick() noexcept {
   cycle_->inject(hold_.faults());
   cycle_->step();
-  trace_.append(cycle_->trace(), stopping());
+  trace_.append(cycle_->trace(), cycle_->snapshot(), stopping());
 }
 
 /// Waits while the loop is held. True if it was: time has passed, perhaps a new run begun. Once it is to end, a reset

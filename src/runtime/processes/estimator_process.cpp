@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "runtime/mint_number.h"
+
 namespace robot_control {
 
 EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
@@ -9,7 +11,9 @@ EstimatorProcess::EstimatorProcess(const Parameters& parameters, const RobotMode
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kEstimator, "state_estimator", ChannelNames::kState, TraceRing::kEstimator}),
       cycle_(parameters.estimator, robot_, parameters.loop.period(), sensors_.reader, output_.writer,
-             clock_of(parameters.loop), std::move(decorator)) {}
+             clock_of(parameters.loop), std::move(decorator)) {
+  cycle_.set_process(mint_number());
+}
 
 std::vector<std::string> EstimatorProcess::missing() const {
   return missing_anywhere();

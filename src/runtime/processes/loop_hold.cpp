@@ -14,7 +14,6 @@ std::uint64_t LoopHold::ask(Asked asked) noexcept {
 }
 
 bool LoopHold::await_stand(std::uint64_t number, std::int64_t timeout_ns) const noexcept {
-  constexpr std::int64_t kLook = 500'000;  // ns
   const std::int64_t end_ns = monotonic_ns() + timeout_ns;
   while (!stands(number)) {
     if (!looping() || monotonic_ns() > end_ns) return false;

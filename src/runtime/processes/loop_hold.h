@@ -18,6 +18,8 @@ namespace robot_control {
 
 class LoopHold {
  public:
+  static constexpr std::int64_t kLook = 500'000;  ///< ns between two looks of a thread that waits for the loop
+
   struct Asked {
     std::uint64_t number = 0;  ///< set by `ask`
     std::uint64_t paused = 0;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "runtime/mint_number.h"
 #include "runtime/safety_limits.h"
 #include "signals/names.h"
 
@@ -18,6 +19,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
              load_script(parameters.loop.command_script), clock_of(parameters.loop), std::move(decorator)),
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()) {
+  cycle_.set_process(mint_number());
   const LatchRecord& found = latch_file_.found();
   if (found.causes != 0) cycle_.restore(found.causes, found.first_cause);
   if (cycle_.causes() == 0) return;

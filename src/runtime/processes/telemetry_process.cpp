@@ -1,14 +1,19 @@
 #include "runtime/processes/telemetry_process.h"
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <optional>
 
+#include "rt/clock.h"
+#include "runtime/build_id.h"
 #include "runtime/cycles/trace_sink.h"
+#include "runtime/log_header.h"
 
 namespace robot_control {
 namespace {
 
-constexpr const char* kNodes[kTraceRings] = {"mujoco_plant", "state_estimator", "diff_drive_controller",
-                                             "safety_monitor"};
+static_assert(kLawNodes.size() == kTraceRings);  // each law writes one ring, in the same order
 
 std::vector<std::string> joint_names(const RobotModel& robot) {
   std::vector<std::string> names;
@@ -17,7 +22,7 @@ std::vector<std::string> joint_names(const RobotModel& robot) {
 }
 
 std::int64_t bytes_of(double gigabytes) {
-  return static_cast<std::int64_t>(gigabytes * 1.0e9);
+  return std::llround(gigabytes * 1.0e9);
 }
 
 }  // namespace
@@ -26,22 +31,34 @@ std::int64_t bytes_of(double gigabytes) {
 template <class Row>
 class TelemetryProcess::Source {
  public:
-  Source(const std::string& bus, TraceRing ring) : channel_(bus, kTraceChannels[static_cast<std::size_t>(ring)]) {}
+  Source(const std::string& bus, TraceRing ring)
+      : channel_(bus, kTraceChannels[static_cast<std::size_t>(ring)]),
+        snapshot_channel_(bus, kSnapshotChannels[static_cast<std::size_t>(ring)]) {}
 
   void poll(std::atomic<std::uint64_t>& read) {
+    if (snapshot_channel_.poll()) snapshots_.emplace(snapshot_channel_.memory(), 0);
     if (!channel_.poll()) return;
     retire();
-    reader_.emplace(channel_.memory());
+    begin();
     dropped_before_ = reader_->dropped();
     read.store(reader_->position(), std::memory_order_release);
   }
 
-  std::size_t drain(Join& join, std::atomic<std::uint64_t>& read) {
+  /// `keep(snapshot)` comes before the row to which it belongs: a node appends it first.
+  /// `store(row)` is called with each row before the join gets it.
+  template <class Keep, class Store>
+  std::size_t drain(Join& join, std::atomic<std::uint64_t>& read, Keep keep, Store store) {
     std::size_t rows = 0;
     // One ring's worth at most, so that a writer that is faster than this does not hold the others up.
-    while (reader_ && rows < kRingRows && reader_->take(row_)) {
-      join.add(row_);
-      if (++rows % kPublishRows == 0) read.store(reader_->position(), std::memory_order_release);
+    while (reader_ && rows < kRingRows) {
+      batch_.clear();
+      while (batch_.size() < kBatch && reader_->take(row_)) batch_.push_back(row_);
+      if (batch_.empty()) break;
+      while (snapshots_ && snapshots_->take(snapshot_)) keep(snapshot_);
+      for (const Row& row : batch_) store(row);
+      for (const Row& row : batch_) join.add(row);
+      rows += batch_.size();
+      read.store(reader_->position(), std::memory_order_release);
     }
     if (reader_) read.store(reader_->position(), std::memory_order_release);
     return rows;
@@ -56,7 +73,17 @@ class TelemetryProcess::Source {
   }
 
  private:
-  static constexpr std::size_t kPublishRows = 64;
+  static constexpr std::size_t kBatch = 64;
+
+  /// With the rows of the present writer that are there: a snapshot of its law is among them (law_snapshot.h). Some
+  /// room is left for what it writes meanwhile.
+  void begin() {
+    constexpr std::uint64_t kBack = kRingRows - kRingRows / 8;
+    reader_.emplace(channel_.memory());
+    if (!channel_.locked()) return;  // what is there is of a process that has ended
+    const std::uint64_t next = reader_->position();
+    reader_.emplace(channel_.memory(), std::max(reader_->began(), next - std::min(next, kBack)));
+  }
 
   void retire() {
     if (!reader_) return;
@@ -70,6 +97,10 @@ class TelemetryProcess::Source {
   std::uint64_t dropped_ = 0;
   std::uint64_t overwritten_ = 0;
   Row row_;
+  std::vector<Row> batch_;
+  ForeignChannel<SnapshotRing> snapshot_channel_;
+  std::optional<SnapshotReader> snapshots_;
+  LawSnapshot snapshot_;
 };
 
 struct TelemetryProcess::Sources {
@@ -97,11 +128,26 @@ struct TelemetryProcess::Sources {
 TelemetryProcess::TelemetryProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : positions_(bus, ChannelNames::kTraceRead),
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
-      path_(folder_.begin()),
-      csv_(path_, log_columns(joint_names(robot), parameters.loop.clock == ClockMode::kWall),
-           [this](std::int64_t bytes) { return folder_.make_room(bytes); }),
-      join_(parameters.loop.period(), [this](const JoinedRow& row) { write_down([&] { csv_.write(row); }); }),
+      lockstep_(parameters.loop.clock == ClockMode::kLockstep),
+      permit_(bus, ChannelNames::kPermit),
+      join_(parameters.loop.period(), [this](const JoinedRow& row) { take(row); }),
       sources_(std::make_unique<Sources>(bus)) {
+  // First: it notices another telemetry in this folder, whose logs are not to be renamed.
+  if (parameters.telemetry.black_box > 0 && !lockstep_) {
+    black_box_ =
+        std::make_unique<BlackBoxKeeper>((std::filesystem::path(parameters.telemetry.directory) / "black_box").string(),
+                                         static_cast<std::size_t>(bytes_of(parameters.telemetry.black_box)),
+                                         parameters.telemetry.incidents, build_id(), log_header(parameters, robot));
+    black_box_path_ = black_box_->path();
+  }
+  if (parameters.telemetry.csv) {
+    csv_ = std::make_unique<CsvLog>(folder_, log_columns(joint_names(robot), !lockstep_));
+    csv_path_ = folder_.path(LogKind::kCsv);
+  }
+  if (parameters.telemetry.record != RecordMode::kOff) {
+    bag_ = std::make_unique<BagLog>(folder_, log_header(parameters, robot), parameters.telemetry);
+    bag_path_ = folder_.path(LogKind::kBag);
+  }
   positions_.memory()->head.attached_run.store(0);
 }
 
@@ -116,43 +162,114 @@ void TelemetryProcess::poll() {
     all = all && source.mapped();
   });
   if (all) positions_.memory()->head.attached_run.store(1);
-  write_down([this] { csv_.flush(); });
+  const TelemetryCounts counted = counts();
+  const std::uint64_t lost = counted.dropped + counted.overwritten;
+  const std::int64_t now_ns = monotonic_ns();
+  if (csv_ != nullptr) {
+    write_down(csv_problem_, [&] { csv_->poll(now_ns); });
+    if (!csv_->broken()) csv_problem_.clear();
+  }
+  if (black_box_ != nullptr) {
+    permit_.poll();
+    black_box_->add_state(utc_ns() - now_ns, lost);
+    black_box_->poll(now_ns);
+  }
+  if (bag_ == nullptr) return;
+  bag_->set_lost(lost);
+  if (!lockstep_) bag_->set_time_offset(utc_ns() - now_ns);
+  write_down(bag_problem_, [&] { bag_->poll(now_ns); });
+  if (!bag_->broken()) bag_problem_.clear();
+}
+
+void TelemetryProcess::take(const JoinedRow& row) {
+  if (csv_ != nullptr && !row.repeats) write_down(csv_problem_, [&] { csv_->write(row); });
+  if (bag_ != nullptr) write_down(bag_problem_, [&] { bag_->write(row); });
+}
+
+void TelemetryProcess::request_recording(bool on) noexcept {
+  if (bag_ != nullptr) bag_->request(on);
 }
 
 std::size_t TelemetryProcess::drain() {
   std::size_t rows = 0;
-  sources_->each([&](auto& source, std::size_t ring) { rows += source.drain(join_, positions_.memory()->read[ring]); });
+  const auto keep = [this](const LawSnapshot& snapshot) {
+    if (black_box_ != nullptr) black_box_->add(snapshot);
+    if (bag_ != nullptr) bag_->write(snapshot);
+  };
+  const auto store = [this](const auto& row) {
+    if (black_box_ == nullptr) return;
+    black_box_->add(row);
+    if constexpr (requires { row.permit; }) {
+      if (!permit_seen_) black_box_->see(row.permit.causes, monotonic_ns());
+    }
+  };
+  sources_->each([&](auto& source, std::size_t ring) {
+    rows += source.drain(join_, positions_.memory()->read[ring], keep, store);
+  });
+  if (black_box_ != nullptr) look_for_stops();
   return rows;
+}
+
+void TelemetryProcess::look_for_stops() {
+  Permit permit;
+  if (permit_.reader.newest(permit) != Lookup::kFrame) return;
+  black_box_->see(permit.causes, monotonic_ns());
+  permit_seen_ = true;
+}
+
+std::vector<std::string> TelemetryProcess::take_notes() {
+  return black_box_ == nullptr ? std::vector<std::string>() : black_box_->take_notes();
 }
 
 void TelemetryProcess::finish() {
   positions_.memory()->head.attached_run.store(0);
   drain();
   join_.finish();
-  write_down([this] { csv_.close(); });
-  if (!problem_.empty()) throw LogError(problem_ + "; " + std::to_string(counts().unwritten) + " rows are not in it");
+  if (csv_ != nullptr) write_down(csv_problem_, [this] { csv_->close(); });
+  if (bag_ != nullptr) write_down(bag_problem_, [this] { bag_->close(); });
+  // Last: a stop that is to be saved takes seconds, and who ends this process may not wait for it.
+  if (black_box_ != nullptr) black_box_->finish();
+  const TelemetryCounts missing = counts();
+  std::string text;
+  const auto add = [&](std::uint64_t rows, const std::string& path, const std::string& problem) {
+    if (rows == 0 && problem.empty()) return;
+    text += (text.empty() ? "" : "\n") + std::to_string(rows) + " rows are not in " + path +
+            " or those before it: " + (problem.empty() ? "the disk took none for a while" : problem);
+  };
+  add(missing.unwritten, csv_path_, csv_problem_);
+  add(missing.bag_unwritten, bag_path_, missing.bag_unwritten == 0 ? "" : bag_problem_);
+  if (!text.empty()) throw LogError(text);
+}
+
+std::string TelemetryProcess::problem() const {
+  return csv_problem_ + (csv_problem_.empty() || bag_problem_.empty() ? "" : "; ") + bag_problem_;
 }
 
 template <class Act>
-void TelemetryProcess::write_down(Act act) {
+void TelemetryProcess::write_down(std::string& problem, Act act) {
   try {
     act();
   } catch (const LogError& error) {
-    problem_ = error.what();
+    problem = error.what();
   }
 }
 
 std::vector<std::string> TelemetryProcess::missing() const {
   std::vector<std::string> names;
   sources_->each([&](const auto& source, std::size_t ring) {
-    if (!source.alive()) names.emplace_back(kNodes[ring]);
+    if (!source.alive()) names.emplace_back(kLawNodes[ring]);
   });
   return names;
 }
 
 TelemetryCounts TelemetryProcess::counts() const {
   TelemetryCounts counts{.join = join_.counts()};
-  counts.unwritten = counts.join.emitted - csv_.rows();
+  if (csv_ != nullptr) counts.unwritten = csv_->unwritten();
+  if (bag_ != nullptr) {
+    counts.bag_rows = bag_->rows();
+    counts.bag_unwritten = bag_->unwritten();
+  }
+  if (black_box_ != nullptr) counts.incidents = black_box_->saved();
   sources_->each([&](const auto& source, std::size_t) { source.count(counts); });
   return counts;
 }

@@ -1,11 +1,13 @@
 #pragma once
-/// The log's reader: takes the rows of the four trace rings, joins them by cycle and writes run.csv.
+/// The reader of the trace: takes the rows of the four rings, joins them by cycle and writes run.bag and run.csv.
+/// The black box (recording/black_box) gets them first, as they are; what the safety monitor has latched stands in its
+/// newest permit, also where a lost driver leaves no row.
 ///
-/// It owns the read positions. Only once all four rings are mapped and the positions stored does it say so
+/// It owns the read positions. It announces itself only once all four rings are mapped and the positions stored
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
 ///
-/// A disk that takes no more ends the log, not this process: the rings are still emptied, so that no node waits for
-/// space, and what is not written is counted. So does a log that fills telemetry.quota (log_folder.h).
+/// A disk that takes no more ends a file, not this process: the rings are still emptied, so that no node waits for
+/// space, what is not written is counted, and another file is tried (recording/bag_log.h, telemetry/csv_log.h).
 
 #include <cstdint>
 #include <memory>
@@ -14,9 +16,12 @@
 
 #include "hal/bus.h"
 #include "parameters/parameters.h"
+#include "recording/bag_log.h"
+#include "recording/black_box/black_box_keeper.h"
 #include "robot/robot_model.h"
 #include "rt/ring.h"
-#include "telemetry/csv_writer.h"
+#include "runtime/processes/process.h"
+#include "telemetry/csv_log.h"
 #include "telemetry/join.h"
 #include "telemetry/log_folder.h"
 
@@ -24,15 +29,18 @@ namespace robot_control {
 
 struct TelemetryCounts {
   JoinCounts join;
-  std::uint64_t dropped = 0;      ///< by the writers, for want of room, since this process began
-  std::uint64_t overwritten = 0;  ///< before they were read
-  std::uint64_t unwritten = 0;    ///< rows that the disk did not take; before `problem`, those that still wait for it
+  std::uint64_t dropped = 0;        ///< by the writers, for want of room, since this process began
+  std::uint64_t overwritten = 0;    ///< before they were read
+  std::uint64_t unwritten = 0;      ///< rows that the disk did not take for run.csv
+  std::uint64_t bag_rows = 0;       ///< in run.bag and those before it of this process
+  std::uint64_t bag_unwritten = 0;  ///< nor for run.bag
+  std::uint64_t incidents = 0;      ///< that were saved by this process
 };
 
 class TelemetryProcess {
  public:
-  /// Writes run.csv in the parameters' directory; an earlier one is kept as run.N.csv. Throws BusError (another
-  /// telemetry reads), LogError.
+  /// Writes into the parameters' directory; earlier logs are kept as run.N.csv, run.N.bag. Throws BusError (another
+  /// telemetry reads), LogError (also: no room for the black box).
   TelemetryProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
   ~TelemetryProcess();
   TelemetryProcess(const TelemetryProcess&) = delete;
@@ -41,12 +49,16 @@ class TelemetryProcess {
   /// At 10 Hz: maps rings as they appear or are replaced, hands what was written to the system.
   void poll();
 
-  /// Takes all rows that are there; the number of them. Call often: a ring holds 2048 cycles.
+  /// Takes all rows that are there; the number of them. Call every 2 ms: what was not taken yet is missing in the black
+  /// box after a crash; a ring holds 2048 cycles.
   std::size_t drain();
 
-  /// Takes the rest and closes the file; throws LogError where rows are missing there. Only `counts` and `problem` may
+  /// Takes the rest and closes the files; throws LogError where rows are missing there. Only `counts` and `problem` may
   /// be called afterwards.
   void finish();
+
+  /// Until it is taken back, run.bag holds every cycle, whatever telemetry.record says.
+  void request_recording(bool on) noexcept;
 
   /// Nodes whose ring is not there or not owned by a running process.
   std::vector<std::string> missing() const;
@@ -56,24 +68,42 @@ class TelemetryProcess {
   /// Older logs that were removed since the last call, for telemetry.quota.
   std::vector<std::string> take_removed() { return folder_.take_removed(); }
 
-  /// Why the log has ended; empty: it has not.
-  const std::string& problem() const noexcept { return problem_; }
-  const std::string& path() const noexcept { return path_; }
+  /// What was saved of the black box, or could not be, since the last call.
+  std::vector<std::string> take_notes();
+
+  /// Why a log has ended, or run.bag waits for the disk; empty: nothing is wrong.
+  std::string problem() const;
+
+  /// Of run.csv, run.bag and the black box; empty: it is not written.
+  const std::string& csv_path() const noexcept { return csv_path_; }
+  const std::string& bag_path() const noexcept { return bag_path_; }
+  const std::string& black_box_path() const noexcept { return black_box_path_; }
+  bool recording() const noexcept { return bag_ != nullptr && bag_->recording(); }
 
  private:
   template <class Row>
   class Source;
   struct Sources;
 
-  /// Notes a LogError.
+  /// Notes a LogError in `problem`.
   template <class Act>
-  void write_down(Act act);
+  static void write_down(std::string& problem, Act act);
+  void take(const JoinedRow& row);
+  void look_for_stops();
 
   OwnedChannel<RingPositions> positions_;
   LogFolder folder_;
-  std::string path_;
-  CsvWriter csv_;
-  std::string problem_;
+  bool lockstep_;
+  std::string csv_path_;
+  std::unique_ptr<CsvLog> csv_;  ///< null: not wanted
+  std::string csv_problem_;
+  std::string bag_path_;
+  std::unique_ptr<BagLog> bag_;
+  std::string bag_problem_;
+  std::string black_box_path_;
+  std::unique_ptr<BlackBoxKeeper> black_box_;  ///< null: not wanted
+  Input<Permit> permit_;
+  bool permit_seen_ = false;  ///< before, stops show in the rows that were there when this process began
   Join join_;
   std::unique_ptr<Sources> sources_;
 };

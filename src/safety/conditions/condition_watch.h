@@ -41,8 +41,9 @@ inline constexpr ConditionMeasurement kNothingMeasured{.limit = std::numeric_lim
 inline std::uint64_t weighed(const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
   constexpr double kFarTimes = 3;
   constexpr double kMostTimes = 50;
+  if (!measurement.beyond) return elapsed;
   const double times = measurement.value / measurement.limit;
-  if (!measurement.beyond || !(times >= kFarTimes)) return elapsed;
+  if (!(times >= kFarTimes)) return elapsed;
   return elapsed * static_cast<std::uint64_t>(std::min(times, kMostTimes));
 }
 
@@ -68,14 +69,18 @@ class ConditionWatch {
 
   /// `elapsed`: cycles since the last step, ≥ 1. True: active.
   bool step(const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
+    if (!measurement.beyond || !watched()) {
+      beyond_ = 0;
+      return false;
+    }
     measurement_ = measurement;
-    beyond_ = watched() && measurement.beyond ? beyond_ + elapsed : 0;
+    beyond_ += elapsed;
     return active();
   }
 
   bool active() const noexcept { return beyond_ >= cycles_; }
 
-  /// Of the last step.
+  /// Of the last step in which the measurement was beyond its limit.
   const ConditionMeasurement& measurement() const noexcept { return measurement_; }
 
  private:

@@ -21,7 +21,7 @@ void FrameConditions::step(const MonitorInput& input, ActiveCauses& out) noexcep
   const bool numbers_finite = finite(*input.sensors) && (input.command == nullptr || finite(*input.command));
   not_finite_ = numbers_finite ? 0 : not_finite_ + 1;
   judge(kCauseCorruptFrame, corrupt_, kMaxJoints, out);
-  judge(kCauseNotFinite, not_finite_, not_finite_joint(*input.sensors), out);
+  if (!numbers_finite) judge(kCauseNotFinite, not_finite_, not_finite_joint(*input.sensors), out);
 }
 
 }  // namespace robot_control

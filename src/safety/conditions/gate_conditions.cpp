@@ -62,7 +62,7 @@ void GateConditions::count(bool refused, std::uint64_t elapsed) noexcept {
     in_second_ += (refused ? 1u : 0u);
     in_second_ -= ticks_[next_tick_] ? 1u : 0u;
     ticks_[next_tick_] = refused;
-    next_tick_ = (next_tick_ + 1) % second_;
+    next_tick_ = next_tick_ + 1 == second_ ? 0 : next_tick_ + 1;
   }
 }
 

@@ -27,10 +27,10 @@ double loaded_inertia(const RobotModel& robot, const WheelModel& wheel) noexcept
 
 }  // namespace
 
-void TorqueOscillation::Ripple::step(double value, double forgets_slow, double forgets) noexcept {
-  slow += forgets_slow * (value - slow);
+void TorqueOscillation::Ripple::step(double value, const Weights& weights) noexcept {
+  slow += weights.slow * (value - slow);
   const double fast = value - slow;
-  square += forgets * (fast * fast - square);
+  square += weights.window * (fast * fast - square);
 }
 
 double TorqueOscillation::Ripple::rms() const noexcept {
@@ -40,6 +40,7 @@ double TorqueOscillation::Ripple::rms() const noexcept {
 TorqueOscillation::TorqueOscillation(const SafetyParameters& parameters, const RobotModel& robot,
                                      double period) noexcept
     : period_(period),
+      one_cycle_(weights_of(period)),
       warning_(kCauseTorqueOscillation, announced(parameters.torque_oscillation), period),
       watch_(kCauseTorqueOscillation, parameters.torque_oscillation, period),
       count_(std::min(robot.wheels.size(), kMaxWheels)),
@@ -75,19 +76,22 @@ void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targ
   if (!watch_.active()) out.add(warning_);
 }
 
+TorqueOscillation::Weights TorqueOscillation::weights_of(double dt) noexcept {
+  return {.slow = -std::expm1(-2 * std::numbers::pi * kSlow * dt), .window = -std::expm1(-dt / kWindow)};
+}
+
 void TorqueOscillation::follow(std::size_t wheel, double measured, double commanded, double target,
                                std::uint64_t elapsed) noexcept {
   const double dt = static_cast<double>(elapsed) * period_;
-  const double forgets_slow = -std::expm1(-2 * std::numbers::pi * kSlow * dt);
-  const double forgets = -std::expm1(-dt / kWindow);
+  const Weights weights = elapsed == 1 ? one_cycle_ : weights_of(dt);
   Wheel& of = wheels_[wheel];
   if (!of.driven) {
     of.measured.slow = measured;
     of.commanded.slow = commanded;
   } else {
-    of.measured.step(measured, forgets_slow, forgets);
-    of.commanded.step(commanded, forgets_slow, forgets);
-    of.planned.step(inertia_[wheel] * (target - of.target) / dt, forgets_slow, forgets);
+    of.measured.step(measured, weights);
+    of.commanded.step(commanded, weights);
+    of.planned.step(inertia_[wheel] * (target - of.target) / dt, weights);
   }
   of.driven = true;
   of.target = target;

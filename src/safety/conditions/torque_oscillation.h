@@ -42,11 +42,16 @@ class TorqueOscillation {
             ActiveCauses& out) noexcept;
 
  private:
+  /// The parts of the two low passes' states that a step replaces, 1 − e^{−dt/T}.
+  struct Weights {
+    double slow;    ///< low pass of kSlow
+    double window;  ///< mean over kWindow
+  };
   /// RMS of the part that is faster than kSlow.
   struct Ripple {
     double slow = 0;
     double square = 0;
-    void step(double value, double forgets_slow, double forgets) noexcept;
+    void step(double value, const Weights& weights) noexcept;
     double rms() const noexcept;
   };
   struct Wheel {
@@ -57,10 +62,12 @@ class TorqueOscillation {
     Ripple planned;
   };
 
+  static Weights weights_of(double dt) noexcept;
   void follow(std::size_t wheel, double measured, double commanded, double target, std::uint64_t elapsed) noexcept;
   ConditionMeasurement judge(std::size_t wheel, const WheelMotion& motion) const noexcept;
 
   double period_;
+  Weights one_cycle_;
   ConditionWatch warning_;
   ConditionWatch watch_;
   std::size_t count_;

@@ -20,6 +20,7 @@ WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const RobotMo
       runaway_(robot.wheels.size(), {.watch = ConditionWatch(kCauseRunaway, parameters.runaway, period)}),
       wrong_direction_(robot.wheels.size(),
                        {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}),
+      planned_(robot),
       scrub_(robot),
       scrubs_(!robot.wheels.empty() && scrub_.most(0) > 0) {
   for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
@@ -37,6 +38,7 @@ void WheelFollowing::enter_run() noexcept {
   for (Excess& excess : runaway_) excess.reset();
   for (Excess& excess : wrong_direction_) excess.reset();
   stalls_ = {};
+  planned_.enter_run();
   moved_ = rested_ = 0;
 }
 
@@ -53,6 +55,7 @@ void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& target
     judge_direction(targets, motion, i, elapsed, out);
   }
   const double dt = static_cast<double>(elapsed) * period_;
+  planned_.step(targets, dt);
   out.judge(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingMeasured, elapsed);
   out.judge(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingMeasured, elapsed);
 }
@@ -62,16 +65,13 @@ void WheelFollowing::Excess::reset() noexcept {
   mark = 0;
 }
 
-void WheelFollowing::Excess::step(ConditionMeasurement measurement, double speed, double progress,
+void WheelFollowing::Excess::step(const ConditionMeasurement& measurement, double speed, double progress,
                                   std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  if (!measurement.beyond) {
-    mark = 0;
-  } else if (mark == 0) {
-    mark = speed;
-  } else if (speed < mark - progress && measurement.value <= kFarBeyond * measurement.limit) {
-    mark = speed;
-    measurement.beyond = false;
-  }
+  if (!measurement.beyond) return reset();
+  const bool begins = mark == 0;
+  const bool slows = !begins && speed < mark - progress && measurement.value <= kFarBeyond * measurement.limit;
+  if (begins || slows) mark = speed;
+  if (slows) return watch.reset();
   out.judge(watch, measurement, elapsed);
 }
 
@@ -125,10 +125,13 @@ ConditionMeasurement WheelFollowing::stalled(const SensorFrame& sensors, const W
     const bool turns = std::abs(speed) >= kTurns * wanted;
     const double torque = sensors.joints[i].effort;
     if (turns || speed > stall.mark + kProgress + motion.speed_tolerance(i)) {
-      stall = {.missed = 0, .mark = speed};
-    } else if (!stall.builds_up(along(targets[i], torque), held(i, scrubbing[i]), dt)) {
-      const double pushed = std::abs(torque) > pushed_[i] ? kPushed : 0;
-      stall.missed += std::max(wanted, pushed) * dt;
+      stall = {.mark = speed};
+    } else {
+      const bool pushes = std::min(std::abs(torque), std::abs(torque - planned_[i])) > pushed_[i];
+      const double pushed = pushes ? kPushed : 0;
+      const bool excused = stall.excused < kExcused * stall_.limit() &&
+                           stall.builds_up(along(targets[i], torque), held(i, scrubbing[i]), dt);
+      (excused ? stall.excused : stall.missed) += std::max(wanted, pushed) * dt;
     }
     measurement = worse(measurement, beyond(i, stall.missed, stall_.limit() + motion.quantum(i)));
   }

@@ -6,17 +6,19 @@
 ///
 ///   stall            the angle ∫max(|q̇*|, w)dt that the wheel should have turned since it last turned, that is, since
 ///                    |ω| ≥ kTurns·|q̇*|, or since it gained kProgress + δ towards its target. Limit: rad + 1 quantum,
-///                    because a slowly turning wheel shows a count per quantum. w = kPushed while the motor torque is
-///                    above `pushed`, else 0: a loop with a stuck encoder increases its torque however slow the target
-///                    is. A target above the wheel's velocity limit counts as that limit. In a turn nothing counts
-///                    while s·τ ≤ `held` and still grows, by kRise of it within kBuildUp: the loop is about to overcome
-///                    the friction of treads that scrub, for instance after a reversal.
+///                    because a slowly turning wheel shows a count per quantum. w = kPushed while the motor torque τ,
+///                    and τ less that of the planned acceleration (planned_torque.h), are above `pushed`, else 0: a
+///                    loop with a stuck encoder increases its torque however slow the target is. A target above the
+///                    wheel's velocity limit counts as that limit. In a turn nothing counts while s·τ ≤ `held` and
+///                    still grows, by kRise of it within kBuildUp: the loop is about to overcome the friction of treads
+///                    that scrub, for instance after a reversal. So kExcused of the limit is excused at most.
 ///                      pushed = max(kPushedPart·τ_max, min(kLargePart·τ_max, kFrictions·(f + S)))
 ///                      held   = min(pushed, f + kGrounds·S*)
 ///                    τ_max, f: effort limit and dry friction of the joint; S*: torque of scrub.h at the targets, at
 ///                    ground friction 1, S: its largest. 0 for one wheel a side: then `held` is −∞
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| if the target is 0
 ///   wrong_direction  −s·ω > limit + δ
+/// Of a runaway of 3 × limit and more the persistence is shorter (condition_watch.h).
 ///
 /// Persistence of the last two restarts whenever the wheel has lost kProgress + δ of that speed since it began. A drive
 /// at its torque limit, or a scrubbing skid steer, lags behind a target that changes sign, but slows down; a wheel that
@@ -31,14 +33,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "robot/robot_model.h"
 #include "robot/wheels/scrub.h"
 #include "safety/latch/active_causes.h"
 #include "safety/measurements/joint_standstill.h"
+#include "safety/measurements/planned_torque.h"
 #include "safety/measurements/wheel_motion.h"
 #include "safety/measurements/wheel_targets.h"
+#include "signals/fixed_vector.h"
 
 namespace robot_control {
 
@@ -55,6 +58,7 @@ class WheelFollowing {
   static constexpr double kGrounds = 3.0;  ///< times friction 1: the best grip
   static constexpr double kRise = 0.01;
   static constexpr double kBuildUp = 0.03;  ///< s
+  static constexpr double kExcused = 0.5;
 
   /// `period` s.
   WheelFollowing(const SafetyParameters& parameters, const RobotModel& robot, double period);
@@ -67,6 +71,7 @@ class WheelFollowing {
   /// Of one wheel.
   struct Stall {
     double missed = 0;                                       ///< rad
+    double excused = 0;                                      ///< rad, while the torque grew
     double mark = 0;                                         ///< rad/s towards the target, when `missed` began
     double peak = -std::numeric_limits<double>::infinity();  ///< N·m towards the target, since then
     double level = 0;                                        ///< s since the torque grew
@@ -81,7 +86,7 @@ class WheelFollowing {
 
     void reset() noexcept;
     /// `speed` rad/s in the evaluated direction; `progress` rad/s, a loss of speed that restarts the persistence.
-    void step(ConditionMeasurement measurement, double speed, double progress, std::uint64_t elapsed,
+    void step(const ConditionMeasurement& measurement, double speed, double progress, std::uint64_t elapsed,
               ActiveCauses& out) noexcept;
   };
 
@@ -105,11 +110,12 @@ class WheelFollowing {
   double period_;
   ConditionWatch stall_;
   ConditionWatch not_stopping_;
-  std::vector<Excess> runaway_;          ///< by wheel
-  std::vector<Excess> wrong_direction_;  ///< by wheel
+  FixedVector<Excess, kMaxWheels> runaway_;          ///< by wheel
+  FixedVector<Excess, kMaxWheels> wrong_direction_;  ///< by wheel
   std::array<Stall, kMaxWheels> stalls_{};
   std::array<double, kMaxWheels> pushed_{};    ///< N·m
   std::array<double, kMaxWheels> friction_{};  ///< N·m, f
+  PlannedTorque planned_;
   Scrub scrub_;
   bool scrubs_;
   std::array<double, kMaxWheels> fastest_ = without_limit();

@@ -17,14 +17,15 @@ void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, d
   uncorrected_ = std::min(uncorrected_ + dt, 2 * kTrust);
   if (rate != nullptr) carry(*rate, dt);
   if (force != nullptr) pull(*force, dt);
-  const double horizontal = std::hypot(up_.x(), up_.y());
-  const bool leaning = rate != nullptr && horizontal > kUpright;
-  tilt_rate_ = leaning ? (rate->x() * up_.y() - rate->y() * up_.x()) / horizontal : 0;
+  horizontal_ = std::hypot(up_.x(), up_.y());
+  const bool leaning = rate != nullptr && horizontal_ > kUpright;
+  tilt_rate_ = leaning ? (rate->x() * up_.y() - rate->y() * up_.x()) / horizontal_ : 0;
 }
 
 void Attitude::carry(const Eigen::Vector3d& rate, double dt) noexcept {
-  const double angle = rate.norm() * dt;
-  if (angle > 0 && std::isfinite(angle)) up_ = Eigen::AngleAxisd(-angle, rate.normalized()) * up_;
+  const double size = rate.norm();
+  const double angle = size * dt;
+  if (angle > 0 && std::isfinite(angle)) up_ = Eigen::AngleAxisd(-angle, rate / size) * up_;
 }
 
 void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {
@@ -39,7 +40,7 @@ void Attitude::pull(const Eigen::Vector3d& force, double dt) noexcept {
 }
 
 double Attitude::tilt() const noexcept {
-  return std::atan2(std::hypot(up_.x(), up_.y()), up_.z());
+  return std::atan2(horizontal_, up_.z());
 }
 
 }  // namespace robot_control

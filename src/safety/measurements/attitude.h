@@ -57,6 +57,7 @@ class Attitude {
   void pull(const Eigen::Vector3d& force, double dt) noexcept;
 
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
+  double horizontal_ = 0;            ///< length of u's part across the base's z axis
   double uncorrected_ = 2 * kTrust;  ///< s since the last correction
   double tilt_rate_ = 0;
 };

@@ -15,7 +15,7 @@ WheelMotion::WheelMotion(std::size_t wheels, double period) noexcept
 void WheelMotion::enter_run() noexcept {
   sampled_ = speed_known_ = acceleration_known_ = stepped_ = false;
   newest_ = kNever;
-  angle_ = last_step_ = speed_ = acceleration_ = quantum_ = {};
+  angle_ = last_step_ = speed_ = acceleration_ = quantum_ = speed_tolerance_ = acceleration_tolerance_ = {};
   for (Sample& sample : samples_) sample.cycle = kNever;
 }
 
@@ -46,21 +46,26 @@ bool WheelMotion::take(const SensorFrame& sensors) noexcept {
     all_finite = all_finite && std::isfinite(angle[i]);
   }
   if (!all_finite) return false;
-  if (newest_ != kNever) refine_quantum(angle);
+  if (newest_ != kNever) refine_quanta(angle);
   newest_ = sensors.head.cycle;
   angle_ = angle;
   samples_[newest_ % kSlots] = {newest_, angle};
   return true;
 }
 
-void WheelMotion::refine_quantum(const Values& angle) noexcept {
-  const auto refine = [](double& quantum, double candidate) {
-    if (candidate > kLeastQuantum && (quantum == 0 || candidate < quantum)) quantum = candidate;
-  };
+void WheelMotion::refine_quantum(std::size_t wheel, double candidate) noexcept {
+  double& quantum = quantum_[wheel];
+  if (candidate <= kLeastQuantum || (quantum != 0 && candidate >= quantum)) return;
+  quantum = candidate;
+  speed_tolerance_[wheel] = quantum / window_;
+  acceleration_tolerance_[wheel] = 2 * quantum / (window_ * window_);
+}
+
+void WheelMotion::refine_quanta(const Values& angle) noexcept {
   for (std::size_t i = 0; i < wheels_; ++i) {
     const double step = angle[i] - angle_[i];
-    refine(quantum_[i], std::abs(step));
-    if (stepped_) refine(quantum_[i], std::abs(step - last_step_[i]));
+    refine_quantum(i, std::abs(step));
+    if (stepped_) refine_quantum(i, std::abs(step - last_step_[i]));
     last_step_[i] = step;
   }
   stepped_ = true;

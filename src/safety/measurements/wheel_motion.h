@@ -50,8 +50,8 @@ class WheelMotion {
   double speed(std::size_t wheel) const noexcept { return speed_[wheel]; }                ///< rad/s
   double acceleration(std::size_t wheel) const noexcept { return acceleration_[wheel]; }  ///< rad/s²
   double quantum(std::size_t wheel) const noexcept { return quantum_[wheel]; }            ///< rad; 0: not known yet
-  double speed_tolerance(std::size_t wheel) const noexcept { return quantum_[wheel] / window_; }
-  double acceleration_tolerance(std::size_t wheel) const noexcept { return 2 * quantum_[wheel] / (window_ * window_); }
+  double speed_tolerance(std::size_t wheel) const noexcept { return speed_tolerance_[wheel]; }
+  double acceleration_tolerance(std::size_t wheel) const noexcept { return acceleration_tolerance_[wheel]; }
 
  private:
   using Values = std::array<double, kMaxWheels>;
@@ -64,7 +64,8 @@ class WheelMotion {
   static constexpr std::size_t kSlots = 256;  // two windows of twice the length, and more
 
   bool take(const SensorFrame& sensors) noexcept;
-  void refine_quantum(const Values& angle) noexcept;
+  void refine_quanta(const Values& angle) noexcept;
+  void refine_quantum(std::size_t wheel, double candidate) noexcept;
   const Sample* before(std::uint64_t cycle) const noexcept;
 
   std::size_t wheels_;
@@ -81,6 +82,8 @@ class WheelMotion {
   Values speed_{};
   Values acceleration_{};
   Values quantum_{};
+  Values speed_tolerance_{};
+  Values acceleration_tolerance_{};
   std::array<Sample, kSlots> samples_{};  ///< of cycle c in slot c mod kSlots
 };
 

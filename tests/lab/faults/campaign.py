@@ -1,14 +1,12 @@
 """Thousands of random fault sequences over random drives and robots, each judged by what really happened.
 
-    python3 -m lab.faults.campaign --first 17 --runs 1     # repeats one and says what happened
+    scripts/bench campaign --first 17 --runs 1     # repeats one and says what happened
 
 A seed gives the same bits on the same build and robots, alone or among others, on however many processors.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -19,7 +17,7 @@ from typing import Any
 from robot_control.closed_loop import ClosedLoop
 from robot_control.common.cause_names import causes_in
 
-from lab.faults.fault_sequence import ALL_RUNS, ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
+from lab.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, draw_sequence
 from lab.faults.sequence_judge import RULES, judge
 from lab.faults.sequence_run import make_loop, run_sequence
 from lab.robot_corpus import robot_names
@@ -121,19 +119,3 @@ def bench(
         say(draw_sequence(first, robot_names()).describe())
     tally = campaign(range(first, first + runs), say, runner)
     return result_of(tally, time.monotonic() - began), not tally.failed
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Exit code 0: every sequence was survived."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--runs", type=int, default=ALL_RUNS, help="number of seeds")
-    given = parser.parse_args(arguments)
-    result, survived = bench(given.first, given.runs, print)
-    for row in result["rows"]:
-        print(f"{row['name']:<24}{row['value']:12.5g} {row['unit']}")
-    return 0 if survived else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

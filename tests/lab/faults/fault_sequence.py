@@ -13,24 +13,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from robot_control.common.signal_names import states
 
 from lab.faults.random_drive import Leg, draw_drive
 from lab.robot_corpus import DIFFBOT, SCENES
 
-COMPONENTS = (
-    "left_encoder",
-    "right_encoder",
-    "gyro",
-    "accelerometer",
-    "left_motor",
-    "right_motor",
-    "controller",
-    "estimator",
-    "monitor",
-    "battery",
-    "e_stop_button",
-)
-KINDS = ("off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent")
+COMPONENTS = states("FaultComponent")
+KINDS = states("FaultKind")[1:]  # without "ok"
 
 ALL_RUNS = 10_000
 OWN_SHARE = 0.75  # of the sequences are the project's own robot's

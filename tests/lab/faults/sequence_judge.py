@@ -5,7 +5,7 @@ over MEAN_TIME give less than STANDING_SPEED; or the robot rocks on its casters,
 
     permit     Where the gate does not brake, a permit to drive or to ramp of one of the last four cycles is there.
     brake      While it brakes, s does not grow (but while wheels that spun pull on, SPIN_TIME), and after STOP_TIME +
-               s/a the robot stands, a its stop_deceleration.
+               s/a the robot stands, a what brakes reach on the ground of the scene.
     speed      s stays below SPEED_FACTOR times the fastest that the controller may ask for, plus SPEED_MARGIN.
     rest       At the end of the rest the robot stands.
     release    After the release it stands on, and after each reset that was accepted until a command comes.
@@ -28,16 +28,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from robot_control.closed_loop import Log
+from robot_control.common.signal_names import number_of
 
-from lab.faults.fault_sequence import COMPONENTS, FaultSequence
-from lab.robot_corpus import stop_deceleration_of
+from lab.faults.fault_sequence import FaultSequence
+from lab.robot_corpus import ICE, stop_deceleration_of
 
-BRAKE, DRIVE, RAMP = 0, 2, 1  # GateVerdict, PermitAction
-PERMIT_LIFE = 4  # cycles
-DRIVER_FAULT = 3  # DriverState
-STOPPED_STATES = (4, 5)  # SupervisorState
+BRAKE = number_of("GateVerdict", "brake")
+RAMP, DRIVE = (number_of("PermitAction", name) for name in ("ramp", "drive"))
+PERMIT_LIFE = 4  # cycles that are promised, whatever the code under judgement says
+DRIVER_FAULT = number_of("DriverState", "fault")
+STOPPED_STATES = [number_of("SupervisorState", name) for name in ("STOPPED", "FAULT")]
 RULES = ("permit", "brake", "speed", "rest", "release", "tilt", "machine")
-KIND_CODES = {"off": 1, "stuck": 2, "garbage": 3, "wrong": 4, "slow": 5, "delayed": 6, "intermittent": 7}
 
 STANDING_SPEED = 0.01  # m/s
 MEAN_TIME = 0.3  # s
@@ -50,6 +51,7 @@ SPEED_FACTOR, SPEED_MARGIN = 1.5, 0.7  # 1, m/s: 0.1 s of the strongest drives, 
 GARBAGE_SPEED = 1.0  # m/s
 TILT_LIMIT = np.radians(10)
 HIT_TILT_LIMIT = np.radians(30)  # a light robot that runs into a wall at 1 m/s stands up by 20° and falls back
+ICY, DRY = "low_friction_patch", 1.0  # the scene with ice, friction of the others
 GRAVITY_ON_SLOPE = 9.81 * np.sin(np.radians(5))  # m/s²
 
 Mask = NDArray[np.bool_]
@@ -70,8 +72,8 @@ class Violation:
 
 def failing(log: Log, component: str, *kinds: str) -> Mask:
     """Where `component` fails in one of these ways; shape (cycles,)."""
-    digit = (log["injected"].astype(np.int64) >> (3 * COMPONENTS.index(component))) & 7
-    return np.isin(digit, [KIND_CODES[kind] for kind in kinds])
+    digit = (log["injected"].astype(np.int64) >> (3 * number_of("FaultComponent", component))) & 7
+    return np.isin(digit, [number_of("FaultKind", kind) for kind in kinds])
 
 
 def judge(sequence: FaultSequence, log: Log, wheel_base: float, period: float, fastest: float) -> list[Violation]:
@@ -150,7 +152,8 @@ class _Court:
         if growing.size and not self._monitor_errs[:start].any():
             row = start + int(growing[0])
             yield self._violation("brake", row, f"{spun:.3f} m/s grew to {self._speed[row]:.3f} m/s")
-        deadline = round((STOP_TIME + spun / stop_deceleration_of(self._sequence.robot)) / self._period)
+        slows_down = stop_deceleration_of(self._sequence.robot, ICE if self._sequence.scene == ICY else DRY)
+        deadline = round((STOP_TIME + spun / slows_down) / self._period)
         late = np.flatnonzero(~self._standing[start:stop][deadline:])
         if late.size:
             row = start + deadline + int(late[0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from robot_control.closed_loop import ClosedLoop, Log
 
@@ -30,17 +32,22 @@ COLUMNS = (
 )
 
 
-def make_loop(sequence: FaultSequence) -> ClosedLoop:
+def loop_arguments(sequence: FaultSequence) -> dict[str, Any]:
     """The robot of this sequence in its scene, its sensors err as the seed says."""
-    return ClosedLoop(
-        params={
+    return {
+        "params": {
             "mujoco_plant": {"sensor_errors": "data_sheet", "battery_voltage": BATTERY_VOLTAGE},
             "safety_monitor": {"stop_deceleration": stop_deceleration_of(sequence.robot)},
         },
-        seed=sequence.seed,
-        urdf=urdf_of(sequence.robot),
-        scene=scene_of(sequence.scene),
-    )
+        "seed": sequence.seed,
+        "urdf": urdf_of(sequence.robot),
+        "scene": scene_of(sequence.scene),
+    }
+
+
+def make_loop(sequence: FaultSequence) -> ClosedLoop:
+    """A loop of these arguments."""
+    return ClosedLoop(**loop_arguments(sequence))
 
 
 def run_sequence(sequence: FaultSequence, loop: ClosedLoop) -> Log:

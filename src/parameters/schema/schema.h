@@ -1,5 +1,5 @@
 #pragma once
-/// The only place that knows a YAML key: one table per block, one line per parameter, or per condition of the safety
+/// All YAML keys: one table per block, one line per parameter, or per condition of the safety
 /// monitor, which is a group of keys: `tilt: {limit: 0.35, persistence: 0.05, reaction: brake}`.
 
 #include <cstdint>
@@ -15,19 +15,21 @@
 namespace robot_control {
 
 /// Where a value goes; the type of the pointer is the type of the parameter.
-using Field = std::variant<double*, std::optional<double>*, Vector3*, std::optional<Vector3>*, std::int64_t*,
-                           std::uint64_t*, bool*, std::string*, std::vector<std::string>*, ClockMode*, RealtimePolicy*,
-                           TyreModel*, ErrorLevel*, Reaction*, FailAction*>;
+using Field =
+    std::variant<double*, std::optional<double>*, Vector3*, std::optional<Vector3>*, std::optional<CovarianceDiagonal>*,
+                 std::int64_t*, std::uint64_t*, bool*, std::string*, std::vector<std::string>*, ClockMode*,
+                 RealtimePolicy*, TyreModel*, ErrorLevel*, Reaction*, FailAction*, RecordMode*>;
 
 /// What a key allows beyond its range; bits of Key::traits.
 enum KeyTrait : unsigned {
   kOptional = 1u << 0,     ///< may be absent
-  kZeroIsOff = 1u << 1,    ///< 0 is allowed beside the range and switches the thing off
+  kZeroIsOff = 1u << 1,    ///< 0 is allowed beside the range and switches the function off
   kTimeout = 1u << 2,      ///< s; at least two periods of the loop, else jitter alone would trip it
   kPublishRate = 1u << 3,  ///< Hz; at most the rate of the loop
   kPath = 1u << 4,         ///< a file; made absolute
   kMayBeEmpty = 1u << 5,   ///< a text that may be ""
   kLive = 1u << 6,         ///< may change while its node runs (live_parameters.h); double, optional<double> or bool
+  kNoEffect = 1u << 7,     ///< of an earlier version; accepted with a warning
 };
 
 struct Key {

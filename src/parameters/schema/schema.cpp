@@ -1,4 +1,4 @@
-#include "parameters/schema.h"
+#include "parameters/schema/schema.h"
 
 #include <algorithm>
 #include <array>
@@ -113,6 +113,7 @@ constexpr auto kMujocoPlant = std::to_array<Key>({
     {"left_radius_error", in<&P::plant, &Plant::left_radius_error>, {}, -0.5, 0.5},
     {"right_radius_error", in<&P::plant, &Plant::right_radius_error>, {}, -0.5, 0.5},
     {"wheel_base_error", in<&P::plant, &Plant::wheel_base_error>, {}, -0.5, 0.5},
+    {"wheel_friction_error", in<&P::plant, &Plant::wheel_friction_error>, {}, -1, 10},
     {"payload", in<&P::plant, &Plant::payload>, "kg", 0, 10000},
     {"payload_x", in<&P::plant, &Plant::payload_x>, "m", -10, 10},
     {"payload_y", in<&P::plant, &Plant::payload_y>, "m", -10, 10},
@@ -143,7 +144,7 @@ constexpr auto kMujocoPlant = std::to_array<Key>({
     {"accelerometer_bias_walk", in<&P::plant, &Plant::accelerometer_bias_walk>, "m/s²/√s", 0, 10},
     {"sensor_delay", in<&P::plant, &Plant::sensor_delay>, "cycles", 0, 100},
     {"contact_sensors", in<&P::plant, &Plant::contact_sensors>},
-    // At most half a volt falls off at the idle current (battery.h): something always is left.
+    // At most half a volt is lost at the idle current (battery.h): the voltage stays positive.
     {"battery_voltage", in<&P::plant, &Plant::battery_voltage>, "V", 1, 1000, kZeroIsOff},
     {"battery_resistance", in<&P::plant, &Plant::battery_resistance>, "Ω", 0, 1},
     {"push_x", in<&P::plant, &Plant::push_x>, "N", -100000, 100000},
@@ -167,7 +168,7 @@ constexpr auto kStateEstimator = std::to_array<Key>({
     {"gyro_noise", in<&P::estimator, &EstimatorParameters::gyro_noise>, "rad/s/√Hz", 1.0e-9, 1},
     {"standstill_speed", in<&P::estimator, &EstimatorParameters::standstill_speed>, "rad/s", 1.0e-6, 1},
     {"standstill_time", in<&P::estimator, &EstimatorParameters::standstill_time>, "s", 0.01, 60},
-    {"standstill_acceleration", in<&P::estimator, &EstimatorParameters::standstill_acceleration>, "m/s²", 0.001, 10},
+    {"standstill_acceleration", in<&P::no_effect>, "m/s²", 0.001, 10, kOptional | kNoEffect},
     {"encoder_noise", in<&P::estimator, &EstimatorParameters::encoder_noise>, "rad", 1.0e-6, 1},
     {"gyro_scale_deviation", in<&P::estimator, &EstimatorParameters::gyro_scale_deviation>, {}, 0, 0.1},
     {"gyro_bias_initial", in<&P::estimator, &EstimatorParameters::gyro_bias_initial>, "rad/s", 1.0e-6, 10},
@@ -194,6 +195,8 @@ constexpr auto kStateEstimator = std::to_array<Key>({
     {"publish_tf", in<&P::report, &ReportParameters::publish_tf>},
     {"odom_frame", in<&P::report, &ReportParameters::odom_frame>},
     {"base_frame", in<&P::report, &ReportParameters::base_frame>, {}, 0, 0, kMayBeEmpty},
+    {"pose_covariance_diagonal", in<&P::report, &ReportParameters::pose_covariance_diagonal>, {}, 0, 1e9, kOptional},
+    {"twist_covariance_diagonal", in<&P::report, &ReportParameters::twist_covariance_diagonal>, {}, 0, 1e9, kOptional},
 });
 
 using Drive = DriveControllerParameters;
@@ -258,7 +261,13 @@ constexpr auto kSafetyMonitor = rows(kSafetyLimits
 
 constexpr auto kTelemetry = std::to_array<Key>({
     {"directory", in<&P::telemetry, &TelemetryParameters::directory>, {}, 0, 0, kMayBeEmpty},
+    {"csv", in<&P::telemetry, &TelemetryParameters::csv>},
+    {"record", in<&P::telemetry, &TelemetryParameters::record>},
+    {"split_size", in<&P::telemetry, &TelemetryParameters::split_size>, "GB", 0.001, 1.0e6, kZeroIsOff},
+    {"split_time", in<&P::telemetry, &TelemetryParameters::split_time>, "s", 1, 1.0e9, kZeroIsOff},
     {"quota", in<&P::telemetry, &TelemetryParameters::quota>, "GB", 0.001, 1.0e6, kZeroIsOff},
+    {"black_box", in<&P::telemetry, &TelemetryParameters::black_box>, "GB", 0.001, 100, kZeroIsOff},
+    {"incidents", in<&P::telemetry, &TelemetryParameters::incidents>, {}, 1, 10000, kZeroIsOff},
 });
 
 constexpr auto kBlocks = std::to_array<Block>({
@@ -268,47 +277,6 @@ constexpr auto kBlocks = std::to_array<Block>({
     {"diff_drive_controller", kDiffDriveController},
     {"safety_monitor", kSafetyMonitor},
     {"telemetry", kTelemetry},
-});
-
-constexpr auto kClockWords = std::to_array<Word>({
-    {"wall", static_cast<int>(ClockMode::kWall)},
-    {"lockstep", static_cast<int>(ClockMode::kLockstep)},
-});
-
-constexpr auto kRealtimeWords = std::to_array<Word>({
-    {"required", static_cast<int>(RealtimePolicy::kRequired)},
-    {"preferred", static_cast<int>(RealtimePolicy::kPreferred)},
-    {"off", static_cast<int>(RealtimePolicy::kOff)},
-});
-
-constexpr auto kTyreWords = std::to_array<Word>({
-    {"brush", static_cast<int>(TyreModel::kBrush)},
-    {"native", static_cast<int>(TyreModel::kNative)},
-});
-
-// true and false of the versions before there were levels.
-constexpr auto kErrorLevelWords = std::to_array<Word>({
-    {"ideal", static_cast<int>(ErrorLevel::kIdeal)},
-    {"data_sheet", static_cast<int>(ErrorLevel::kDataSheet)},
-    {"field", static_cast<int>(ErrorLevel::kField)},
-    {"true", static_cast<int>(ErrorLevel::kDataSheet), "data_sheet"},
-    {"yes", static_cast<int>(ErrorLevel::kDataSheet), "data_sheet"},
-    {"on", static_cast<int>(ErrorLevel::kDataSheet), "data_sheet"},
-    {"off", static_cast<int>(ErrorLevel::kIdeal), "ideal"},
-    {"no", static_cast<int>(ErrorLevel::kIdeal), "ideal"},
-});
-
-constexpr auto kFailActionWords = std::to_array<Word>({
-    {"brake", static_cast<int>(FailAction::kBrake)},
-    {"coast", static_cast<int>(FailAction::kCoast)},
-});
-
-constexpr auto kReactionWords = std::to_array<Word>({
-    {"off", static_cast<int>(Reaction::kOff)},
-    {"warn", static_cast<int>(Reaction::kWarn)},
-    {"slow", static_cast<int>(Reaction::kSlow)},
-    {"ramp", static_cast<int>(Reaction::kRamp)},
-    {"brake", static_cast<int>(Reaction::kBrake)},
 });
 
 std::string range_of(const Key& key, std::string_view noun) {
@@ -368,6 +336,7 @@ std::string rule_of(const Key& key) {
           [&](double* to) { return number(to); }, [&](std::optional<double>* to) { return number(to); },
           [&](Vector3*) { return range_of(key, "a list of three numbers, each"); },
           [&](std::optional<Vector3>*) { return range_of(key, "a list of three numbers, each"); },
+          [&](std::optional<CovarianceDiagonal>*) { return range_of(key, "a list of six numbers, each"); },
           [&](std::int64_t* to) { return whole(to); }, [&](std::uint64_t* to) { return whole(to); },
           [&](bool*) { return std::string("true or false"); },
           [&](std::string*) {
@@ -378,16 +347,6 @@ std::string rule_of(const Key& key) {
           [&](auto* to) { return word(to); },  // the enums
       },
       field);
-}
-
-std::span<const Word> words_of(const Field& field) {
-  if (std::holds_alternative<ClockMode*>(field)) return kClockWords;
-  if (std::holds_alternative<RealtimePolicy*>(field)) return kRealtimeWords;
-  if (std::holds_alternative<TyreModel*>(field)) return kTyreWords;
-  if (std::holds_alternative<ErrorLevel*>(field)) return kErrorLevelWords;
-  if (std::holds_alternative<Reaction*>(field)) return kReactionWords;
-  if (std::holds_alternative<FailAction*>(field)) return kFailActionWords;
-  return {};
 }
 
 }  // namespace robot_control

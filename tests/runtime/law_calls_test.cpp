@@ -1,0 +1,107 @@
+/// What the rows say of the calls on each law (signals/law_calls.h). That nothing is missing in them is shown by
+/// tests/replay, which runs the laws again from them.
+
+#include <gtest/gtest.h>
+
+#include "cycle_fixture.h"
+#include "signals/names.h"
+
+namespace robot_control {
+namespace {
+
+struct LawCalls : testing::Test {
+  LawCalls() { loop.steps(10); }
+
+  const GateCalls& gate() const { return loop.driver.trace().calls; }
+  const EstimatorCalls& estimator() const { return loop.estimator->trace().calls; }
+  const ControllerCalls& controller() const { return loop.controller->trace().calls; }
+  const MonitorCalls& monitor() const { return loop.monitor->trace().calls; }
+
+  Loop loop{Nodes::kWithFaults};
+};
+
+TEST_F(LawCalls, NameTheFramesThatWereUsed) {
+  const std::uint64_t sensors = loop.driver.trace().sensors.head.checksum;
+  EXPECT_EQ(gate().law.sensors, sensors);
+  EXPECT_EQ(estimator().law.sensors, sensors);
+  EXPECT_EQ(controller().law.sensors, sensors);
+  EXPECT_EQ(monitor().law.sensors, sensors);
+  EXPECT_EQ(controller().state, loop.newest_state().head.checksum);
+  const std::uint64_t command = loop.newest_command().head.checksum;
+  const Permit permit = loop.newest_permit();
+  loop.step();
+  EXPECT_EQ(gate().command.checksum, command);
+  EXPECT_EQ(monitor().command.checksum, command);
+  EXPECT_EQ(gate().permit.checksum, permit.head.checksum);
+  EXPECT_EQ(controller().permit.checksum, permit.head.checksum);
+  EXPECT_EQ(controller().permit.cycle, permit.head.cycle);
+}
+
+TEST_F(LawCalls, NumberTheRowsOfAProcess) {
+  EXPECT_EQ(gate().law.number, 9u);
+  EXPECT_EQ(estimator().law.number, 9u);
+  EXPECT_EQ(controller().law.number, 9u);
+  EXPECT_EQ(monitor().law.number, 9u);
+}
+
+TEST_F(LawCalls, GiveTheOutputOfAHealthyNode) {
+  EXPECT_EQ(estimator().law.output, loop.newest_state().head.checksum);
+  EXPECT_EQ(controller().law.output, loop.newest_command().head.checksum);
+  EXPECT_EQ(monitor().law.output, loop.newest_permit().head.checksum);
+}
+
+TEST_F(LawCalls, GiveTheOutputBeforeAFaultChangesIt) {
+  loop.machine.faults = {};
+  ASSERT_EQ(set_fault(loop.machine.faults, "controller", "wrong"), "");
+  loop.step();
+  EXPECT_NE(controller().law.output, loop.newest_command().head.checksum);
+}
+
+TEST_F(LawCalls, HaveARowWhereAFaultSuppressesTheFrame) {
+  ASSERT_EQ(set_fault(loop.machine.faults, "estimator", "off"), "");
+  loop.driver.step();
+  EXPECT_TRUE(loop.estimator->step());
+  EXPECT_EQ(loop.estimator->trace().state.head.kind, FrameKind::kToken);
+  EXPECT_EQ(estimator().law.number, 10u);
+}
+
+TEST_F(LawCalls, NoteAPoseAndANewRunOnce) {
+  loop.estimator->request_pose({1, 2, 3});
+  loop.driver.begin_run(2);
+  loop.step();
+  EXPECT_EQ(estimator().pose_set, 1u);
+  EXPECT_EQ(estimator().pose[2], 3.0);
+  EXPECT_EQ(estimator().law.new_run, 1u);
+  EXPECT_EQ(gate().law.new_run, 1u);
+  EXPECT_EQ(controller().law.new_run, 1u);
+  loop.step();
+  EXPECT_EQ(estimator().pose_set, 0u);
+  EXPECT_EQ(estimator().law.new_run, 0u);
+}
+
+TEST_F(LawCalls, ListWhatTheMonitorWasToldBetweenTwoCycles) {
+  loop.monitor->silence();
+  loop.monitor->inbox().store({.resets = 1});
+  loop.monitor->silence();
+  loop.step();
+  ASSERT_EQ(monitor().event_count, 4u);
+  EXPECT_EQ(monitor().events[0].call, MonitorCall::kDriverLost);
+  EXPECT_EQ(monitor().events[1].call, MonitorCall::kStepAgain);
+  EXPECT_EQ(monitor().events[2].call, MonitorCall::kRefuseReset);
+  EXPECT_EQ(monitor().events[3].call, MonitorCall::kStepAgain);
+  EXPECT_NE(monitor().events[1].output, monitor().events[3].output);
+}
+
+TEST_F(LawCalls, CountEventsForWhichThereIsNoRoom) {
+  constexpr std::uint64_t kResets = kMonitorEvents;  // two events each
+  for (std::uint64_t resets = 1; resets <= kResets; ++resets) {
+    loop.monitor->inbox().store({.resets = resets});
+    loop.monitor->idle();
+  }
+  loop.step();
+  EXPECT_EQ(monitor().event_count, kMonitorEvents);
+  EXPECT_EQ(monitor().events_lost, 2 * kResets - kMonitorEvents);
+}
+
+}  // namespace
+}  // namespace robot_control
