@@ -4,15 +4,21 @@ from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 
 PROGRAMS = (
+    "blackbox",
     "calibrate",
     "demo",
     "drive",
     "estimate",
+    "export",
     "identify",
     "inspect",
     "pad",
     "path",
     "record",
+    "render",
+    "replay",
+    "report",
+    "status",
     "teleop",
     "view",
     "why",

@@ -8,11 +8,12 @@ target_compile_options(robot_control_options INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # GCC 12 sees overlapping copies in "literal" + string (its bug 105329)
 target_link_libraries(robot_control_options INTERFACE Threads::Threads)
+# -g1: functions, files and lines of a report; the variables of -g add a third to the time of compilation.
 if(ROBOT_CONTROL_SANITIZER STREQUAL "address")
-  target_compile_options(robot_control_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -g -O1)
+  target_compile_options(robot_control_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -g1 -O1)
   target_link_options(robot_control_options INTERFACE -fsanitize=address,undefined)
 elseif(ROBOT_CONTROL_SANITIZER STREQUAL "thread")
-  target_compile_options(robot_control_options INTERFACE -fsanitize=thread -g -O1)
+  target_compile_options(robot_control_options INTERFACE -fsanitize=thread -g1 -O1)
   target_link_options(robot_control_options INTERFACE -fsanitize=thread)
 endif()
 

@@ -4,14 +4,15 @@
 set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "the Python that ROS was built for")
 
 find_package(catkin REQUIRED COMPONENTS
-  diagnostic_msgs dynamic_reconfigure geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs roslib sensor_msgs std_msgs std_srvs
+  actionlib_msgs diagnostic_msgs dynamic_reconfigure geometry_msgs message_generation nav_msgs roscpp rosgraph_msgs roslib sensor_msgs std_msgs std_srvs
   tf2_msgs)
 
 catkin_python_setup()
-add_message_files(FILES DriveState.msg SafetyStatus.msg)
+add_action_files(FILES FollowPath.action)
+add_message_files(FILES DriveState.msg RobotStatus.msg SafetyStatus.msg Snapshot.msg Trace.msg TraceHeader.msg)
 add_service_files(FILES InjectFault.srv SetOdometry.srv SetParameters.srv Step.srv)
-generate_messages(DEPENDENCIES std_msgs)
-catkin_package(CATKIN_DEPENDS message_runtime std_msgs)
+generate_messages(DEPENDENCIES actionlib_msgs nav_msgs std_msgs)
+catkin_package(CATKIN_DEPENDS actionlib_msgs message_runtime nav_msgs std_msgs)
 unset(CMAKE_RUNTIME_OUTPUT_DIRECTORY)  # catkin's: test programs are no nodes
 
 # robot_control_ros(TARGET): ROS headers, generated messages included, for one target.
@@ -31,4 +32,4 @@ function(robot_control_node name)
 endfunction()
 
 install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-catkin_install_python(PROGRAMS scripts/calibrate.py scripts/drive_path.py scripts/estimate.py scripts/identify.py scripts/inspect_robot.py scripts/pad.py scripts/record.py scripts/send_cmd.py scripts/teleop.py scripts/view_markers.py scripts/why.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_install_python(PROGRAMS scripts/blackbox.py scripts/calibrate.py scripts/drive_path.py scripts/estimate.py scripts/export.py scripts/follow_path.py scripts/identify.py scripts/inspect_robot.py scripts/pad.py scripts/record.py scripts/replay.py scripts/report.py scripts/robot_status.py scripts/send_cmd.py scripts/state_publisher.py scripts/teleop.py scripts/view_markers.py scripts/why.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

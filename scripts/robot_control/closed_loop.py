@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_control._robot_control import ClosedLoop as _ClosedLoop
+from robot_control._robot_control import end_log, log_into
 from robot_control.parameter_layers import flow_text, layered
 
 Log = dict[str, NDArray[np.float64]]
@@ -161,6 +162,26 @@ class ClosedLoop:
         """
         self._refuse_inside_a_run("record")
         return self._loop.record(commands)
+
+    def log_into(self, folder: str | PathLike[str]) -> None:
+        """Writes every cycle from the next one on to `folder`/run.bag, as the node `telemetry` does, until `end_log`.
+
+        An earlier run.bag is kept as run.1.bag, ...
+
+        Raises:
+            RunLogError: it cannot be written.
+        """
+        self._refuse_inside_a_run("log_into")
+        log_into(self._loop, fspath(folder))
+
+    def end_log(self) -> None:
+        """Completes run.bag.
+
+        Raises:
+            RunLogError: the disk did not take every cycle.
+        """
+        self._refuse_inside_a_run("end_log")
+        end_log(self._loop)
 
     def _refuse_inside_a_run(self, what: str) -> None:
         if self._running:

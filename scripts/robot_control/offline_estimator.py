@@ -14,29 +14,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robot_control._robot_control import (
-    OfflineEstimator,
-    degraded_reasons,
-    slip_reasons,
-    state_flags,
-    state_sensors,
-)
+from robot_control._robot_control import OfflineEstimator, signal_names
 from robot_control.parameter_layers import layered, leaves
 
 FloatArray = NDArray[np.float64]
 Estimate = dict[str, NDArray[Any]]
 
-SENSORS: tuple[str, ...] = tuple(state_sensors)
+
+def _bits(kind: str) -> dict[str, int]:
+    return {name: 1 << number for number, (name, *_) in enumerate(signal_names[kind])}
+
+
+SENSORS: tuple[str, ...] = tuple(signal_names["SensorIndex"])
 """Columns of `confidence`, `nis` and `rejected`. The contacts are what the ground says: wheels do not slide sideways,
 the robot neither sinks nor flies."""
 
-FLAGS: dict[str, int] = dict(state_flags)
+FLAGS: dict[str, int] = _bits("StateFlag")
 """Name → bit of `flags`: valid, slip, standstill, …; their meaning stands in src/signals/names.h."""
 
-SLIP_REASONS: dict[str, int] = dict(slip_reasons)
+SLIP_REASONS: dict[str, int] = _bits("SlipReason")
 """Name → bit of `slip`."""
 
-DEGRADED_REASONS: dict[str, int] = dict(degraded_reasons)
+DEGRADED_REASONS: dict[str, int] = _bits("DegradedReason")
 """Name → bit of `degraded`."""
 
 _STAMP_ROUNDING = 1e-9  # s: text and ROS stamps hold nanoseconds
@@ -62,7 +61,7 @@ class Estimator:
         encoder_counts: of one turn of a wheel, gear included, all edges counted; sets
             `state_estimator.encoder_noise` to 2π / encoder_counts / √12 rad. None: that parameter holds, 4096 counts
             unless set. An encoder that is coarser than its parameter looks like slip.
-        period: s between two samples, from which the filter's time constants are set up. None: the median of the
+        period: s between two samples, from which the tracking loops are set up. None: the median of the
             times of the first `process`.
 
     Raises:
@@ -180,8 +179,8 @@ class Estimator:
                 distance (M,) m, travelled
                 wheel_x, wheel_y (M,) m, wheel_yaw (M,) rad, wheel_linear m/s, wheel_angular rad/s: by wheels alone
                 confidence (M, 6): 0 (not used) … 1 (agrees); nis (M, 6): normalised innovation squared, ideal 1;
-                rejected (M, 6): samples refused so far; columns: SENSORS
-                degraded (M,): bits of DEGRADED_REASONS, while pose and twist are those of wheels and gyro alone;
+                rejected (M, 6): comparisons not used so far; columns: SENSORS
+                degraded (M,): bits of DEGRADED_REASONS: what the pose does without;
                 residual_level (M,): wheels against accelerometer, over what the sensors' noise explains; 0: not known
                 flags (M,): bits of FLAGS; slip (M,): bits of SLIP_REASONS. A row without an angle of a side says so:
                 no_left_encoder, no_right_encoder, bad_sample; whether that matters yet says valid

@@ -53,8 +53,8 @@ def services() -> Iterator[str]:
 
 
 def message_fields() -> Iterator[str]:
-    """Fields and constants of the messages and services, in the order of the wire."""
-    for path in sorted([*ROOT.glob("msg/*.msg"), *ROOT.glob("srv/*.srv")]):
+    """Fields and constants of the messages, services and actions, in the order of the wire."""
+    for path in sorted([*ROOT.glob("msg/*.msg"), *ROOT.glob("srv/*.srv"), *ROOT.glob("action/*.action")]):
         for line in path.read_text().splitlines():
             text = " ".join(line.split("#")[0].split())
             if text:

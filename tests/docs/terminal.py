@@ -24,6 +24,7 @@ WATCH = 2.0
 
 NODES = {"mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"}
 SERVICES = {"/mujoco_plant/inject_fault", "/e_stop_reset", "/diff_drive_controller/set_parameter_map", "/set_odometry"}
+RECORD = "/telemetry/record"
 
 
 class FailedError(AssertionError):
@@ -83,7 +84,7 @@ def never_ends(command):
     if words[:2] == ["rosrun", "robot_control"]:
         if words[2] in NODES:
             return "node"
-        return {"send_cmd.py": "sender", "why.py": "observer"}.get(words[2], "")
+        return {"send_cmd.py": "sender", "follow_path.py": "sender", "why.py": "observer"}.get(words[2], "")
     return "observer" if words[:2] == ["rostopic", "hz"] else ""
 
 
@@ -132,7 +133,8 @@ class Terminal:
             return
         self.end_programs()
         self.launch = Program(command, self.folder, self.environment)
-        until(lambda: self.registered() >= SERVICES, command, self.launch)
+        needed = SERVICES | ({RECORD} if "telemetry:=true" in command else set())
+        until(lambda: self.registered() >= needed, command, self.launch)
 
     def _start(self, command, kind):
         if kind == "node" and self.launch is not None:

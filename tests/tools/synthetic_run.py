@@ -1,6 +1,7 @@
 """A run that is healthy by construction, for tests that break one thing each."""
 
 import numpy as np
+from robot_control.common.signal_names import mask_of
 
 LINEAR, ANGULAR = 0.5, 0.2  # m/s, rad/s
 BEGIN, SECONDS = 300, 8.0  # cycle of the first request; how long it is repeated
@@ -8,6 +9,7 @@ PERIOD = 0.001  # s
 RAMP = 0.5  # s, at 1 m/s²
 END = BEGIN + round(SECONDS / PERIOD)  # cycle of the zero
 CYCLES = END + 1000
+NO_COMMAND = mask_of("GateReason", "no_command")
 
 
 def integrate(linear, angular):
@@ -65,7 +67,7 @@ def healthy_run():
     return with_truth({name: values.copy() for name, values in log.items()}, LINEAR * delayed, ANGULAR * delayed)
 
 
-def brake_at(log, cycle, reasons=1 << 5):
+def brake_at(log, cycle, reasons=NO_COMMAND):
     """A gate that braked in `cycle`, for want of a command unless set otherwise."""
     log["gate_verdict"][cycle] = 0
     log["gate_reasons"][cycle] = reasons

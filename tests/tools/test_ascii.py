@@ -10,7 +10,10 @@ BRIDGE = sorted((ROOT / "src/bridge").rglob("*.cpp"))
 KNOWN = set(re.findall(r'\{"([^"\x00-\x7f]+)",', (ROOT / "src/files/ascii.cpp").read_text()))
 
 
-@pytest.mark.parametrize("path", [*(ROOT / "msg").iterdir(), *(ROOT / "srv").iterdir()], ids=lambda path: path.name)
+DEFINITIONS = sorted(path for name in ("msg", "srv", "action") for path in (ROOT / name).iterdir())
+
+
+@pytest.mark.parametrize("path", DEFINITIONS, ids=lambda path: path.name)
 def test_definitions_of_messages_and_services_are_ascii(path):
     assert path.read_text().isascii()
 

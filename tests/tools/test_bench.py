@@ -72,8 +72,8 @@ def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])
     assert (
-        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, driving, limiter, "
-        "release, drive, odometry, hostile, tuning" in capsys.readouterr().err
+        "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, replay, driving, limiter, "
+        "release, drive, odometry, hostile, tuning, bags" in capsys.readouterr().err
     )
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-PROGRAM = Path(__file__).parents[2] / "scripts/count_tests.py"
+PROGRAM = Path(__file__).parents[2] / "tests/count_tests.py"
 
 GTEST = """<testsuites><testsuite name="Gate">
   <testcase name="Passes" status="run" result="completed"/>

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import synthetic_drive as drive
+from robot_control.common.signal_names import mask_of
 from robot_control.identify.fit import identify
 from robot_control.identify.rows import UnfitError
 
@@ -108,7 +109,7 @@ def test_refuses_the_log_of_another_robot(log):
 def test_refuses_a_log_in_which_nothing_was_driven_and_says_why(log):
     log["gate_verdict"][:] = 0
     assert "why.py" in refusal(log)
-    log["permit_causes"][:] = 1 << 1
+    log["permit_causes"][:] = mask_of("StopCause", "e_stop_service")
     assert "e_stop_service" in refusal(log)
     log["permit_causes"][:] = 0
     log["requests_received"][:] = 0
@@ -127,12 +128,12 @@ def test_refuses_a_drive_that_measures_no_torque(log):
 
 
 def test_refuses_saturated_torque(log):
-    log["gate_reasons"][::10] = 1 << 10
+    log["gate_reasons"][::10] = mask_of("GateReason", "effort_clamped")
     assert "at its limit" in refusal(log)
 
 
 def test_refuses_slipping_wheels(log):
-    log["estimate_flags"][: len(log["cycle"]) // 2] = 1 | 1 << 1
+    log["estimate_flags"][: len(log["cycle"]) // 2] = mask_of("StateFlag", "valid", "slip")
     assert "slipped" in refusal(log)
 
 

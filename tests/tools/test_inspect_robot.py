@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robot_control.inspect import picture
 from robot_control.inspect.picture import draw_robot
 from robot_control.inspect.rendering import Part, View, Window, render
 from robot_control.inspect.report import WIDTH, report
@@ -151,7 +152,8 @@ def test_notes_stand_under_their_heading(robot, kind):
 
 
 @pytest.mark.parametrize("casters", [0, 1])
-def test_a_picture_is_drawn_of_any_robot(robot, casters, tmp_path):
+def test_a_picture_is_drawn_of_any_robot(robot, casters, tmp_path, monkeypatch):
+    monkeypatch.setattr(picture, "PIXELS", 100)
     robot["casters"] = [wheel("swivel", "left", 0.0)] * casters
     robot["wheels"].append(robot["wheels"][1] | {"centre": [0.3, -0.25, 0.0]})
     robot["name"] = ""
@@ -225,6 +227,7 @@ def test_a_file_that_cannot_be_written_is_one_message(tmp_path):
 
 
 def test_a_picture_in_no_known_format_is_one_message(tmp_path):
-    done = inspect(DIFFBOT, "--picture", tmp_path / "bot.jpgg")
+    done = inspect(DIFFBOT, "--picture", tmp_path / "bot.jpgg", "--mjcf", tmp_path / "bot.xml")
     assert done.returncode == 1
     assert len(done.stderr.splitlines()) == 1
+    assert not (tmp_path / "bot.xml").exists()

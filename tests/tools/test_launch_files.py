@@ -45,7 +45,9 @@ def test_whoever_speaks_of_a_network_is_left_with_it(default, variables):
     assert default(**variables) == ""
 
 
-@pytest.mark.parametrize(("launch", "name"), [("backend", "params"), ("backend", "urdf"), ("sim", "out")])
+@pytest.mark.parametrize(
+    ("launch", "name"), [("backend", "params"), ("backend", "urdf"), ("sim", "out"), ("backend", "out")]
+)
 def test_relative_paths_count_from_the_callers_folder(launch, name, monkeypatch):
     expression = re.search(rf'name="{name}_path" value="(.*?)"/>', (LAUNCH / f"{launch}.launch").read_text())[1]
     monkeypatch.setenv("PWD", "/called/here")
@@ -74,11 +76,79 @@ def test_a_word_alone_is_a_shipped_scene(monkeypatch):
     assert resolve("/abs/mine.xml") == "/abs/mine.xml"
 
 
+def config_of(launch, *arguments):
+    """What roslaunch makes of it."""
+    config = ROSLaunchConfig()
+    XmlLoader(resolve_anon=False).load(str(LAUNCH / launch), config, argv=list(arguments), verbose=False)
+    return config
+
+
 def programs_of(*arguments):
     """Node name → program that sim.launch starts."""
-    config = ROSLaunchConfig()
-    XmlLoader(resolve_anon=False).load(str(LAUNCH / "sim.launch"), config, argv=list(arguments), verbose=False)
-    return {node.name: node.type for node in config.nodes}
+    return {node.name: node.type for node in config_of("sim.launch", *arguments).nodes}
+
+
+@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "view.launch"])
+def test_the_argument_ns_moves_every_node_and_parameter_and_changes_nothing_else(launch):
+    here, there = config_of(launch), config_of(launch, "ns:=robot2")
+    assert [(node.namespace, node.name, node.type) for node in there.nodes] == [
+        ("/robot2/", node.name, node.type) for node in here.nodes
+    ]
+    moved = {"/robot2" + name if name != "/use_sim_time" else name for name in here.params}
+    assert set(there.params) == moved
+    values = {name.removeprefix("/robot2"): param.value for name, param in there.params.items()}
+    assert values == {name: param.value for name, param in here.params.items()}
+
+
+def test_arguments_reach_the_nodes_in_a_namespace_too():
+    config = config_of("sim.launch", "ns:=robot2", "seed:=7", "faults:=true", "telemetry:=true", "respawn:=true")
+    assert config.params["/robot2/mujoco_plant/seed"].value == 7
+    assert {node.name: node.type for node in config.nodes}["safety_monitor"] == "safety_monitor_with_faults"
+    assert "telemetry" in {node.name for node in config.nodes}
+
+
+def telemetry_of(launch, *arguments):
+    """What is set for the node; None: it is not started."""
+    config = config_of(launch, *arguments)
+    if "telemetry" not in {node.name for node in config.nodes}:
+        return None
+    own = "/telemetry/"
+    return {name.removeprefix(own): param.value for name, param in config.params.items() if name.startswith(own)}
+
+
+@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch"])
+def test_on_the_wall_clock_a_black_box_is_written_and_nothing_else(launch):
+    values = telemetry_of(launch)
+    assert (values["csv"], values["record"]) == (False, "request")
+    assert "black_box" not in values, "its size is that of the YAML file"
+    assert telemetry_of(launch, "black_box:=false") is None
+    assert telemetry_of(launch, "clock:=lockstep") is None
+
+
+@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch"])
+def test_with_telemetry_the_yaml_file_says_what_is_written(launch):
+    assert not telemetry_of(launch, "telemetry:=true").keys() & {"csv", "record", "black_box"}
+    assert telemetry_of(launch, "telemetry:=true", "black_box:=false")["black_box"] == 0
+
+
+def test_the_end_of_telemetry_ends_a_simulation_that_shall_be_logged_and_nothing_else():
+    def required(launch, *arguments):
+        return {node.name: node.required for node in config_of(launch, *arguments).nodes}["telemetry"]
+
+    assert required("sim.launch", "telemetry:=true")
+    assert not required("sim.launch")
+    assert not required("backend.launch", "telemetry:=true")
+
+
+def test_respawn_starts_again_all_but_what_ends_the_launch():
+    nodes = config_of("sim.launch", "telemetry:=true", "respawn:=true").nodes
+    assert {node.name for node in nodes if not node.respawn} == {"mujoco_plant", "telemetry"}
+    assert not any(node.respawn for node in config_of("sim.launch").nodes)
+
+
+def test_the_transforms_inside_the_robot_can_be_left_to_another_node():
+    assert "robot_state_publisher" in programs_of()
+    assert "robot_state_publisher" not in programs_of("robot_state_publisher:=false")
 
 
 def test_a_simulation_starts_the_programs_of_the_robot():
@@ -88,10 +158,9 @@ def test_a_simulation_starts_the_programs_of_the_robot():
 
 
 def test_for_faults_it_starts_other_programs_under_the_same_names():
-    assert programs_of("faults:=true") == {
-        "mujoco_plant": "mujoco_plant",
-        **{name: f"{name}_with_faults" for name in NODES},
-    }
+    started = programs_of("faults:=true")
+    assert started["mujoco_plant"] == "mujoco_plant"
+    assert {name: started[name] for name in NODES} == {name: f"{name}_with_faults" for name in NODES}
 
 
 def test_every_argument_that_a_user_may_give_is_set_in_every_launch():

@@ -9,9 +9,14 @@ import pytest
 ROOT = Path(__file__).parents[2]
 ROW = re.compile(r"^\|[^|]+\| `(tests/[^`]+)` \| `(\w+)` \|[^|]+\|$", re.MULTILINE)
 TABLE = ROW.findall((ROOT / "docs/tests.md").read_text())
-INSTANTIATED = re.compile(r"INSTANTIATE_TEST_SUITE_P\(\s*Nightly,\s*(\w+)")
+MARKED = re.compile(r"INSTANTIATE_TEST_SUITE_P\(\s*Nightly,\s*(\w+)|TEST_F\((Nightly\w+),")
 LABELLED = re.compile(r"set\(nightly ([\w ]+)\)")
 TESTS = [path for path in (ROOT / "tests").rglob("*") if path.suffix in (".py", ".cpp") and path != Path(__file__)]
+
+
+def suites(text):
+    """Suites of a gtest program that have nightly cases."""
+    return {instantiated or named for instantiated, named in MARKED.findall(text)}
 
 
 def decorated(path):
@@ -37,7 +42,7 @@ def marked():
     found = set()
     for path in TESTS:
         name = str(path.relative_to(ROOT))
-        cases = set(INSTANTIATED.findall(path.read_text())) if path.suffix == ".cpp" else decorated(path)
+        cases = suites(path.read_text()) if path.suffix == ".cpp" else decorated(path)
         found |= {(name, case) for case in cases}
     return found
 
@@ -51,7 +56,7 @@ def test_the_table_has_rows():
 def test_every_entry_exists_and_is_nightly(file, case):
     text = (ROOT / file).read_text()
     if file.endswith(".cpp"):
-        assert case in INSTANTIATED.findall(text)
+        assert case in suites(text)
     else:
         assert re.search(rf"def {case}\(", text)
         assert "mark.nightly" in text or "@nightly" in text or file in labelled()

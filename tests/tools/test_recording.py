@@ -51,10 +51,11 @@ def test_bag_lies_in_the_folder_of_the_namespace(arguments: list[str], prefix: s
     assert record_command(arguments, {})[:3] == ["rosbag", "record", f"--output-prefix={prefix}"]
 
 
-@pytest.mark.parametrize("arguments", [[], ["__name:=record"], ["/out", "/other"]])
-def test_without_one_folder_the_usage_is_printed(arguments: list[str]) -> None:
-    with pytest.raises(SystemExit, match=r"usage: record\.py FOLDER"):
+@pytest.mark.parametrize("arguments", [[], ["__name:=record"], ["/out", "/other"], ["--nonsense"], ["-h"], ["--help"]])
+def test_without_one_folder_the_usage_is_printed(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
         record_command(arguments, {})
+    assert "usage: record.py [-h] FOLDER" in "".join(capsys.readouterr())
 
 
 def test_makes_the_folder_and_becomes_rosbag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

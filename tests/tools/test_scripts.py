@@ -18,7 +18,7 @@ def shell(*command):
 
 def selected(*names):
     """Entries that `scripts/test NAME…` hands to CTest."""
-    selection = SCRIPTS / "test_selection.sh"
+    selection = SCRIPTS / "shell" / "test_selection.sh"
     done = shell("bash", "-euc", 'source "$0"; ctest_pattern "$@"', str(selection), *names)
     return [entry for entry in ENTRIES if re.search(done.stdout.strip(), entry)]
 
@@ -105,7 +105,7 @@ def progress(tmp_path, *lines):
     (tmp_path / "log").write_text("".join(f"{line}\n" for line in lines))
     script = 'source "$0"; build_progress "$@"'
     return shell(
-        "bash", "-euc", script, str(SCRIPTS / "build_progress.sh"), str(tmp_path / "log"), str(tmp_path)
+        "bash", "-euc", script, str(SCRIPTS / "shell" / "build_progress.sh"), str(tmp_path / "log"), str(tmp_path)
     ).stdout
 
 
@@ -123,13 +123,13 @@ def test_a_long_build_is_not_silent_and_its_exit_code_is_that_of_the_command(tmp
     command = (
         f'source "$0"; with_progress {tmp_path}/log {tmp_path} bash -c "echo \'[ 12%] Building\'; sleep 4; exit 7"'
     )
-    done = shell("env", "BUILD_PROGRESS_PAUSE=1", "bash", "-euc", command, str(SCRIPTS / "build_progress.sh"))
+    done = shell("env", "BUILD_PROGRESS_PAUSE=1", "bash", "-euc", command, str(SCRIPTS / "shell" / "build_progress.sh"))
     assert done.returncode == 7
     assert "12 % of the steps" in done.stdout
 
 
 def test_every_build_shows_its_progress():
-    for name in ("environment.sh", "test"):
+    for name in ("shell/environment.sh", "test"):
         builds = re.findall(r"^.*(?:colcon build|cmake --build).*$", (SCRIPTS / name).read_text(), re.MULTILINE)
         assert builds
         assert all("with_progress" in line for line in builds)
@@ -164,13 +164,15 @@ def test_packages_of_a_section_are_installed_only_where_they_are_asked_for():
     assert listed_packages(" [linters]") - plain == {"clang-format", "clang-tidy"}
     assert "rviz" in listed_packages(" [view]") - plain
     assert listed_packages(" [operator]") - plain == {"python3-evdev"}
+    assert listed_packages(" [browser]") - plain == {"chromium"}
+    assert listed_packages(" [report]") == listed_packages(" [export]") == plain  # from PyPI
     assert listed_packages(" [cluster]") - plain == {"python3-distributed"}
     assert listed_packages(" [linters] [cluster]") - plain == {"clang-format", "clang-tidy", "python3-distributed"}
 
 
 def cases_of(nightly):
     """What selects the cases of gtest, pytest, rostest and CTest."""
-    selection = str(SCRIPTS / "test_selection.sh")
+    selection = str(SCRIPTS / "shell" / "test_selection.sh")
     said = '"${GTEST_FILTER-all}|${PYTEST_CASES[*]}|${ROBOT_CONTROL_NIGHTLY-}|$NIGHTLY_LABEL"'
     done = shell("bash", "-euc", f'source "$0"; select_cases "$1"; echo {said}', selection, nightly)
     return done.stdout.strip().split("|")
@@ -185,7 +187,7 @@ def test_the_nightly_cases_are_left_out_unless_they_are_asked_for():
 def test_a_build_without_tests_switches_them_off_in_catkin(arguments, testing, tmp_path):
     """The demo's; always given, for CMake remembers the options of an earlier build."""
     script = 'source "$0"; cd "$1"; colcon() { echo "$@"; }; build_workspace "${@:2}"; cat build/colcon.log'
-    done = shell("bash", "-euc", script, str(SCRIPTS / "environment.sh"), str(tmp_path), *arguments)
+    done = shell("bash", "-euc", script, str(SCRIPTS / "shell" / "environment.sh"), str(tmp_path), *arguments)
     assert f"-DCATKIN_ENABLE_TESTING={testing}" in done.stdout.split()
     assert "build_workspace without_tests\n" in (SCRIPTS / "demo").read_text()
 

@@ -7,30 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from robot_control.common.run_log import Log
+from robot_control.common.signal_names import bits, bits_in, number_of
 
-GATE_BRAKE = 0  # GateVerdict::kBrake
-GATE_REASONS = (
-    "first_tick",
-    "no_permit",
-    "permit_expired",
-    "permit_brake",
-    "ramp_over",
-    "no_command",
-    "command_held",
-    "not_finite",
-    "checksum",
-    "future",
-    "effort_clamped",
-    "wrong_joint_count",
-    "controller_brake",
-    "unknown_mode",
-    "ramp_too_long",
-    "rate_clamped",
-    "speed_clamped",
-    "position_clamped",
-    "bad_sensors",
-)
-"""In the order of the bits of GateReason."""
+GATE_BRAKE = number_of("GateVerdict", "brake")
 
 
 @dataclass(frozen=True)
@@ -42,7 +21,7 @@ class Brake:
     cycles: int
     reasons: tuple[str, ...]  # of all its cycles
 
-    def describe(self, most: int = len(GATE_REASONS)) -> str:
+    def describe(self, most: int = len(bits("GateReason"))) -> str:
         """For a line of text, with at most so many reasons: 1 cycle, permit_expired."""
         named = ", ".join(self.reasons[:most]) + (", ..." if len(self.reasons) > most else "")
         return f"{self.cycles} cycle{'s' if self.cycles != 1 else ''}, {named or 'no reason given'}"
@@ -66,15 +45,8 @@ def brakes_in_drive(log: Log) -> tuple[Brake, ...]:
     found = []
     for begin, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1, strict=True):
         if passed[0] < begin <= asked[-1]:
-            bits = int(np.bitwise_or.reduce(np.nan_to_num(log["gate_reasons"][begin : end + 1]).astype(np.int64)))
+            reasons = int(np.bitwise_or.reduce(np.nan_to_num(log["gate_reasons"][begin : end + 1]).astype(np.int64)))
+            names = tuple(reason.name for reason in bits_in("GateReason", reasons))
             time = log["time"]
-            found.append(Brake(float(time[begin]), float(time[end]), int(end - begin + 1), _names(bits)))
+            found.append(Brake(float(time[begin]), float(time[end]), int(end - begin + 1), names))
     return tuple(found)
-
-
-def _names(bits: int) -> tuple[str, ...]:
-    return tuple(
-        GATE_REASONS[bit] if bit < len(GATE_REASONS) else f"reason {bit}"
-        for bit in range(bits.bit_length())
-        if bits >> bit & 1
-    )

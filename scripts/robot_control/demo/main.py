@@ -117,7 +117,10 @@ def _drive(seconds: float, out: Path) -> float:
         print("starting roscore, mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry")
         port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
         launch = Child(
-            ["roslaunch", "-p", port, "robot_control", "sim.launch", "telemetry:=true", f"out:={out}", f"bus:={BUS}"],
+            [
+                *("roslaunch", "-p", port, "robot_control", "sim.launch"),
+                *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}"),
+            ],
             out / "launch.log",
         )
         children.append(launch)

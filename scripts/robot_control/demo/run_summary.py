@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from robot_control.common.cause_names import STOP_CAUSES
+from robot_control.common.cause_names import causes_in
 from robot_control.common.run_log import Log, last
+from robot_control.common.signal_names import states
 from robot_control.demo.brakes import Brake, brakes_in_drive
 from robot_control.demo.loop_timing import Distribution, LoopTiming, loop_timing
 from robot_control.demo.tracking import RISE_LIMIT, SETTLE, NotSteadyError, Tracking, judge
@@ -20,9 +21,6 @@ from robot_control.demo.tracking import RISE_LIMIT, SETTLE, NotSteadyError, Trac
 BRAKES_SHOWN = 4
 WIDTH = 80
 """columns of the table"""
-
-SUPERVISOR_STATES = ("INIT", "READY", "DRIVE", "STOPPING", "STOPPED", "FAULT")
-"""In the order of enum SupervisorState."""
 
 
 @dataclass(frozen=True)
@@ -85,14 +83,13 @@ def summarize(log: Log, linear: float, angular: float, driven: float, stolen_sha
 
 def safety(log: Log) -> Safety:
     """States and causes in the log."""
-    states = log["supervisor_state"]
-    known = states[~np.isnan(states)].astype(int)
+    numbers = log["supervisor_state"]
+    known = numbers[~np.isnan(numbers)].astype(int)
     entered = [int(state) for i, state in enumerate(known) if i == 0 or state != known[i - 1]]
-    causes = int(np.bitwise_or.reduce(np.nan_to_num(log["permit_causes"]).astype(np.int64)))
     return Safety(
-        state=_state_name(last(states)),
+        state=_state_name(last(numbers)),
         states=tuple(_state_name(state) for state in entered),
-        causes=tuple(name for bit, name in enumerate(STOP_CAUSES) if causes >> bit & 1),
+        causes=tuple(causes_in(log["permit_causes"])),
     )
 
 
@@ -182,9 +179,10 @@ def _brake_lines(brakes: tuple[Brake, ...]) -> list[str]:
 
 
 def _state_name(state: float) -> str:
-    if math.isnan(state) or not 0 <= state < len(SUPERVISOR_STATES):
+    known = states("SupervisorState")
+    if math.isnan(state) or not 0 <= state < len(known):
         return "UNKNOWN"
-    return SUPERVISOR_STATES[int(state)]
+    return known[int(state)]
 
 
 def _finite(value: Any) -> Any:  # noqa: ANN401 - any JSON value

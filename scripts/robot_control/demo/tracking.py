@@ -22,6 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robot_control.common.run_log import BoolArray, FloatArray, Log
+from robot_control.common.signal_names import mask_of
+from robot_control.demo.brakes import GATE_BRAKE
 
 MEAN_TOLERANCE = 0.01
 CYCLE_TOLERANCE = 0.05
@@ -34,8 +36,7 @@ RISE_LIMIT = 2.0
 ROWS_NEEDED = 0.99
 """Share of the steady cycles whose truth must be in the log: what is not seen cannot be judged."""
 
-GATE_BRAKE = 0  # GateVerdict::kBrake
-GATE_LATE = 1 << 1 | 1 << 2 | 1 << 5  # GateReason: kGateNoPermit, kGatePermitExpired, kGateNoCommand
+GATE_LATE = mask_of("GateReason", "no_permit", "permit_expired", "no_command")
 
 
 class NotSteadyError(ValueError):

@@ -234,10 +234,13 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
                 f"{INERTIA_ERROR:.0%}: the log holds too little of it; drive more {remedy}, faster or longer"
             )
         if inertia.value <= 0:
-            raise UnfitError(
-                f"{named}: the inertia {name} comes out as {inertia:.3g} kg·m², must be > 0: torque and motion "
-                "contradict each other; look whether the joint's effort has the sign of its motion"
+            both = found["straight"].value <= 0 and found["turning"].value <= 0
+            cause = (
+                "torque and motion contradict each other; look whether the joint's effort has the sign of its motion"
+                if both
+                else f"the log holds too little of it; drive more {remedy}, faster or longer"
             )
+            raise UnfitError(f"{named}: the inertia {name} comes out as {inertia:.3g} kg·m², must be > 0: {cause}")
     friction = max(found["damping"].error * fastest, found["friction"].error)
     if not np.isfinite(friction):
         raise UnfitError(

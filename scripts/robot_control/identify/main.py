@@ -85,11 +85,11 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
     reason = hindrance(look)
     if reason:
         raise RefusedError(f"{reason}. Nothing was driven")
-    running = ""
+    running = None
     if telemetry:
         await_all(lambda: any(name in robot.logs for name in telemetry), signals)
-        running = next((robot.logs[name] for name in telemetry if name in robot.logs), "")
-        if not running:
+        running = next((robot.logs[name] for name in telemetry if name in robot.logs), None)
+        if running is None:
             raise RefusedError(f"{telemetry[0]} runs, but does not say where it writes; end it. Nothing was driven")
     with recording(running, settings.path, signals.going_on) as log:
         print(

@@ -10,11 +10,13 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import rospy
+from std_srvs.srv import SetBool
 
-from robot_control.common.run_log import FloatArray, read_log
+from robot_control.common.run_log import FloatArray, LogError, read_log, read_run
 
 NODE = "identify_telemetry"
 START_LIMIT = 20.0
@@ -25,8 +27,67 @@ SETTLE = 1.0
 """s after the last command; telemetry hands its rows on at 10 Hz"""
 
 
+BAG_SETTLE = 4.0
+"""s after the last command; a chunk of run.bag is written 2 s after its begin at the latest"""
+
+
 class RecordingError(RuntimeError):
     """There is no log; the message says why."""
+
+
+@dataclass(frozen=True)
+class RunningTelemetry:
+    """Of the robot, as it reports itself."""
+
+    node: str
+    path: str
+    """Of run.csv, which has every cycle, or, where there is none, of run.bag."""
+    records: bool
+    """run.bag holds the cycles of now."""
+
+
+class BagRecording:
+    """Rows of the run.bag of a telemetry from a moment on; which records all of them until they are read."""
+
+    def __init__(self, path: Path, telemetry: str, *, records: bool) -> None:
+        """`telemetry`: the node; `records`: it recorded before, and shall go on.
+
+        Raises:
+            RecordingError: it does not record.
+        """
+        self.path = path
+        self._records = records
+        self._record = rospy.ServiceProxy(f"{telemetry}/record", SetBool)
+        self._switch(on=True)
+        self._begin = rospy.get_time()
+
+    def read(self) -> dict[str, FloatArray]:
+        """What was written since.
+
+        Raises:
+            LogError: nothing.
+        """
+        time.sleep(BAG_SETTLE)
+        log = read_run(self.path)
+        wanted = log.ros_time >= self._begin if log.ros_time is not None else slice(None)
+        rows = {name: values[wanted] for name, values in log.columns.items()}
+        if not rows["cycle"].size:
+            raise LogError(f"{self.path}: no rows since {self._begin:.3f}")
+        return rows
+
+    def end(self) -> None:
+        """As before."""
+        if not self._records:
+            with contextlib.suppress(RecordingError):
+                self._switch(on=False)
+
+    def _switch(self, *, on: bool) -> None:
+        try:
+            answer = self._record(on)
+        except rospy.ServiceException as error:
+            raise RecordingError(f"{self._record.resolved_name} does not answer: {error}") from None
+        if not answer.success:
+            raise RecordingError(f"{self._record.resolved_name}: {answer.message}")
 
 
 class Recording:
@@ -54,17 +115,26 @@ class Recording:
 
 
 @contextlib.contextmanager
-def recording(running: str, config: str, going_on: Callable[[], bool]) -> Iterator[Recording]:
-    """Rows of `running`, the log of a telemetry that runs already; empty: starts one with the parameter file `config`.
+def recording(
+    running: RunningTelemetry | None, config: str, going_on: Callable[[], bool]
+) -> Iterator[Recording | BagRecording]:
+    """Rows of `running`, a telemetry that runs already; None: starts one with the parameter file `config`.
 
     Raises:
         RecordingError: no rows come.
     """
-    if running:
-        path = Path(running)
+    if running is not None:
+        path = Path(running.path)
         if not path.is_file():
             raise RecordingError(f"telemetry writes {path}, which is not on this machine: run identify.py there")
-        yield Recording(path)
+        if path.suffix == ".csv":
+            yield Recording(path)
+            return
+        bag = BagRecording(path, running.node, records=running.records)
+        try:
+            yield bag
+        finally:
+            bag.end()
         return
     folder = Path(tempfile.mkdtemp(prefix="identify-"))
     with (folder / "telemetry.txt").open("wb") as output:

@@ -24,6 +24,7 @@ def to_table(
         ("inertia straight, kg·m²", _number(nominal["straight"]), _measured(found.mean("straight")), ""),
         ("inertia turning, kg·m²", _number(nominal["turning"]), _measured(found.mean("turning")), ""),
         ("scrub while turning, N·m", "", _measured(found.mean("scrub")), ""),
+        *_ground_friction(found, now),
         ("delay beyond the bus, cycles", "0", _measured(found.delay), ""),
         ("feed_forward.mass, kg", _number(robot["mass"]), "", _number(forward["mass"])),
         ("feed_forward.yaw_inertia, kg·m²", _number(robot["yaw_inertia"]), "", _number(forward["yaw_inertia"])),
@@ -50,6 +51,19 @@ def to_table(
     return "\n".join(
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
     )
+
+
+def ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Estimate | None:
+    """Of treads that scrub, by their torque at friction 1 (robot/wheels/scrub.h); None: they do not."""
+    most = sum(float(wheel["scrub"]) for wheel in now) / len(now)
+    scrub = found.mean("scrub")
+    return Estimate(scrub.value / most, scrub.error / most) if most > 0 else None
+
+
+def _ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:
+    friction = ground_friction(found, now)
+    if friction is not None:
+        yield ("ground friction", "", _measured(friction), "found in every turn")
 
 
 def warnings(found: Identification, proposal: Proposal) -> list[str]:

@@ -12,6 +12,7 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.topic_sender import Sender
 from robot_control.identify.excitation_watch import Look, Pose
+from robot_control.identify.recorded_log import RunningTelemetry
 from robot_control.msg import SafetyStatus
 
 NEVER = -math.inf
@@ -22,7 +23,7 @@ class RunningRobot:
 
     def __init__(self, *, speaks: bool = True) -> None:
         """False: it only listens, and is no sender on cmd_vel."""
-        self.logs: dict[str, str] = {}  # telemetry node → path of its log
+        self.logs: dict[str, RunningTelemetry] = {}
         self._odometry: Odometry | None = None
         self._odometry_at = NEVER
         self._status: SafetyStatus | None = None
@@ -78,6 +79,8 @@ class RunningRobot:
 
     def _hear_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            for pair in status.values:
-                if pair.key == "log":
-                    self.logs["/" + status.name.lstrip("/")] = pair.value
+            values = {pair.key: pair.value for pair in status.values}
+            path = values.get("log") or values.get("bag")
+            if path:
+                node = "/" + status.name.lstrip("/")
+                self.logs[node] = RunningTelemetry(node, path, values.get("recording") == "1")

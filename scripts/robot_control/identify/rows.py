@@ -9,12 +9,13 @@ import numpy as np
 
 from robot_control.common.cause_names import causes_in
 from robot_control.common.run_log import BoolArray, FloatArray, Log, joint_names, last
+from robot_control.common.signal_names import mask_of, number_of
 
-EFFORT_MODE = 1  # JointMode
-PASSED, HELD = 1, 2  # GateVerdict: the command acts unchanged
-SATURATED = 1 << 7  # CommandReason
-CLAMPED = 1 << 10 | 1 << 15 | 1 << 16 | 1 << 17  # GateReason: effort, rate, speed, position
-SLIP = 1 << 1  # StateFlag
+EFFORT_MODE = number_of("JointMode", "effort")
+UNCHANGED = tuple(number_of("GateVerdict", name) for name in ("passed", "held"))
+SATURATED = mask_of("CommandReason", "saturated")
+CLAMPED = mask_of("GateReason", "effort_clamped", "rate_clamped", "speed_clamped", "position_clamped")
+SLIP = mask_of("StateFlag", "slip")
 SLIP_SHARE = 0.2
 """Of the driven cycles; a bump is no reason to refuse"""
 CLAMPED_SHARE = 0.02
@@ -76,8 +77,7 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
 
 
 def _driven(log: Log, joints: Sequence[str]) -> BoolArray:
-    verdict = log["gate_verdict"]
-    driven: BoolArray = (verdict == PASSED) | (verdict == HELD)
+    driven: BoolArray = np.isin(log["gate_verdict"], UNCHANGED)
     for joint in joints:
         driven &= log[f"{joint}_mode"] == EFFORT_MODE
         for column in ("position", "effort", "effort_command", "velocity_command"):

@@ -127,7 +127,7 @@ def propose(
     delay = round(found.delay.value)
     before = loop_of(now, found, forward["wheel_inertia"])
     after = loop_of(derived, found, forward["wheel_inertia"])
-    # One pid_kp for all wheels: the smallest that any of them asks for.
+    # One pid_kp for all wheels: the smallest that any of them requires.
     after = replace(after, kp=min(loop["kp"] for loop in derived), ki=min(loop["ki"] for loop in derived))
     for step in range(STEPS):
         part = STEP**step

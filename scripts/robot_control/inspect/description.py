@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,8 @@ from robot_control.parameter_layers import layered
 Description = dict[str, Any]  # keys: src/python/describe.h
 
 
-def describe(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> Description:
-    """Reads a URDF or .xacro file with the `robot:` block of a YAML file laid over it.
+def describe(urdf: str | PathLike[str], params: str | PathLike[str] | Mapping[str, Any] | None = None) -> Description:
+    """Reads a URDF or .xacro file with the `robot:` block of a YAML file, or of a nested dict, laid over it.
 
     Raises:
         RobotError: it cannot be driven, and why.
@@ -46,5 +47,7 @@ def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) 
     return standing
 
 
-def _arguments(urdf: str | PathLike[str], params: str | PathLike[str] | None) -> tuple[str, list[tuple[str, str]]]:
+def _arguments(
+    urdf: str | PathLike[str], params: str | PathLike[str] | Mapping[str, Any] | None
+) -> tuple[str, list[tuple[str, str]]]:
     return layered(params, Path(urdf).absolute())

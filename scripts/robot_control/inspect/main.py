@@ -10,6 +10,7 @@ from pathlib import Path
 from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.picture_file import check_picture
 from robot_control.inspect.description import Description, describe, mjcf, stand
 from robot_control.inspect.report import report
 
@@ -20,6 +21,8 @@ def main(arguments: list[str] | None = None) -> None:
 
     fallen = None
     try:
+        if options.picture is not None:
+            check_picture(options.picture)
         robot = describe(options.file, options.params)
         if options.mjcf is not None:
             write_text(options.mjcf, mjcf(options.file, options.params))
@@ -31,7 +34,7 @@ def main(arguments: list[str] | None = None) -> None:
             robot["standing"] = stand(options.file, options.params)
         except DriverError as error:
             fallen = error
-    except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:  # a format unknown to matplotlib
+    except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:
         sys.exit(f"inspect_robot.py: {fit_for_message(in_words(error))}")
     print(_json(robot) if options.json else report(robot))
     for written in (options.mjcf, options.picture):

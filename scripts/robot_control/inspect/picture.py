@@ -14,6 +14,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Wedge
 
+from robot_control.common.rotation import rotation
 from robot_control.inspect.rendering import Array, Part, View, Window, render
 from robot_control.inspect.shapes import ground_height, triangles_in_base
 
@@ -223,16 +224,8 @@ def _centre_of_gravity(axes: Axes, x: float, y: float, radius: float) -> None:
 
 def _triad(axes: Axes, view: View, origin: Array, orientation: list[float], length: float) -> None:
     """The axes of a frame: x red, y green, z blue. `orientation` is a quaternion x y z w."""
-    x, y, z, w = orientation
-    rotation = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
     start = view.project(origin)
-    for axis, colour in zip(rotation.T, ("#d62728", "#2ca02c", "#1f3fd6"), strict=True):
+    for axis, colour in zip(rotation(orientation).T, ("#d62728", "#2ca02c", "#1f3fd6"), strict=True):
         end = view.project(origin + length * axis)
         axes.plot((start[0], end[0]), (start[1], end[1]), color="white", linewidth=4, zorder=8, solid_capstyle="round")
         axes.plot((start[0], end[0]), (start[1], end[1]), color=colour, linewidth=2.2, zorder=9, solid_capstyle="round")

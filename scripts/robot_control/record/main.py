@@ -1,5 +1,6 @@
 """What `sim.launch record:=true` records, and where."""
 
+import argparse
 import os
 import sys
 from pathlib import Path
@@ -23,6 +24,7 @@ TOPICS = (
     "imu/data",
     "cmd_vel_out",
     "safety_status",
+    "robot_status",
     "ground_truth/odom",
     "/diagnostics",
     "/clock",
@@ -43,14 +45,16 @@ def record_command(arguments: list[str], environment: dict[str, str]) -> list[st
     """The rosbag command for `FOLDER` and the remappings that roslaunch appends.
 
     Raises:
-        SystemExit: no folder is named.
+        SystemExit: no folder is named, or help is asked for.
     """
-    folders = [argument for argument in arguments if ":=" not in argument]
-    if len(folders) != 1:
-        raise SystemExit("usage: record.py FOLDER")
+    parser = argparse.ArgumentParser(
+        prog="record.py", description="Records every topic of the interface table with rosbag; Ctrl-C ends it."
+    )
+    parser.add_argument("folder", metavar="FOLDER", help="for the bag; made where it does not exist")
+    folder = parser.parse_args([argument for argument in arguments if ":=" not in argument]).folder
     namespace = namespace_of(arguments, environment)
     names = [rosgraph.names.ns_join(namespace, topic) for topic in TOPICS]
-    prefix = Path(folders[0], namespace.strip("/"), "robot_control")
+    prefix = Path(folder, namespace.strip("/"), "robot_control")
     return ["rosbag", "record", f"--output-prefix={prefix}", *names]
 
 

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Sourced by the scripts beside it: where the repository is, whose tools are meant, how ROS is reached.
+# Sourced by the entry points in scripts/: where the repository is, whose tools are meant, how ROS is reached.
 
 set -euo pipefail
 
@@ -12,7 +12,7 @@ for argument in "$@"; do
   case $argument in -h | --help) usage; exit 0 ;; esac
 done
 
-REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 case $REPOSITORY in
   *[][[:space:]\;:\'\"\$\&\(\)\<\>\|\*\?\#\{\}\\\`\!]*)
     fail "the path of the checkout, '$REPOSITORY', has a blank or a special character in it, which catkin and make cannot bear; move it to a path without" ;;
@@ -27,7 +27,7 @@ LINTERS=$REPOSITORY/build/linters  # venv with ruff and mypy
 XACRO=$REPOSITORY/build/xacro      # venv with xacro; src/description/xacro.h looks for it
 
 # shellcheck source-path=SCRIPTDIR
-source "$REPOSITORY/scripts/build_progress.sh"
+source "$REPOSITORY/scripts/shell/build_progress.sh"
 
 # One compiler per processor, but no more than one per 2 GB: the optimiser needs about 1 GB on Eigen.
 compilers() {
