@@ -8,7 +8,7 @@ with two seeds, the second with faults of sensors, motors, battery, button and n
 absent is skipped; recording keeps its sums.
 
 The sums are of floating-point numbers: libm selects its routines by the processor's instructions, and the last bits
-differ between processor families. The sums are stored together with the family on which they were recorded, and mean
+may differ with them. The sums are stored together with the kind of processor on which they were recorded, and mean
 nothing on another.
 """
 
@@ -195,8 +195,8 @@ def faulty_name(robot: str) -> str:
     return f"ClosedLoop {robot}, seed {FAULTY_SEED}, faults"
 
 
-def processor_family(cpuinfo: str | None = None) -> str:
-    """Architecture, maker, family and the instructions by which libm selects its routines."""
+def processor(cpuinfo: str | None = None) -> str:
+    """Architecture, maker and the instructions by which libm selects its routines."""
     text = Path("/proc/cpuinfo").read_text() if cpuinfo is None else cpuinfo
 
     def field(name: str) -> str:
@@ -204,11 +204,11 @@ def processor_family(cpuinfo: str | None = None) -> str:
         return found[1] if found else "unknown"
 
     instructions = sorted({"fma", "avx2", "avx512f"} & set(field("flags").split()))
-    return " ".join([platform.machine(), field("vendor_id"), "family", field("cpu family"), *instructions])
+    return " ".join([platform.machine(), field("vendor_id"), *instructions])
 
 
 def recorded() -> tuple[str, dict[str, str]]:
-    """Processor family and sums of the checked-in file."""
+    """Kind of processor and sums of the checked-in file."""
     content = json.loads(SUMS.read_text())
     return content["processor"], content["sums"]
 
@@ -224,9 +224,9 @@ def sums(chosen: Mapping[str, Sum]) -> Iterator[tuple[str, str | None, str]]:
 
 def check() -> int:
     """Compares; prints one line per run. The exit code."""
-    family, expected = recorded()
-    if family != processor_family():
-        print(f"recorded on another processor family ({family}, here {processor_family()}): sums cannot be compared")
+    kind, expected = recorded()
+    if kind != processor():
+        print(f"recorded on another kind of processor ({kind}, here {processor()}): sums cannot be compared")
         return 2
     failed = 0
     for name, found, reason in sums(runs()):
@@ -242,14 +242,14 @@ def check() -> int:
 
 def record() -> int:
     """Writes the file of sums. The exit code."""
-    family, kept = recorded() if SUMS.is_file() else (processor_family(), {})
-    if family != processor_family():
+    kind, kept = recorded() if SUMS.is_file() else (processor(), {})
+    if kind != processor():
         kept = {}
     for name, found, reason in sums(runs()):
         print(f"{name}: {found or f'skipped, {reason}'}", flush=True)
         if found is not None:
             kept[name] = found
-    SUMS.write_text(json.dumps({"processor": processor_family(), "sums": kept}, indent=2) + "\n")
+    SUMS.write_text(json.dumps({"processor": processor(), "sums": kept}, indent=2) + "\n")
     return 0
 
 
