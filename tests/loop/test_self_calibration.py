@@ -1,0 +1,47 @@
+"""What the estimator learns of unequal wheels while the robot wanders at one speed, in virtual time.
+
+At one speed, a radius ratio ε and a bias of the gyro b turn the heading alike: ε v/B = b. Only a rest separates them.
+"""
+
+import pytest
+from robot_control import ClosedLoop
+from robot_control.report.figures import DEGRADED
+
+LEFT = 0.02
+"""Of the left radius, hidden in the plant."""
+RATIO = 1 / (1 + LEFT)
+SPEED = 0.5
+"""m/s."""
+CYCLES = 100
+"""Between two commands, as the system tests send them."""
+SEEDS = range(3)
+
+
+def wander(rest: int, seconds: int, seed: int):
+    """The last cycle after `rest` cycles at rest, then straight on and in curves by turns of 2 s."""
+    loop = ClosedLoop({"mujoco_plant": {"left_radius_error": LEFT}}, seed=seed)
+    loop.command(0.0, 0.0)
+    log = loop.step(rest)
+    for angular in ((0.0, 0.8, 0.0, -0.8) * seconds)[: seconds // 2]:
+        for _ in range(2000 // CYCLES):
+            loop.command(SPEED, angular)
+            log = loop.step(CYCLES)
+    return {name: column[-1] for name, column in log.items()}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(("seconds", "deviation"), [(24, 0.002), (60, 0.0005)])
+def test_a_robot_that_rested_learns_its_wheels(seconds, deviation, seed):
+    end = wander(rest=1000, seconds=seconds, seed=seed)
+    assert end["radius_ratio_deviation"] < deviation
+    assert end["radius_ratio"] == pytest.approx(RATIO, abs=3 * end["radius_ratio_deviation"])
+    assert not int(end["estimate_flags"]) & DEGRADED
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_robot_that_never_rested_claims_nothing_of_its_wheels(seed):
+    """60 ms are no rest: the state says that the bias is not known, and the deviation stays that of new tyres."""
+    end = wander(rest=60, seconds=60, seed=seed)
+    assert int(end["estimate_flags"]) & DEGRADED
+    assert end["radius_ratio"] == 1.0
+    assert end["radius_ratio_deviation"] > 0.009
