@@ -12,7 +12,10 @@ namespace {
 
 class PlantErrors : public PlantTest {
  protected:
-  PlantErrors() { parameters_.scene = kFlat; }
+  PlantErrors() {
+    parameters_.scene = kFlat;
+    parameters_.sensor_errors = ErrorLevel::kDataSheet;
+  }
 
   std::unique_ptr<MujocoPlant> erring() const {
     auto plant = std::make_unique<MujocoPlant>(read_robot(diffbot_urdf(), {}), parameters_, period_);

@@ -53,7 +53,10 @@ double correlation_bound(std::size_t count) {
 
 class SensorErrorsTest : public testing::Test {
  protected:
-  SensorErrorsTest() { parameters_.seed = 7; }
+  SensorErrorsTest() {
+    parameters_.seed = 7;
+    parameters_.sensor_errors = ErrorLevel::kDataSheet;
+  }
 
   SensorErrors errors() const { return {robot_, parameters_, period_}; }
 
@@ -90,7 +93,7 @@ class SensorErrorsTest : public testing::Test {
   double period_ = 0.001;
 };
 
-TEST_F(SensorErrorsTest, AreByDefaultThoseOfTheDataSheet) {
+TEST_F(SensorErrorsTest, HaveTheFiguresOfTheDataSheet) {
   constexpr double kGravity = 9.80665, kDegree = std::numbers::pi / 180;
   constexpr double kThreeDigits = 0.005, kTwoDigits = 0.05;
   const auto near = [](double value, double expected, double rounding) { EXPECT_NEAR(value / expected, 1, rounding); };

@@ -10,6 +10,8 @@ namespace {
 
 class TrueRobotTest : public testing::Test {
  protected:
+  TrueRobotTest() { parameters_.sensor_errors = ErrorLevel::kDataSheet; }
+
   RobotModel real() const { return true_robot(believed_, parameters_); }
 
   RobotModel believed_ = read_robot(diffbot_urdf(), {});

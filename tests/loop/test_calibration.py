@@ -12,7 +12,12 @@ from robot_control.calibrate.moves import Pilot, square, straight
 from robot_control.identify.excitation_watch import Pose
 
 LEFT, RIGHT, BASE = 0.012, 0.004, 0.02
-HIDDEN = {"left_radius_error": LEFT, "right_radius_error": RIGHT, "wheel_base_error": BASE}
+HIDDEN = {
+    "sensor_errors": "data_sheet",  # the fit is judged
+    "left_radius_error": LEFT,
+    "right_radius_error": RIGHT,
+    "wheel_base_error": BASE,
+}
 CYCLES = 20  # between two commands: the 50 Hz of wheel_odom
 SIDE = 4.0  # m
 WAYS = (True, False)

@@ -63,7 +63,7 @@ def test_a_set_that_would_break_a_limit_is_refused(values):
 
 # Derived gains tolerate 2 cycles of delay (docs/derivations.md): with 10 the torque alternates between its limits.
 def test_a_drive_that_is_later_than_its_gains_bear_is_warned_of_and_stopped():
-    loop = ClosedLoop(params={"mujoco_plant": {"actuator_delay": 10}})
+    loop = ClosedLoop(params={"mujoco_plant": {"sensor_errors": "data_sheet", "actuator_delay": 10}})
     log = loop.run(4.0, (1.0, 0.0))
     assert causes_in(log["permit_causes"]) == ["torque_oscillation"]
     warned, stopped = (int(np.argmax(log[name] > 0)) for name in ("permit_warnings", "permit_causes"))
@@ -73,7 +73,7 @@ def test_a_drive_that_is_later_than_its_gains_bear_is_warned_of_and_stopped():
 
 @pytest.mark.parametrize("counts", [64, 4096, *(pytest.param(n, marks=pytest.mark.nightly) for n in (200, 512, 1000))])
 def test_derived_gains_shake_nothing_behind_any_encoder(counts):
-    loop = ClosedLoop(params={"mujoco_plant": {"encoder_resolution": counts}})
+    loop = ClosedLoop(params={"mujoco_plant": {"sensor_errors": "data_sheet", "encoder_resolution": counts}})
     for command in ((0.5, 0.2), (0.05, 0.0), (1.0, 0.0), (0.0, 2.0), (0.0, 0.0)):
         log = loop.run(2.0, command)
         assert causes_in(log["permit_causes"]) == []

@@ -25,6 +25,7 @@ class CalibrationTest(RobotTestCase):
         cls.file = cls.folder / "learned.yaml"
         cls.estimator: dict[str, str] = {}
         rospy.set_param(f"{PLANT}/left_radius_error", LEFT)
+        rospy.set_param(f"{PLANT}/sensor_errors", "data_sheet")  # what is learned is kept, however well it is known
         rospy.set_param(f"{ESTIMATOR}/calibration_file", str(cls.file))
         rospy.Subscriber("/diagnostics", DiagnosticArray, cls.receive_diagnostics)
         super().setUpClass()
@@ -33,6 +34,7 @@ class CalibrationTest(RobotTestCase):
     def tearDownClass(cls) -> None:
         super().tearDownClass()
         rospy.delete_param(f"{PLANT}/left_radius_error")
+        rospy.delete_param(f"{PLANT}/sensor_errors")
         rospy.delete_param(f"{ESTIMATOR}/calibration_file")
         shutil.rmtree(cls.folder)
 
