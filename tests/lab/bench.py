@@ -94,7 +94,7 @@ def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict
         from lab.odometry import bench as odometry
 
         count = given.runs or odometry.SEEDS
-        return odometry.bench(given.first, count, say, plots=given.plots, runner=runner)
+        return odometry.bench(given.first, count, say, given.errors, plots=given.plots, runner=runner)
     from lab import tuning
 
     return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, say, runner)
@@ -210,7 +210,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--share", type=_share, default=1.0, help="driving: of the two hours; record: of the ten minutes"
     )
-    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving: of the sensors")
+    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this machine alone")
@@ -228,6 +228,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     alone = [name for name in given.names if name not in ON_CLUSTERS]
     if given.scheduler is not None and alone:
         parser.error(f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can")
+    if given.markdown and given.errors != LEVELS[0]:
+        parser.error(f"--markdown writes the tables of {LEVELS[0]}, not of --errors {given.errors}")
     if given.scheduler is not None:
         try:
             check_address(given.scheduler, insecure=given.insecure)

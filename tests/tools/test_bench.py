@@ -68,6 +68,13 @@ def test_a_file_that_cannot_be_written_to_is_refused_before_anything_is_measured
     assert "cannot be written to" in capsys.readouterr().err
 
 
+def test_the_tables_of_the_documentation_are_of_one_level_of_errors(capsys):
+    assert bench.parse(["odometry", "--errors", "field"]).errors == "field"
+    with pytest.raises(SystemExit):
+        bench.parse(["odometry", "--errors", "field", "--markdown"])
+    assert "--markdown writes the tables of data_sheet, not of --errors field" in capsys.readouterr().err
+
+
 def test_an_unknown_name_is_refused(capsys):
     with pytest.raises(SystemExit):
         bench.parse(["warp"])

@@ -163,7 +163,20 @@ def test_only_slip_above_a_fifth_has_to_be_flagged_and_only_below_a_twentieth_it
     truth.slip[:30, 0] = 0.3
     truth.slip[30:90] = 0.01
     ours.slip[20:40] = True
-    assert notice(ours, truth) == Notice(slipping=30, noticed=10, rolling=60, alarms=10, rows=len(truth.linear))
+    rows = len(truth.linear)
+    assert notice(ours, truth) == Notice(30, 10, rolling=60, alarms=10, rows=rows, spins=1, reported=1)
+
+
+def test_a_spin_lasts_a_fifth_of_a_second_and_is_reported_by_a_flag_within_it():
+    recording = drive(LINE)
+    ours = _ours(len(recording.index))
+    truth = truth_of(recording)
+    for begin, end in ((10, 29), (50, 70), (100, 120), (150, 180)):  # of 10 ms: the first one is too short
+        truth.slip[begin:end, 1] = 0.3
+    for row in (20, 60, 120):  # the last one comes after the third slip
+        ours.slip[row] = True
+    noticed = notice(ours, truth)
+    assert (noticed.spins, noticed.reported) == (3, 1)
 
 
 def _ours(rows):
@@ -224,6 +237,22 @@ def test_runs_in_which_wheels_do_well_do_not_count_as_missed():
 def test_each_broken_promise_is_reported(broken, name):
     promises = all_promises([run_of(**broken)])
     assert not kept(promises)[name]
+
+
+@pytest.mark.parametrize(
+    ("broken", "name"),
+    [
+        ({"scenario": "umbmark", "ours": 0.031}, "UMBmark, mean"),
+        ({"notice": Notice(100, 95, 1000, 10, 2000, 10, 5)}, "spins of 0.2 s or more reported"),
+        ({"ours": 1.2}, "slip, worst over raw wheels"),
+        ({"notice": Notice(100, 95, 1000, 31, 2000, 10, 6)}, "false alarms, slip"),
+    ],
+)
+def test_each_broken_promise_of_the_field_is_reported(broken, name):
+    notices = {"notice": Notice(100, 95, 1000, 10, 2000, 10, 6)}
+    sound = [run_of("umbmark", 0.029, **notices), run_of("slip", **notices)]
+    assert all(kept(all_promises(sound, "field")).values())
+    assert not kept(all_promises([run_of(**{**notices, **broken})], "field"))[name]
 
 
 def test_alarms_are_counted_over_all_runs_of_a_scenario():

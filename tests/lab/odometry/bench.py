@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from lab.drives.sensor_errors import LEVELS
 from lab.odometry.judge import Run, run
 from lab.odometry.promises import all_promises, of
 from lab.odometry.scenarios import SCENARIOS
@@ -29,28 +30,29 @@ def all_runs(
     seeds: Sequence[int],
     scenarios: Sequence[str],
     say: Callable[[str], None],
+    level: str = "data_sheet",
     *,
     pictured: int | None = None,
     cache: Path | None = None,
     runner: Runner | None = None,
 ) -> list[Run]:
-    """In the order of scenarios and seeds; `pictured`: the seed whose runs keep what a plot needs; `cache`: folder of
+    """In the order of scenarios and seeds; `level`: one of sensor_errors.LEVELS; `pictured`: the seed whose runs keep what a plot needs; `cache`: folder of
     recordings, taken where they are there.
     """
     order = sorted(scenarios, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else 9)
     work = [(scenario, seed) for scenario in order for seed in seeds]
     runner = runner or Processes()
-    runs = list(runner.outcomes(partial(_one, pictured=pictured, cache=cache), work, say))
+    runs = list(runner.outcomes(partial(_one, level=level, pictured=pictured, cache=cache), work, say))
     numbers = {name: number for number, name in enumerate(SCENARIOS)}
     return sorted(runs, key=lambda each: (numbers[each.scenario], each.seed))
 
 
-def _one(work: tuple[str, int], pictured: int | None, cache: Path | None) -> Run:
+def _one(work: tuple[str, int], level: str, pictured: int | None, cache: Path | None) -> Run:
     scenario, seed = work
-    return run(scenario, seed, picture=seed == pictured, cache=cache)
+    return run(scenario, seed, level, picture=seed == pictured, cache=cache)
 
 
-def result_of(runs: Sequence[Run], seconds: float) -> dict[str, Any]:
+def result_of(runs: Sequence[Run], seconds: float, level: str = "data_sheet") -> dict[str, Any]:
     """As the benchmark programs print it; `seconds` of wall-clock time."""
     rows = [
         {
@@ -62,7 +64,7 @@ def result_of(runs: Sequence[Run], seconds: float) -> dict[str, Any]:
             "ratio": float(promise.value / promise.bound),
             "kept": bool(promise.kept),
         }
-        for promise in all_promises(runs)
+        for promise in all_promises(runs, level)
     ]
     for scenario in SCENARIOS:
         pitch = [each.pitch for each in of(runs, scenario)]
@@ -93,6 +95,7 @@ def bench(
     first: int,
     count: int,
     say: Callable[[str], None],
+    level: str = "data_sheet",
     *,
     plots: Path | None = None,
     cache: Path | None = None,
@@ -105,15 +108,15 @@ def bench(
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     pictured = None if plots is None else first
-    runs = all_runs(range(first, first + count), scenarios, say, pictured=pictured, cache=cache, runner=runner)
+    runs = all_runs(range(first, first + count), scenarios, say, level, pictured=pictured, cache=cache, runner=runner)
     if plots is not None:
         from lab.odometry.plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
 
         draw_all(runs, plots)
-    broken = [promise for promise in all_promises(runs) if not promise.kept]
+    broken = [promise for promise in all_promises(runs, level) if not promise.kept]
     for promise in broken:
         say(str(promise))
-    return result_of(runs, time.monotonic() - began), not broken
+    return result_of(runs, time.monotonic() - began, level), not broken
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -122,11 +125,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--runs", type=int, default=SEEDS, help="number of seeds")
     parser.add_argument("--only", default=",".join(SCENARIOS), help="scenarios, with commas between")
+    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")
     parser.add_argument("--plots", type=Path, help="folder for the pictures")
     parser.add_argument("--cache", type=Path, help="folder of recordings: taken from there, or put there")
     given = parser.parse_args(arguments)
     result, good = bench(
-        given.first, given.runs, print, plots=given.plots, cache=given.cache, scenarios=given.only.split(",")
+        given.first,
+        given.runs,
+        print,
+        given.errors,
+        plots=given.plots,
+        cache=given.cache,
+        scenarios=given.only.split(","),
     )
     print("\n".join(result["table"]))
     for row in result["rows"]:

@@ -17,6 +17,8 @@ from lab.odometry.tested_estimator import Ours
 from lab.odometry.truth import Array, Truth, wrapped
 
 SLIPPING, ROLLING = 0.2, 0.05
+SPIN = 0.2  # s
+ROW = 0.01  # s, between two rows of truth
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,8 @@ class Notice:
     rolling: int
     alarms: int  # of the rolling ones
     rows: int  # all of them
+    spins: int = 0  # slips of SPIN s or more
+    reported: int = 0  # of the spins: flagged at any time
 
 
 def pose_error(ours: Ours, truth: Truth) -> Array:
@@ -65,10 +69,14 @@ def notice(ours: Ours, truth: Truth) -> Notice:
     """How long slip was there, and noticed."""
     slipping = (truth.slip > SLIPPING).any(axis=1)
     rolling = (truth.slip < ROLLING).all(axis=1)
+    edges = np.flatnonzero(np.diff(slipping.astype(int), prepend=0, append=0))
+    spins = [(begin, end) for begin, end in edges.reshape(-1, 2) if end - begin >= round(SPIN / ROW)]
     return Notice(
         slipping=int(slipping.sum()),
         noticed=int((slipping & ours.slip).sum()),
         rolling=int(rolling.sum()),
         alarms=int((rolling & ours.slip).sum()),
         rows=len(rolling),
+        spins=len(spins),
+        reported=sum(bool(ours.slip[begin:end].any()) for begin, end in spins),
     )

@@ -3,7 +3,8 @@
     wheel radii    left (1 + e), right (1 − e),  e ~ N(0, 0.5 %): their mean, which wheels and IMU do not show, is exact
     wheel base     1 + N(0, 2 %)
     gyro           bias N(0, 0.1 °/s), each axis; scale 1 + U(−0.1 %, 0.1 %), every axis the same
-    all else       those of the data sheet: encoder of 4096 counts, noise, walks and accelerometer bias of a BMI088
+    all else       by the level, data_sheet or field: encoder of 4096 counts, noise, walks and accelerometer bias of a
+                   BMI088; field: also what it adds by default (docs/simulation.md)
 
 The radii's and the base's are those of Borenstein & Feng, "Measurement and Correction of Systematic Odometry Errors in
 Mobile Robots", IEEE Trans. Robotics and Automation 12(6), 1996, in kind: unequal wheels, an uncertain base.
@@ -35,7 +36,6 @@ class Errors:
     def plant(self) -> dict[str, Any]:
         """Parameters of `mujoco_plant`."""
         return {
-            "sensor_errors": "data_sheet",
             "left_radius_error": self.left_radius,
             "right_radius_error": self.right_radius,
             "wheel_base_error": self.wheel_base,

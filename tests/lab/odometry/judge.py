@@ -60,17 +60,21 @@ class Run:
     picture: Picture | None = None
 
 
-def run(scenario: str, seed: int, *, picture: bool = False, cache: Path | None = None) -> Run:
-    """Drives, estimates and compares. `cache`: folder in which the recording is looked for, and kept."""
-    return judge(recorded(scenario, seed, cache), picture=picture)
+def run(
+    scenario: str, seed: int, level: str = "data_sheet", *, picture: bool = False, cache: Path | None = None
+) -> Run:
+    """Drives, estimates and compares. `level`: one of sensor_errors.LEVELS. `cache`: folder in which the recording is
+    looked for, and kept.
+    """
+    return judge(recorded(scenario, seed, level, cache), picture=picture)
 
 
-def recorded(scenario: str, seed: int, cache: Path | None) -> Recording:
+def recorded(scenario: str, seed: int, level: str, cache: Path | None) -> Recording:
     """Out of the cache, else driven."""
-    path = None if cache is None else cache / f"{scenario}_{seed}.npz"
+    path = None if cache is None else cache / f"{scenario}_{seed}_{level}.npz"
     if path is not None and path.exists():
         return load_recording(path)
-    recording = record(draw_trial(scenario, seed))
+    recording = record(draw_trial(scenario, seed, level))
     if path is not None:
         recording.save(path)
     return recording

@@ -58,8 +58,10 @@ def yaws(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
     return np.rad2deg([run.yaw[method] for run in of(runs, scenario)])
 
 
-def all_promises(runs: Sequence[Run]) -> list[Promise]:
-    """Of the scenarios that there are runs of."""
+def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise]:
+    """Of the scenarios that there are runs of; of sensors that err more than their data sheet says, those of the field."""
+    if level != "data_sheet":
+        return field(runs)
     there = {run.scenario for run in runs}
     promises = []
     for scenario, part in {
@@ -71,6 +73,22 @@ def all_promises(runs: Sequence[Run]) -> list[Promise]:
         if scenario in there:
             promises += part(runs)
     return promises + false_alarms(runs) + never_worse(runs)
+
+
+def field(runs: Sequence[Run]) -> list[Promise]:
+    """Of sensors that err as in the field."""
+    promises = []
+    if of(runs, "umbmark"):
+        promises.append(Promise("UMBmark, mean", 1e3 * positions(runs, "umbmark").mean(), 30, "mm"))
+    if of(runs, "slip"):
+        notices = [run.notice for run in of(runs, "slip")]
+        spins, reported = sum(each.spins for each in notices), sum(each.reported for each in notices)
+        worst = float((positions(runs, "slip") / positions(runs, "slip", RAW)).max())
+        promises += [
+            Promise("spins of 0.2 s or more reported", 100 * reported / max(1, spins), 60, "% of spins", least=True),
+            Promise("slip, worst over raw wheels", worst, 1.1, ""),
+        ]
+    return promises + false_alarms(runs)
 
 
 def umbmark(runs: Sequence[Run]) -> list[Promise]:

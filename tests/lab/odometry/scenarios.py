@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from lab.drives.sensor_errors import plant_parameters
 from lab.odometry import drives
 from lab.odometry.drives import FIRST_STAND, Draft
 from lab.odometry.errors import Errors, draw_errors
@@ -51,15 +52,15 @@ SCENARIOS: dict[str, Callable[[Draft], None]] = {
 }
 
 
-def draw_trial(scenario: str, seed: int) -> Trial:
-    """The run of that name and seed."""
+def draw_trial(scenario: str, seed: int, level: str = "data_sheet") -> Trial:
+    """The run of that name and seed, with sensors that err as `level` says, one of sensor_errors.LEVELS."""
     number = list(SCENARIOS).index(scenario)
     draft = Draft(np.random.default_rng([SCENARIO_STREAM, number, seed]), kind=seed)
     draft.program.stand(FIRST_STAND)
     SCENARIOS[scenario](draft)
     errors = draw_errors(seed)
     tilt = float(draft.plant.get("slope", 0.0))
-    plant = {**errors.plant(), **draft.plant}
+    plant = {**plant_parameters(level), **errors.plant(), **draft.plant}
     params = {"mujoco_plant": plant, "diff_drive_controller": draft.controller, "safety_monitor": draft.safety}
     up = (float(np.sin(tilt)), 0.0, float(np.cos(tilt)))
     plant_seed = len(SCENARIOS) * seed + number
