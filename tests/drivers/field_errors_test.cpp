@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "constants.h"
@@ -301,6 +302,22 @@ TEST_F(FieldPlant, TheCentreOfGravityIsOff) {
   const double off = parameters_.centre_of_gravity_error * made_.wheel_base;
   EXPECT_NEAR(field[0] - described[0], off, 1e-4) << "but for the lean of the robot";
   EXPECT_NEAR(field[1] - described[1], off, 1e-4);
+}
+
+// Else the noise of one sample would be the bias that a short rest shows.
+TEST(FieldErrors, BeginWithWhatTheImuMeasuredBefore) {
+  MujocoPlantParameters parameters;
+  parameters.sensor_errors = ErrorLevel::kField;
+  parameters.imu_delay = 0.05;
+  parameters.imu_jitter = 0;
+  SensorErrors errors(two_wheels(), parameters, kStep);
+  std::set<double> rates;
+  for (int i = 0; i < 50; ++i) {
+    Measurement standing;
+    errors.step(standing);
+    rates.insert(standing.imu.angular_velocity[2]);
+  }
+  EXPECT_EQ(rates.size(), 50u);
 }
 
 TEST(FieldErrors, NeverAllocate) {

@@ -25,15 +25,17 @@ class LateSamples {
  public:
   /// `delay`, `jitter` ≥ 0, `period` > 0, in s.
   LateSamples(double delay, double jitter, double period, ErrorStream stream)
-      : delay_(delay / period),
-        jitter_(jitter / period),
-        stream_(stream),
-        on_the_way_(static_cast<std::size_t>(std::ceil(delay_ + kMost * jitter_)) + 2) {}
+      : delay_(delay / period), jitter_(jitter / period), stream_(stream), on_the_way_(longest() + 2) {}
 
   void reset(std::uint64_t seed) {
     random_.seed(seed, stream_);
     cycle_ = sent_ = arrived_ = 0;
     last_arrival_ = 0;
+  }
+
+  /// Cycles after which a sample has arrived for certain; 0: all are on time.
+  std::size_t longest() const noexcept {
+    return delay_ == 0 && jitter_ == 0 ? 0 : static_cast<std::size_t>(std::ceil(delay_ + kMost * jitter_));
   }
 
   /// In goes the sample of this cycle, out comes what the driver reports, in its place.

@@ -91,13 +91,26 @@ void SensorErrors::make_late(Measurement& measurement) noexcept {
   }
 }
 
-void SensorErrors::step(Measurement& measurement) noexcept {
-  if (level_ == ErrorLevel::kIdeal) return;
+void SensorErrors::disturb(Measurement& measurement) noexcept {
   if (level_ == ErrorLevel::kField) vibration_.step(measurement);
-  if (count_ > 0) encode(measurement);
   for (double& rate : measurement.imu.angular_velocity) rate *= gyro_scale_;
   gyro_.step(measurement.imu.angular_velocity);
   accelerometer_.step(measurement.imu.linear_acceleration);
+}
+
+void SensorErrors::begin(const Measurement& standing) noexcept {
+  for (std::size_t cycle = late_imu_.longest(); cycle > 0; --cycle) {
+    Measurement before = standing;
+    disturb(before);
+    late_imu_.step(before.imu);
+  }
+}
+
+void SensorErrors::step(Measurement& measurement) noexcept {
+  if (level_ == ErrorLevel::kIdeal) return;
+  if (first_ && level_ == ErrorLevel::kField) begin(measurement);
+  disturb(measurement);
+  if (count_ > 0) encode(measurement);
   if (level_ == ErrorLevel::kField) make_late(measurement);
   if (first_) delay_.fill(measurement);
   delay_.step(measurement);

@@ -22,7 +22,8 @@
 /// the noise and twice the work.
 ///
 /// In the field a moving robot shakes both (vibration.h), and the samples of the IMU, of the encoders where asked for,
-/// arrive late and at irregular times (late_samples.h).
+/// arrive late and at irregular times (late_samples.h). The IMU has measured the standing robot before a run begins, so
+/// that what arrives in the first cycles are samples of that time.
 ///
 /// Then all samples are `sensor_delay` cycles late together, under the head of the present cycle; until there is one
 /// so old, the first one comes.
@@ -86,6 +87,8 @@ class SensorErrors {
 
  private:
   void encode(Measurement& measurement) noexcept;
+  void disturb(Measurement& measurement) noexcept;   ///< gyro and accelerometer
+  void begin(const Measurement& standing) noexcept;  ///< before the first cycle
   void make_late(Measurement& measurement) noexcept;
 
   ErrorLevel level_;
