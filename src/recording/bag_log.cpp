@@ -37,6 +37,11 @@ BagLog::BagLog(LogFolder& folder, LogHeader header, const TelemetryParameters& p
   begin_bag();
 }
 
+void BagLog::set_header(LogHeader header) {
+  header.part = header_.part;
+  header_ = std::move(header);
+}
+
 void BagLog::begin_bag() {
   const std::string path = folder_.begin(LogKind::kBag);
   bag_begin_ns_ = 0;

@@ -39,6 +39,9 @@ class BagLog final : public RowLog {
   /// ROS time − stamps; 0 where stamps are ROS time (lockstep).
   void set_time_offset(std::int64_t offset_ns) noexcept { offset_ns_ = offset_ns; }
 
+  /// What the bags that begin from now on begin with; joints and period stay.
+  void set_header(LogHeader header);
+
   /// Rows that were lost on the way here, since the beginning.
   void set_lost(std::uint64_t rows) noexcept { lost_before_ = rows; }
 

@@ -183,6 +183,21 @@ TEST_F(ABagLog, IsSplitByTimeInFrontOfTheSnapshotsOfAllLaws) {
   }
 }
 
+TEST_F(ABagLog, BeginsEachPartWithTheHeaderOfThatTime) {
+  parameters.telemetry.split_time = 2;
+  open();
+  drive_on(1500);
+  LogHeader later = log_header(parameters, loop.robot());
+  later.parameters = "other: 1\n";
+  log->set_header(later);
+  drive_on(2500);
+  log->close();
+  ASSERT_THAT(names(), ElementsAre("run.1.bag", "run.bag"));
+  EXPECT_EQ(TraceReader(path("run.1.bag")).header().parameters, log_header(parameters, loop.robot()).parameters);
+  EXPECT_EQ(TraceReader(path()).header().parameters, later.parameters);
+  EXPECT_EQ(TraceReader(path()).header().part, 1u);
+}
+
 TEST_F(ABagLog, IsSplitWithoutSnapshotsWhereNoneCome) {
   parameters.telemetry.split_time = 2;
   open();

@@ -177,6 +177,23 @@ TEST_F(ABlackBoxKeeper, SavesWhatWasBeforeAStopAndFiveSecondsAfterItAndKeepsTheN
   EXPECT_THAT(names(), UnorderedElementsAre("ring", "stop.2.bag", "stop.3.bag"));
 }
 
+TEST_F(ABlackBoxKeeper, SavesWithTheHeaderThatHeldWhereTheRingBegins) {
+  const auto keeper = start();
+  LogHeader later = log_header(drive_parameters(), loop.robot());
+  later.parameters = "other: 1\n";
+  drive_on(*keeper, 500);
+  keeper->poll(now_ns);
+  keeper->set_header(later);
+  for (int second = 0; second < 12; ++second) {  // more than the ring holds
+    keeper->poll(now_ns);
+    drive_on(*keeper, 1000);
+  }
+  loop.e_stop();
+  drive_on(*keeper, 100);
+  keeper->finish();
+  EXPECT_EQ(TraceReader(folder.path() / "box" / "stop.1.bag").header().parameters, later.parameters);
+}
+
 TEST_F(ABlackBoxKeeper, SavesAtTheNextStartWhatATelemetryLeftThatWasKilled) {
   for (int i = 0; i < 3; ++i) drive_on(*start(), 300);  // not finished
   const auto keeper = start();

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import rospy
 import rostest
+import yaml
 from dynamic_reconfigure.client import Client
+from robot_control._robot_control import BagError, TraceError, read_run_header
 from robot_control.msg import SafetyStatus
 from robot_control.srv import SetParameters
 from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
@@ -25,7 +27,7 @@ class SetParametersTest(RobotTestCase):
     def setUpClass(cls) -> None:
         super().setUpClass()
         cls.folder = tempfile.TemporaryDirectory()
-        cls.telemetry = Program("telemetry", f"_directory:={cls.folder.name}")
+        cls.telemetry = Program("telemetry", f"_directory:={cls.folder.name}", "_record:=always", "_split_time:=2")
 
     @classmethod
     def tearDownClass(cls) -> None:
@@ -78,6 +80,19 @@ class SetParametersTest(RobotTestCase):
             self.assertEqual({float(row["max_linear_jerk"]) for row in self.rows(number)}, {jerk})
         self.assertLess(int(self.rows(first)[-1]["cycle"]), int(self.rows(second)[0]["cycle"]))
         self.accept("{pid_kd: 0.0}")
+
+    def test_the_next_file_of_the_log_begins_with_the_values_in_force(self) -> None:
+        self.accept("{max_linear_jerk: 9.5, feed_forward: {mass: 13.5}}")
+        wait_for("a file that begins with them", lambda: self.header_holds(9.5, 13.5))
+
+    def header_holds(self, jerk: float, mass: float) -> bool:
+        try:
+            header = read_run_header(str(Path(self.folder.name, "run.bag")))
+        except (BagError, TraceError):  # it has just begun
+            return False
+        controller = yaml.safe_load(header["parameters"])[CONTROLLER]
+        mass_there = controller.get("feed_forward", {}).get("mass")
+        return (controller.get("max_linear_jerk"), mass_there) == (jerk, mass)
 
     def test_a_set_is_refused_whole_with_every_reason(self) -> None:
         rospy.delete_param(f"{CONTROLLER}/max_linear_speed")

@@ -1,10 +1,13 @@
 #include "bridge/nodes/telemetry_node.h"
 
+#include <ros/master.h>
 #include <ros/ros.h>
 
 #include <atomic>
 #include <filesystem>
+#include <mutex>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "bridge/messages/simulation_messages.h"
@@ -12,12 +15,14 @@
 #include "bridge/startup/setup.h"
 #include "files/ascii.h"
 #include "rt/thread_priority.h"
+#include "runtime/log_header.h"
 #include "runtime/processes/telemetry_process.h"
 
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kDrainPeriod = 2'000'000;          // ns; what the black box may miss after a crash
+constexpr std::int64_t kDrainPeriod = 2'000'000;  // ns; what the black box may miss after a crash
+constexpr double kLookSeconds = 1;
 constexpr std::int64_t kLockstepDrainPeriod = 1'000'000;  // ns; there, a full ring holds the loop up
 
 /// The header of a log holds what every node has read: its private parameters, too. Of one whose parameters are
@@ -43,7 +48,8 @@ Parameters with_blocks_of_other_nodes(Parameters parameters) {
 class TelemetryNode final : public Node {
  public:
   explicit TelemetryNode(const Setup& setup)
-      : lockstep_(setup.parameters.loop.clock == ClockMode::kLockstep),
+      : setup_(setup),
+        lockstep_(setup.parameters.loop.clock == ClockMode::kLockstep),
         precedes_(!lockstep_ && setup.parameters.loop.realtime != RealtimePolicy::kOff),
         quota_(setup.parameters.telemetry.quota),
         process_(with_blocks_of_other_nodes(setup.parameters), setup.robot, setup.bus) {}
@@ -57,12 +63,19 @@ class TelemetryNode final : public Node {
     }
     ros::NodeHandle own("~");
     record_ = own.advertiseService("record", &TelemetryNode::record, this);
+    look_ = own.createWallTimer(ros::WallDuration(kLookSeconds),
+                                [this](const ros::WallTimerEvent&) { read_parameters_again(); });
   }
   void poll() override { process_.poll(); }
   void publish() override {
     // From the first call on: what other programs hold up is missing in the black box after a crash.
     if (std::exchange(precedes_, false)) precede_ordinary_threads();
     process_.drain();
+    parameter_changes_.store(process_.parameter_changes());
+    if (const std::lock_guard lock(header_mutex_); header_) {
+      process_.set_header(*header_);
+      header_.reset();
+    }
     for (const std::string& path : process_.take_removed()) {
       ROS_WARN("removed %s, the oldest log: telemetry.quota = %g GB", path.c_str(), quota_);
     }
@@ -123,6 +136,17 @@ class TelemetryNode final : public Node {
     return std::filesystem::absolute(path).lexically_normal().string();
   }
 
+  /// Twice for each change: the controller computes with new values before the server has them. A callback thread: it
+  /// may wait for the master.
+  void read_parameters_again() {
+    const std::uint64_t changes = parameter_changes_.load();
+    if (changes == changes_followed_ || !ros::master::check()) return;
+    LogHeader header = log_header(with_blocks_of_other_nodes(setup_.parameters), setup_.robot);
+    if (std::exchange(changes_read_, changes) == changes) changes_followed_ = changes;
+    const std::lock_guard lock(header_mutex_);
+    header_ = std::move(header);
+  }
+
   bool record(msg::SetBoolRequest& request, msg::SetBoolResponse& response) {
     const bool on = request.data != 0;
     const bool there = !process_.bag_path().empty();
@@ -135,13 +159,20 @@ class TelemetryNode final : public Node {
     return true;
   }
 
+  const Setup& setup_;
   bool lockstep_;
   bool precedes_;         ///< this thread shall, and does not yet
   double quota_;          ///< GB
   std::string reported_;  ///< problem
   std::atomic<bool> requested_{false};
-  ros::ServiceServer record_;
   TelemetryProcess process_;
+  std::atomic<std::uint64_t> parameter_changes_{0};
+  std::uint64_t changes_read_ = 0;      ///< once
+  std::uint64_t changes_followed_ = 0;  ///< and again
+  std::mutex header_mutex_;
+  std::optional<LogHeader> header_;  ///< for the ordinary thread
+  ros::ServiceServer record_;
+  ros::WallTimer look_;
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace robot_control {
 
 /// Of a record; the first four as TraceRing.
-enum class BlackBoxKind : std::uint32_t { kDriver, kEstimator, kController, kMonitor, kSnapshot, kState };
+enum class BlackBoxKind : std::uint32_t { kDriver, kEstimator, kController, kMonitor, kSnapshot, kState, kHeader };
 
 /// Of the records that follow.
 struct BlackBoxState {
@@ -41,6 +41,11 @@ class BlackBox {
 
   /// BlackBoxState of all that follows.
   void add_state(std::int64_t time_offset_ns, std::uint64_t lost) noexcept;
+
+  /// `encoded`: a LogHeader that holds from here on. One that is longer than a segment is left out.
+  void add_header(std::string_view encoded) noexcept {
+    file_.append(static_cast<std::uint32_t>(BlackBoxKind::kHeader), 0, encoded);
+  }
 
   /// Nothing is added any more; see black_box_file.h.
   void mark_ended() noexcept { file_.mark_ended(); }

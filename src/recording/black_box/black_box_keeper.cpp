@@ -20,7 +20,7 @@ constexpr const char* kCrashed = "telemetry had not ended orderly";
 
 BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, std::uint64_t build,
                                const LogHeader& header)
-    : folder_(folder, keep), keep_(keep), build_(build), bytes_(bytes), header_(header) {
+    : folder_(folder, keep), keep_(keep), build_(build), bytes_(bytes), header_(header), encoded_(encode(header)) {
   folder_.put_ring_aside();
   if (keep_ != 0) unsaved_ = folder_.unsaved();
   try {
@@ -35,6 +35,12 @@ BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std
 
 void BlackBoxKeeper::make_box() {
   box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, build_, header_);
+}
+
+void BlackBoxKeeper::set_header(const LogHeader& header) {
+  header_ = header;
+  encoded_ = encode(header);
+  header_ns_ = 0;
 }
 
 void BlackBoxKeeper::look_for_box(std::int64_t now_ns) {
@@ -104,6 +110,10 @@ void BlackBoxKeeper::note(Outcome outcome) {
 void BlackBoxKeeper::poll(std::int64_t now_ns) {
   look_for_box(now_ns);
   look_at_size();
+  if (box_ != nullptr && now_ns >= header_ns_) {
+    box_->add_header(encoded_);
+    header_ns_ = now_ns + kHeaderNs;
+  }
   if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   take_outcome();
   if (watch_.due(now_ns)) {

@@ -18,6 +18,7 @@ namespace robot_control {
 class BlackBoxKeeper {
  public:
   static constexpr std::int64_t kRetryNs = 10'000'000'000;
+  static constexpr std::int64_t kHeaderNs = 10'000'000'000;
   static constexpr double kPromised = 60;   ///< s of rows; a smaller one is named
   static constexpr double kRateKnown = 10;  ///< s of rows, after which it is known how many it holds
 
@@ -37,6 +38,9 @@ class BlackBoxKeeper {
     if (box_ != nullptr) box_->add_state(time_offset_ns, lost);
   }
   std::string path() const { return folder_.ring(); }
+
+  /// What holds from now on. The ring gets it every `kHeaderNs`, so that what it holds can begin with it.
+  void set_header(const LogHeader& header);
 
   /// Permit::causes of now; `now_ns` on any clock that runs.
   void see(std::uint64_t causes, std::int64_t now_ns) noexcept { watch_.see(causes, now_ns); }
@@ -71,6 +75,8 @@ class BlackBoxKeeper {
   std::uint64_t build_;
   std::size_t bytes_;
   LogHeader header_;
+  std::string encoded_;            ///< header_
+  std::int64_t header_ns_ = 0;     ///< when the ring gets it again
   std::unique_ptr<BlackBox> box_;  ///< null: it was removed, and no other could be made
   IncidentWatch watch_;
   std::vector<std::string> unsaved_;  ///< oldest first

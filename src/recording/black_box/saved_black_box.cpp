@@ -39,6 +39,8 @@ class Unpacker {
         return unpack(record, snapshot_, use);
       case BlackBoxKind::kState:
         return unpack(record, state_, use);
+      case BlackBoxKind::kHeader:
+        return;
     }
   }
 
@@ -115,6 +117,7 @@ struct Survey {
   std::uint64_t records = 0;
   std::uint64_t rows = 0;  ///< of all nodes
   LostRows lost;
+  std::string header;  ///< the oldest one, encoded; empty: there is none
 };
 
 /// Records are unpacked only where some are missing, to name those.
@@ -123,6 +126,9 @@ Survey survey_of(const BlackBoxReader& reader) {
   survey.damage = reader.read({.record = [&](const BlackBoxRecord& record) {
     ++survey.records;
     if (record.kind < kLaws) ++survey.rows;
+    if (record.kind == static_cast<std::uint32_t>(BlackBoxKind::kHeader) && survey.header.empty()) {
+      survey.header = record.data;
+    }
   }});
   if (survey.damage.none()) return survey;
   const auto unpacker = std::make_unique<Unpacker>();  // 100 KB
@@ -195,15 +201,19 @@ class Growing {
   bool above_ = false;  ///< the folder of the bag was not there before
 };
 
-LogHeader header_in(const BlackBoxReader& reader, std::uint64_t build, const std::string& path) {
+/// What the ring began with.
+std::string_view first_header(const BlackBoxReader& reader, std::uint64_t build, const std::string& path) {
   const std::string& description = reader.description();
   const std::string writer = description.substr(0, kBlackBoxBuildLength);
   if (writer != black_box_build(build)) {
     throw LogError(path + " was written by the build " + writer + ", this is " + black_box_build(build) +
                    ": read it with the programs that wrote it");
   }
-  LogHeader header =
-      decode_header(std::string_view(description).substr(kBlackBoxBuildLength), trace_header_type().definition);
+  return std::string_view(description).substr(kBlackBoxBuildLength);
+}
+
+LogHeader header_of(std::string_view encoded, const std::string& path) {
+  LogHeader header = decode_header(encoded, trace_header_type().definition);
   if (header.joints.size() > kMaxJoints || !(header.period > 0)) throw LogError(path + " is of no robot");
   header.record = "always";
   header.part = 0;
@@ -214,8 +224,9 @@ LogHeader header_in(const BlackBoxReader& reader, std::uint64_t build, const std
 
 SavedBlackBox save_black_box(const std::string& path, std::uint64_t build, const std::string& bag) {
   const BlackBoxReader reader(path);
-  LogHeader header = header_in(reader, build, path);
+  const std::string_view first = first_header(reader, build, path);
   const Survey survey = survey_of(reader);
+  LogHeader header = header_of(survey.header.empty() ? first : survey.header, path);
   header.missing = missing_in(reader, survey);
   if (survey.records == 0 && !header.missing.empty()) {
     throw LogError(path + " holds no record that is whole: " + header.missing);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "rt/clock.h"
 #include "runtime/build_id.h"
@@ -186,6 +187,26 @@ void TelemetryProcess::take(const JoinedRow& row) {
   if (bag_ != nullptr) write_down(bag_problem_, [&] { bag_->write(row); });
 }
 
+/// Before it is joined.
+template <class Row>
+void TelemetryProcess::look_at(const Row& row, std::size_t ring) {
+  const std::uint64_t process = row.calls.law.process;
+  if (std::exchange(law_processes_[ring], process) != process) ++parameter_changes_;
+  if constexpr (requires { row.tuning; }) {
+    if (std::exchange(tuning_, row.tuning.count) != row.tuning.count) ++parameter_changes_;
+  }
+  if (black_box_ == nullptr) return;
+  black_box_->add(row);
+  if constexpr (requires { row.permit; }) {
+    if (!permit_seen_) black_box_->see(row.permit.causes, monotonic_ns());
+  }
+}
+
+void TelemetryProcess::set_header(const LogHeader& header) {
+  if (bag_ != nullptr) bag_->set_header(header);
+  if (black_box_ != nullptr) black_box_->set_header(header);
+}
+
 void TelemetryProcess::request_recording(bool on) noexcept {
   if (bag_ != nullptr) bag_->request(on);
 }
@@ -196,15 +217,8 @@ std::size_t TelemetryProcess::drain() {
     if (black_box_ != nullptr) black_box_->add(snapshot);
     if (bag_ != nullptr) bag_->write(snapshot);
   };
-  const auto store = [this](const auto& row) {
-    if (black_box_ == nullptr) return;
-    black_box_->add(row);
-    if constexpr (requires { row.permit; }) {
-      if (!permit_seen_) black_box_->see(row.permit.causes, monotonic_ns());
-    }
-  };
   sources_->each([&](auto& source, std::size_t ring) {
-    rows += source.drain(join_, positions_.memory()->read[ring], keep, store);
+    rows += source.drain(join_, positions_.memory()->read[ring], keep, [&](const auto& row) { look_at(row, ring); });
   });
   if (black_box_ != nullptr) look_for_stops();
   return rows;

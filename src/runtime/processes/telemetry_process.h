@@ -9,6 +9,7 @@
 /// A disk that takes no more ends a file, not this process: the rings are still emptied, so that no node waits for
 /// space, what is not written is counted, and another file is tried (recording/bag_log.h, telemetry/csv_log.h).
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -60,6 +61,12 @@ class TelemetryProcess {
   /// Until it is taken back, run.bag holds every cycle, whatever telemetry.record says.
   void request_recording(bool on) noexcept;
 
+  /// Changes where a node has begun or has taken live parameters over: it may have others than a header says.
+  std::uint64_t parameter_changes() const noexcept { return parameter_changes_; }
+
+  /// What the logs that begin from now on begin with; joints and period stay.
+  void set_header(const LogHeader& header);
+
   /// Nodes whose ring is not there or not owned by a running process.
   std::vector<std::string> missing() const;
 
@@ -89,6 +96,8 @@ class TelemetryProcess {
   template <class Act>
   static void write_down(std::string& problem, Act act);
   void take(const JoinedRow& row);
+  template <class Row>
+  void look_at(const Row& row, std::size_t ring);
   void look_for_stops();
 
   OwnedChannel<RingPositions> positions_;
@@ -104,6 +113,9 @@ class TelemetryProcess {
   std::unique_ptr<BlackBoxKeeper> black_box_;  ///< null: not wanted
   Input<Permit> permit_;
   bool permit_seen_ = false;  ///< before, stops show in the rows that were there when this process began
+  std::array<std::uint64_t, kLaws> law_processes_{};  ///< LawRow::process of the newest rows
+  std::uint64_t tuning_ = 0;                          ///< DriveTuning::count of the newest
+  std::uint64_t parameter_changes_ = 0;
   Join join_;
   std::unique_ptr<Sources> sources_;
 };
