@@ -4,9 +4,9 @@ Each program `bench_NAME` prints one JSON object:
     {"bench": NAME, "rows": [{"name", "value", "unit", "reference", "reference_name", "ratio"}, …]}
 
 The trials that judge give results of the same form: faults/campaign.py, faults/replayed.py, drives/normal_driving.py,
-drives/drive_promises.py, odometry/bench.py, log_bench.py, black_box_bench.py, hostile.py, tuning.py, bench_limiter,
-bench_release, bench_bags. There, "not_judged" beside the rows names the robots left out, and "table" holds lines to be
-shown above the rows.
+drives/drive_promises.py, odometry/bench.py, log_bench.py, black_box_bench.py, process_bench.py, hostile.py, tuning.py,
+bench_limiter, bench_release, bench_bags. There, "not_judged" beside the rows names the robots left out, and "table"
+holds lines to be shown above the rows.
 """
 
 from __future__ import annotations
@@ -44,6 +44,7 @@ JUDGED = (
     "bags",
     "record",
     "blackbox",
+    "processes",
 )
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
@@ -126,7 +127,7 @@ def _hostile(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
 def _record(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from lab import log_bench
 
-    return log_bench.bench(given.share, given.programs, say)
+    return log_bench.bench(given.share, given.programs, given.keep, say)
 
 
 def _blackbox(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
@@ -135,13 +136,26 @@ def _blackbox(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     return black_box_bench.bench(given.first, given.runs or black_box_bench.ALL_TRIALS, given.programs, say)
 
 
+def _processes(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+    from lab import process_bench
+
+    return process_bench.bench(given.first, given.runs or process_bench.ALL_RUNS, given.programs, say)
+
+
 def _drive(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
     from lab.drives import drive_promises
 
     return drive_promises.bench(say)
 
 
-TRIALS = {"replay": _replay, "hostile": _hostile, "record": _record, "blackbox": _blackbox, "drive": _drive}
+TRIALS = {
+    "replay": _replay,
+    "hostile": _hostile,
+    "record": _record,
+    "blackbox": _blackbox,
+    "processes": _processes,
+    "drive": _drive,
+}
 
 
 def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
@@ -204,7 +218,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
     which = f"of {', '.join(NAMES)} (default: {', '.join(MEASURED)})"
     parser.add_argument("names", nargs="*", metavar="NAME", help=which)
-    seeds = "campaign, replay, limiter, release, bags, odometry, hostile, tuning, blackbox"
+    seeds = "campaign, replay, limiter, release, bags, odometry, hostile, tuning, blackbox, processes"
     parser.add_argument("--first", type=_whole(0), default=0, help=f"{seeds}: first seed")
     parser.add_argument("--runs", type=_whole(1), help=f"{seeds}: number of seeds")
     parser.add_argument(
@@ -212,6 +226,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="driving, odometry: of the sensors")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
+    parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this machine alone")
     cluster.add_argument("--tls", type=Path, metavar="FOLDER", help="of ca.pem, cert.pem, key.pem; default: as Dask")

@@ -3,8 +3,10 @@
 ///   rc_participant NODE --bus NAME --params YAML [--set path=value]… [--seconds S]
 ///
 /// NODE: mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry. Ends on SIGTERM or
-/// SIGINT, after S seconds, or, the plant, after mujoco_plant.cycles. Exit code 1: refused, reason on stderr.
+/// SIGINT, after S seconds, or, the plant, after mujoco_plant.cycles. At each SIGUSR1 the controller takes another
+/// speed limit over. Exit code 1: refused, reason on stderr.
 
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -33,6 +35,7 @@ constexpr std::int64_t kLookNs = 10'000'000;
 constexpr std::int64_t kDrainNs = 2'000'000;  // as telemetry_node.cpp
 
 std::atomic<bool> interrupted{false};
+std::atomic<int> tunings{0};  // that are due
 
 struct Arguments {
   std::string node;
@@ -75,8 +78,10 @@ void run(double seconds, const std::function<bool()>& look, std::int64_t pause_n
   while (!interrupted.load() && monotonic_ns() < end_ns && look()) sleep_ns(pause_ns);
 }
 
-void run_process(Process& process, double seconds) {
+void run_process(
+    Process& process, double seconds, const std::function<void()>& receive = [] {}) {
   run(seconds, [&] {
+    receive();
     process.poll();
     return !process.finished();
   });
@@ -113,7 +118,12 @@ void participate(const Arguments& arguments) {
     run_process(estimator, arguments.seconds);
   } else if (arguments.node == "diff_drive_controller") {
     ControllerProcess controller(parameters, robot, arguments.bus);
-    run_process(controller, arguments.seconds);
+    run_process(controller, arguments.seconds, [&controller, taken = 0]() mutable {
+      constexpr std::array kLimits = {"0.5", "0.7", "1.0"};  // m/s
+      for (; taken < tunings.load(); ++taken) {
+        controller.retuning().set(std::string("{max_linear_speed: ") + kLimits[taken % kLimits.size()] + "}");
+      }
+    });
   } else if (arguments.node == "safety_monitor") {
     MonitorProcess monitor(parameters, robot, arguments.bus);
     run_process(monitor, arguments.seconds);
@@ -132,6 +142,7 @@ void participate(const Arguments& arguments) {
 int main(int argc, char** argv) {
   std::signal(SIGINT, [](int) { robot_control::interrupted.store(true); });
   std::signal(SIGTERM, [](int) { robot_control::interrupted.store(true); });
+  std::signal(SIGUSR1, [](int) { robot_control::tunings.fetch_add(1); });
   try {
     robot_control::participate(robot_control::parse({argv, argv + argc}));
     return 0;

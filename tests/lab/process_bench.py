@@ -1,0 +1,161 @@
+"""Four nodes and a telemetry as processes on the wall clock, whose nodes are killed, stopped, started again and tuned at
+random moments, on a drive with emergency stops and resets: what the log says is computed again, bit for bit.
+
+scripts/bench processes --first 17 --runs 1
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from robot_control._robot_control import replay_log
+from robot_control.installed_files import share_file
+from robot_control.replay.recorded_setup import recorded_setup
+
+from lab.log_bench import NODES, START_LIMIT, row
+
+ALL_RUNS = 20
+EVENTS = 12  # of each run
+LONGEST_PAUSE = 1.0  # s, before each
+LONGEST_STOP = 0.3  # s, of a node that gets SIGSTOP
+LEAST_COMPARED = 500  # rows of each law
+LOOP = ("mujoco_plant", *(node for node in NODES if node != "telemetry"))
+ACTS = ("kill", "stop", "tune")
+LAP = 4000  # cycles: a drive, an emergency stop in every other lap, rest, a reset
+
+
+class Nodes:
+    """As processes of rc_participant."""
+
+    def __init__(self, programs: Path, folder: Path) -> None:
+        settings = {
+            "robot.command_script": folder / "script.csv",
+            "robot.wait_for_nodes": "true",
+            "robot.wait_for_telemetry": "true",
+            "telemetry.directory": folder,
+            "telemetry.csv": "false",
+            "telemetry.record": "always",
+            "telemetry.black_box": 0,
+        }
+        pairs = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+        common = ["--bus", bus(), "--params", str(share_file("config/robot_params.yaml")), *pairs]
+        program = str(programs.parent / "support" / "rc_participant")
+        signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # which the nodes inherit until they take it
+        self._commands = {node: [program, node, *common] for node in (*LOOP, "telemetry")}
+        self._running = {node: self._begin(node) for node in self._commands}
+
+    def act(self, what: str, node: str, seconds: float) -> None:
+        """`seconds`: how long a stopped node stays so."""
+        if what == "tune":
+            self._running["diff_drive_controller"].send_signal(signal.SIGUSR1)
+        elif what == "stop":
+            self._running[node].send_signal(signal.SIGSTOP)
+            time.sleep(seconds)
+            self._running[node].send_signal(signal.SIGCONT)
+        else:
+            self._running[node].kill()
+            self._running[node].wait()
+            self._running[node] = self._begin(node)
+
+    def end(self) -> None:
+        """Telemetry last. Raises RuntimeError where one had ended by itself."""
+        ended = [name for name, node in self._running.items() if node.poll() is not None]
+        for node in self._running.values():
+            node.send_signal(signal.SIGINT)
+            node.wait(START_LIMIT)
+        if ended:
+            raise RuntimeError(f"{', '.join(ended)} ended by itself")
+
+    def kill(self) -> None:
+        """Whatever still runs."""
+        for node in self._running.values():
+            node.kill()
+            node.wait()
+
+    def _begin(self, node: str) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(self._commands[node], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def bench(first: int, runs: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+    """The table of `runs` from seed `first` on, and whether every row that was compared is the same."""
+    compared = missed = failed = 0
+    for seed in range(first, first + runs):
+        try:
+            laws = replayed_run(seed, programs, say)
+        except RuntimeError as error:
+            failed += 1
+            say(f"seed {seed}: {error}")
+            continue
+        compared += sum(law["compared"] for law in laws)
+        missed += sum(law["not_compared"] for law in laws)
+        failed += any(law["different"] or law["compared"] < LEAST_COMPARED for law in laws)
+    rows = [
+        row("runs", runs, "", 0),
+        row("runs not exact", failed, "", 0),
+        row("rows compared", compared, "", 0),
+        row("rows not compared", missed, "", 0),
+    ]
+    return {"bench": "processes", "rows": rows}, failed == 0
+
+
+def bus() -> str:
+    """Of all runs."""
+    return f"processes-{os.getpid()}"
+
+
+def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> list[dict[str, int]]:
+    """Counts of each law; `say` receives what differs, and which rows are not compared.
+
+    Raises:
+        RuntimeError: a node ended by itself, or the log cannot be replayed.
+    """
+    random = np.random.default_rng(seed)
+    with tempfile.TemporaryDirectory(prefix="processes-") as name:
+        folder = Path(name)
+        (folder / "script.csv").write_text(script(60 * LAP))
+        nodes = Nodes(programs, folder)
+        try:
+            await_rows(folder / "run.bag")
+            for _ in range(EVENTS):
+                time.sleep(random.uniform(0, LONGEST_PAUSE))
+                nodes.act(random.choice(ACTS), random.choice(LOOP), random.uniform(0, LONGEST_STOP))
+            time.sleep(LONGEST_PAUSE)
+            nodes.end()
+        finally:
+            nodes.kill()
+            for path in Path("/dev/shm").glob(f"robot_control.*.{bus()}.*"):
+                path.unlink(missing_ok=True)
+        log = folder / "run.bag"
+        report = replay_log(str(log), recorded_setup(log, folder).layers(), None)
+    for sentence in (*report["differences"][:5], *report["gaps"]):
+        say(f"seed {seed}: {sentence}")
+    return list(report["laws"].values())
+
+
+def await_rows(log: Path) -> None:
+    """Raises RuntimeError: none are written in time."""
+    end = time.monotonic() + START_LIMIT
+    while not log.exists() or log.stat().st_size < LAP:
+        if time.monotonic() > end:
+            raise RuntimeError("no row was written")
+        time.sleep(0.05)
+
+
+def script(cycles: int) -> str:
+    """Laps of a drive, an emergency stop in every other one, rest and a reset."""
+    rows = ["cycle,linear,angular,event"]
+    for begin in range(0, cycles, LAP):
+        rows += [f"{begin + k},0,0," for k in (1, 100)]
+        rows += [f"{begin + k},0.8,0.3," for k in range(200, 2400, 200)]
+        rows += [f"{begin + 2400},,,e_stop"] if begin % (2 * LAP) else []
+        rows += [f"{begin + k},0,0," for k in range(2450, 3800, 200)]
+        rows += [f"{begin + 3800},,,e_stop_reset"]
+    return "\n".join(rows) + "\n"
