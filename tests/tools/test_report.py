@@ -80,8 +80,18 @@ def test_rows_that_are_not_there_are_counted(log):
     log = {name: values[kept] for name, values in log.items()}
     assert values_of(log)["rows_lost"] == 20
     gap = next(one for one in incidents(Drive("run", log)) if one.kind == "rows lost")
-    assert gap.title == "20 cycles are not in the log"
+    assert gap.title == "20 cycles not in the log"
     assert gap.begin == pytest.approx(0.499)
+
+
+def test_moments_without_a_node_are_one_incident_and_a_longer_one_stands_alone(log):
+    for row, cycles in ((1000, 1), (2000, 3), (3000, 1), (4000, 50)):
+        log["estimate_x"][row : row + cycles] = np.nan
+    moments, longer = [one for one in incidents(Drive("run", log)) if one.kind == "node absent"]
+    assert moments.title == "at 3 moments, 3 cycles at most"
+    assert moments.evidence == ["5 cycles in all; the longest at 2.00 s: 3 cycles without a row of estimator"]
+    assert (moments.begin, moments.end) == (pytest.approx(1.0), pytest.approx(3.001))
+    assert longer.title == "50 cycles without a row of estimator"
 
 
 def test_what_was_not_to_be_recorded_is_not_lost(log):

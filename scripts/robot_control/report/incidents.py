@@ -15,6 +15,8 @@ from robot_control.report.intervals import intervals, joined
 TOGETHER = 0.5
 """s: two of a kind that are closer are one"""
 STOPPING = names.number_of("SupervisorState", "STOPPING")
+MOMENT = 20
+"""cycles without a node: of more the monitor makes a stop; the gate bridges some, and brakes in the others"""
 LONGEST_STOP = 10.0
 """s in which a robot is expected to come to rest"""
 
@@ -46,6 +48,10 @@ def _span(drive: Drive, begin: int, end: int) -> tuple[float, float]:
 
 def _rows(drive: Drive, seconds: float) -> int:
     return max(1, round(seconds / drive.period))
+
+
+def _cycles(count: int) -> str:
+    return f"{count} cycle" if count == 1 else f"{count} cycles"
 
 
 def _union(values: IntArray) -> int:
@@ -100,9 +106,7 @@ def _brakes(drive: Drive) -> Iterator[Incident]:
         of = names.bits_in("GateReason", _union(reasons[begin:end][braked[begin:end]]))
         cycles = int(np.count_nonzero(braked[begin:end]))
         title = ", ".join(one.name for one in of) or "brake"
-        yield Incident(
-            1, "brake", *_span(drive, begin, end), title, [f"{cycles} cycles", *(one.sentence for one in of)]
-        )
+        yield Incident(1, "brake", *_span(drive, begin, end), title, [_cycles(cycles), *(one.sentence for one in of)])
 
 
 def _slips(drive: Drive) -> Iterator[Incident]:
@@ -141,14 +145,32 @@ def _gaps(drive: Drive) -> Iterator[Incident]:
     # Where none was lost, what is not in the log was not to be recorded: telemetry.record is `motion`.
     for row in np.flatnonzero(steps > 1).tolist() if drive.lost != 0 else ():
         span = float(drive.time[row]), float(drive.time[row + 1])
-        yield Incident(2, "rows lost", *span, f"{int(steps[row]) - 1} cycles are not in the log")
+        yield Incident(2, "rows lost", *span, f"{_cycles(int(steps[row]) - 1)} not in the log")
     nodes = (("estimate_x", "estimator"), ("command_reasons", "controller"), ("permit_action", "monitor"))
     absent = {node: np.isnan(drive.column(column)) for column, node in nodes if column in drive.log}
     if not absent:
         return
-    for begin, end in joined(intervals(np.any(list(absent.values()), axis=0)), _rows(drive, TOGETHER)):
-        if begin > 0 or end - begin > 1:  # in its first tick a driver is alone
-            of = [node for node, rows in absent.items() if rows[begin:end].any()]
-            cycles = int(np.any([rows[begin:end] for rows in absent.values()], axis=0).sum())
-            title = f"{cycles} cycles without a row of {', '.join(of)}"
-            yield Incident(2, "node absent", *_span(drive, begin, end), title)
+    any_absent = np.any(list(absent.values()), axis=0)
+    any_absent[0] = False  # in its first tick a driver is alone
+    moments = []
+    for begin, end in joined(intervals(any_absent), _rows(drive, TOGETHER)):
+        of = [node for node, rows in absent.items() if rows[begin:end].any()]
+        cycles = int(np.count_nonzero(any_absent[begin:end]))
+        title = f"{_cycles(cycles)} without a row of {', '.join(of)}"
+        one = Incident(2, "node absent", *_span(drive, begin, end), title)
+        if cycles > MOMENT:
+            yield one
+        else:
+            moments.append((cycles, one))
+    yield from _as_one(moments)
+
+
+def _as_one(moments: list[tuple[int, Incident]]) -> Iterator[Incident]:
+    """Many short ones would hide what came of them."""
+    if len(moments) < 2:
+        yield from (one for _, one in moments)
+        return
+    total, (most, longest) = sum(cycles for cycles, _ in moments), max(moments, key=lambda each: each[0])
+    evidence = [f"{_cycles(total)} in all; the longest at {longest.begin:.2f} s: {longest.title}"]
+    title = f"at {len(moments)} moments, {_cycles(most)} at most"
+    yield Incident(2, "node absent", moments[0][1].begin, moments[-1][1].end, title, evidence)

@@ -54,7 +54,7 @@ class TimeAxis:
 
 def framed(**options: Any) -> Any:  # noqa: ANN401 (Bokeh's)
     """A figure in the style of the page."""
-    made = figure(sizing_mode="stretch_width", toolbar_location="right", min_border_left=64, **options)
+    made = figure(sizing_mode="stretch_width", toolbar_location="right", min_border_left=80, **options)
     made.toolbar.logo = None
     made.toolbar.autohide = True
     made.background_fill_color = "#FFFFFF"

@@ -143,7 +143,7 @@ def joint_plots(axis: TimeAxis, drives: list[Drive], columns: tuple[str, str], u
             (f"{joint}_{columns[1]}", Line("measured", BLUE, 1.0)),
         ]
         series = [one for i, drive in enumerate(drives) for one in _of(drive, i, len(drives), lines)]
-        plots.append(line_plot(axis, f"{printable(joint, 40)} [{unit}]", series, height=180))
+        plots.append(line_plot(axis, unit, series, height=200, title=printable(joint, 40)))
     return [plot for plot in plots if plot is not None]
 
 
