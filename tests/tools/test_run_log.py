@@ -25,12 +25,26 @@ def test_a_last_line_cut_short_is_left_out(tmp_path):
     assert read_log(write(tmp_path, "run,cycle,truth_x\n0,0,1\n0,1"))["cycle"].tolist() == [0]
 
 
+def test_zeros_behind_the_last_line_are_left_out(tmp_path):
+    text = "run,cycle,truth_x\n0,0,1\n0,1,2\n" + "\0" * 4096
+    assert read_log(write(tmp_path, text))["cycle"].tolist() == [0, 1]
+
+
 def test_of_several_runs_the_last_is_read(tmp_path):
     assert read_log(write(tmp_path, "run,cycle\n0,0\n0,1\n1,0\n"))["cycle"].tolist() == [0]
 
 
 @pytest.mark.parametrize(
-    ("text", "message"), [("", "no columns"), ("a,b\n1,2\n", "no columns"), ("run,cycle\n", "no rows")]
+    ("text", "message"),
+    [
+        ("", "no columns"),
+        ("a,b\n1,2\n", "no columns"),
+        ("run,cycle\n", "no rows"),
+        ("\0" * (1 << 21), "no columns"),
+        ("a" * (1 << 21), "it has a line of 1048576 characters"),
+        ("RCBLACK2", "is a black box: blackbox.py makes a run.bag of it"),
+    ],
+    ids=["nothing", "other", "header", "zeros", "endless", "black box"],
 )
 def test_what_is_no_log_is_refused(tmp_path, text, message):
     with pytest.raises(LogError, match=message):

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ from robot_control._robot_control import BagError, TraceError, read_run_bag, rea
 from robot_control.common.files import LARGEST_TABLE, check_input, printable
 
 BAG_MAGIC = b"#ROSBAG"
+BLACK_BOX_MAGIC = b"RCBLACK"
+LONGEST_LINE = 1 << 20
+"""characters of a run.csv"""
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -63,21 +66,22 @@ def is_bag(path: Path) -> bool:
 
     Raises:
         InputFileError, OSError: it is no file to read.
+        LogError: it is a black box.
     """
     check_input(path, LARGEST_TABLE)
     with path.open("rb") as file:
-        return file.read(len(BAG_MAGIC)) == BAG_MAGIC
+        begin = file.read(len(BAG_MAGIC))
+    if begin == BLACK_BOX_MAGIC:
+        raise LogError(f"{path} is a black box: blackbox.py makes a run.bag of it")
+    return begin == BAG_MAGIC
 
 
 def is_run_log(path: Path) -> bool:
     """Whether the file is a run.bag: a ROS bag that begins with a TraceHeader."""
-    if not is_bag(path):
-        return False
     try:
-        read_run_header(str(path))
+        return is_bag(path) and bool(read_run_header(str(path)))
     except (BagError, TraceError):
         return False
-    return True
 
 
 def read_log(path: Path, columns: Sequence[str] = ()) -> dict[str, FloatArray]:
@@ -97,7 +101,8 @@ def _read_bag(path: Path, columns: Sequence[str]) -> RunLog:
     try:
         read = read_run_bag(str(path), list(columns))
     except (BagError, TraceError, RuntimeError) as error:
-        raise LogError(f"{path}: {error}") from None
+        named = str(error).startswith(str(path))
+        raise LogError(str(error) if named else f"{path}: {error}") from None
     table = read["columns"]
     if not read["runs"]:
         raise LogError(f"{path}: no rows" + (f"; {read['cut']}" if read["cut"] else ""))
@@ -107,7 +112,7 @@ def _read_bag(path: Path, columns: Sequence[str]) -> RunLog:
 def _read_csv(path: Path, columns: Sequence[str]) -> RunLog:
     with path.open(newline="", errors="replace") as file:
         try:
-            lines = csv.reader(file)
+            lines = csv.reader(_lines_of(file))
             header = next(lines, [])
             rows = [row for row in lines if len(row) == len(header)]
         except csv.Error as error:
@@ -124,6 +129,18 @@ def _read_csv(path: Path, columns: Sequence[str]) -> RunLog:
     table = table[run == run.max()]
     wanted = {name: table[:, i] for i, name in enumerate(header) if not columns or name in columns}
     return RunLog(wanted, None, {}, len(np.unique(run)), 0, "")
+
+
+def _lines_of(file: TextIO) -> Iterator[str]:
+    """Up to a line with NUL: a disk that lost power leaves such.
+
+    Raises:
+        csv.Error: a line is longer than any of a log.
+    """
+    while (line := file.readline(LONGEST_LINE)) and "\0" not in line:
+        if len(line) == LONGEST_LINE:
+            raise csv.Error(f"it has a line of {LONGEST_LINE} characters")
+        yield line
 
 
 def joint_names(log: Log) -> list[str]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robot_control._robot_control import read_run_header
-from robot_control.common.files import LARGEST_TABLE, check_input
+from robot_control.common.run_log import LogError, is_bag
 
 Layers = tuple[str, list[tuple[str, str]]]
 """path of a parameter file, and what is laid over it"""
@@ -37,9 +37,11 @@ def recorded_setup(log: Path, folder: Path) -> RecordedSetup:
 
     Raises:
         InputFileError, OSError: it is no file to read.
+        LogError: it is no bag.
         RuntimeError: it is no log, or a damaged one.
     """
-    check_input(log, LARGEST_TABLE)  # an error that names the file
+    if not is_bag(log):
+        raise LogError(f"{log} is no ROS bag")
     header = read_run_header(str(log))
     parameters, urdf = folder / "parameters.yaml", folder / "robot.urdf"
     parameters.write_text(header["parameters"])
