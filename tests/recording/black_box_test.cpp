@@ -6,6 +6,7 @@
 
 #include "black_box_fixture.h"
 #include "replay/replay.h"
+#include "support/child_process.h"
 
 namespace robot_control {
 namespace {
@@ -53,6 +54,18 @@ TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirst
     const std::uint64_t first = (cycles.front() + kSnapshotCycles - 1) / kSnapshotCycles * kSnapshotCycles;
     EXPECT_EQ(law.compared, 12'000u - first) << "from the first snapshot on";
   }
+}
+
+TEST_F(ABlackBox, IsSavedToOneNameByTwoProcessesAtOnce) {
+  BlackBox box(path("ring"), kBytes, build_id(), header());
+  drive_on(box, 3000);
+  for (int trial = 0; trial < 5; ++trial) {
+    ChildProcess other([this] { return save().rows == 3000u ? 0 : 1; });
+    EXPECT_EQ(save().rows, 3000u);
+    EXPECT_EQ(other.wait(), 0);
+    EXPECT_EQ(cycles_of(path("saved/run.bag")).size(), 3000u);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("saved")), {}), 1) << "nothing is left beside it";
 }
 
 TEST_F(ABlackBox, OfAnotherBuildIsRefusedByItsName) {

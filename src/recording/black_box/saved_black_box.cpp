@@ -1,6 +1,7 @@
 #include "recording/black_box/saved_black_box.h"
 
 #include <lz4.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -164,13 +165,14 @@ std::string missing_in(const BlackBoxReader& reader, const Survey& survey) {
   return text.empty() ? text : "the black box is damaged: " + text;
 }
 
-/// Folder in which a bag grows before it gets its name.
+/// Folder in which a bag grows before it gets its name; of this process alone: another may save the same.
 class Growing {
  public:
-  explicit Growing(const std::string& bag) : bag_(bag), folder_(bag_.string() + kSavingSuffix) {
+  explicit Growing(const std::string& bag)
+      : bag_(bag), folder_(bag_.string() + "." + std::to_string(getpid()) + kSavingSuffix) {
     std::error_code error;
     above_ = bag_.has_parent_path() && fs::create_directories(bag_.parent_path(), error);
-    remove();  // of a process that was killed
+    remove();  // of a process of this number that was killed
     fs::create_directory(folder_, error);
     if (error) throw LogError(bag + " cannot be written: " + error.message());
   }
