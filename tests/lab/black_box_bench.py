@@ -19,16 +19,15 @@ from typing import Any
 import numpy as np
 from robot_control._robot_control import RunLogError, save_black_box
 from robot_control.common.run_log import read_log
-from robot_control.installed_files import share_file
 
-from lab.log_bench import NODES, row, script
+from lab.log_bench import row
+from lab.participants import LOOP, START_LIMIT, TELEMETRY, command, remove_shared_memory, script
 
 ALL_TRIALS = 100
 MOST_MISSING = 10.0  # ms
 LONGEST = 2.0  # s from the first second in run.bag to the kill
-START_LIMIT = 30.0  # s until that second is there
 A_SECOND = 100_000  # bytes, less than one of run.bag
-PROCESSES = ("mujoco_plant", *NODES)
+PROCESSES = (*LOOP, TELEMETRY)
 
 
 def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
@@ -51,8 +50,7 @@ def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -
                         node.kill()
                         node.wait()
         finally:
-            for path in Path("/dev/shm").glob(f"robot_control.*.{bus()}.*"):
-                path.unlink(missing_ok=True)
+            remove_shared_memory(bus())
     figures = sorted(missing) or [float("inf")]
     rows = [
         row("black boxes not readable or with a gap", bad, "of " + str(trials), 0),
@@ -71,27 +69,12 @@ def bus() -> str:
 def start(programs: Path, folder: Path) -> list[subprocess.Popen[bytes]]:
     """All nodes, in one process group."""
     (folder / "run.bag").unlink(missing_ok=True)
-    program = programs.parent / "support" / "rc_participant"
-    settings = {
-        "robot.command_script": folder / "script.csv",
-        "robot.wait_for_nodes": "true",
-        "robot.wait_for_telemetry": "true",
-        "telemetry.directory": folder,
-        "telemetry.csv": "false",
-        "telemetry.record": "always",
-        "telemetry.black_box": 0.03,
-        "telemetry.incidents": 0,
-    }
-    pairs = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
-    arguments = ["--bus", bus(), "--params", str(share_file("config/robot_params.yaml")), *pairs]
+    settings = {"telemetry.black_box": 0.03, "telemetry.incidents": 0}
     nodes: list[subprocess.Popen[bytes]] = []
     for node in PROCESSES:
         group = nodes[0].pid if nodes else 0
-        nodes.append(
-            subprocess.Popen(
-                [program, node, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, process_group=group
-            )
-        )
+        words = command(programs, node, bus(), folder, settings)
+        nodes.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, process_group=group))
     return nodes
 
 

@@ -21,16 +21,15 @@ from typing import Any
 
 from robot_control._robot_control import replay_log, save_black_box
 from robot_control.common.run_log import read_run
-from robot_control.installed_files import share_file
 from robot_control.replay.recorded_setup import recorded_setup
 from robot_control.report.main import main as report_main
 
+from lab.participants import LOOP, PLANT, START_LIMIT, TELEMETRY, command, script
 from lab.robot_corpus import DIFFBOT, robot_names, urdf_of
 
 SECONDS = 600.0
 FOUR_WHEELS = "jackal"
 ROBOTS = (DIFFBOT, FOUR_WHEELS)
-NODES = ("state_estimator", "diff_drive_controller", "safety_monitor", "telemetry")
 
 MOST_LOST = 0
 MOST_PROCESSOR = 0.10  # of one core
@@ -42,7 +41,6 @@ LARGEST_PAGE = 15.0  # MB
 MOST_BEFORE_SNAPSHOT = 1024 + 8  # cycles at the begin of a black box; kSnapshotCycles, and what was on its way
 BLACK_BOX = 0.2  # GB, telemetry.black_box for ten minutes; in proportion for less
 LEAST_HELD = 60.0  # s in it
-START_LIMIT = 30.0  # s until all nodes run
 
 
 @dataclass(frozen=True)
@@ -71,9 +69,7 @@ class Recorded:
     page: float  # MB
 
 
-def bench(
-    share: float, programs: Path, keep: Path | None, say: Callable[[str], None]
-) -> tuple[dict[str, Any], bool]:
+def bench(share: float, programs: Path, keep: Path | None, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
     """`share` of ten minutes for each robot; the table, and whether all figures are as they have to be.
 
     `keep`: folder for the logs and pages; None: they are removed.
@@ -87,20 +83,22 @@ def bench(
         with tempfile.TemporaryDirectory(prefix="record-") if keep is None else nullcontext(keep / robot) as folder:
             Path(folder).mkdir(parents=True, exist_ok=True)
             found = record(urdf_of(robot), seconds, programs, Path(folder))
-        for name, (value, unit, least, most) in figures(found, share, robot == DIFFBOT).items():
+        for name, (value, unit, least, most) in figures(
+            found, share, MOST_BYTES if robot == DIFFBOT else math.inf
+        ).items():
             promised = most if least == 0 else least
             rows.append(row(f"{robot}: {name}", value, unit, promised if math.isfinite(promised) else 0))
             good = good and least <= value <= most
     return {"bench": "record", "rows": rows, "not_judged": sorted(set(ROBOTS) - set(there))}, good
 
 
-def figures(found: Recorded, share: float, is_diffbot: bool) -> dict[str, tuple[float, str, float, float]]:
-    """By name: value, unit, the least and the most it may be."""
+def figures(found: Recorded, share: float, most_bytes: float) -> dict[str, tuple[float, str, float, float]]:
+    """By name: value, unit, the least and the most it may be; `most_bytes`: MB/s."""
     seconds = SECONDS * share
     return {
         "rows lost": (found.cycles - found.rows + found.lost, "rows", 0, MOST_LOST),
         "telemetry": (found.processor / seconds, "of a core", 0, MOST_PROCESSOR),
-        "on disk": (found.megabytes / seconds, "MB/s", 0, MOST_BYTES if is_diffbot else math.inf),
+        "on disk": (found.megabytes / seconds, "MB/s", 0, most_bytes),
         "loading ten minutes": (found.loading / share, "s, processor", 0, MOST_LOADING),
         "replay, rows different": (found.whole.different, "rows", 0, 0),
         "replay, rows not compared": (found.whole.not_compared, "rows", 0, 0),
@@ -135,18 +133,12 @@ def record(urdf: str, seconds: float, programs: Path, folder: Path) -> Recorded:
     (folder / "script.csv").write_text(script(cycles))
     settings = {
         "robot.urdf": urdf,
-        "robot.command_script": folder / "script.csv",
-        "robot.wait_for_nodes": "true",
-        "robot.wait_for_telemetry": "true",
         "mujoco_plant.cycles": cycles,
-        "telemetry.directory": folder,
-        "telemetry.csv": "false",
-        "telemetry.record": "always",
         "telemetry.split_size": 0,
         "telemetry.quota": 0,
         "telemetry.black_box": BLACK_BOX * seconds / SECONDS,
     }
-    processor = run_nodes(programs, f"record.{os.getpid()}", settings, seconds)
+    processor = run_nodes(programs, folder, settings, seconds)
     bag, held = folder / "run.bag", folder / "held.bag"
     began = time.process_time()
     run = read_run(bag)
@@ -179,17 +171,16 @@ def replayed(bag: Path) -> Replayed:
     return Replayed(sum(law["different"] for law in laws), sum(law["not_compared"] for law in laws), seconds)
 
 
-def run_nodes(programs: Path, bus: str, settings: dict[str, Any], seconds: float) -> float:
+def run_nodes(programs: Path, folder: Path, settings: dict[str, Any], seconds: float) -> float:
     """Processor time of the telemetry, s."""
-    program = programs.parent / "support" / "rc_participant"
-    pairs = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
-    arguments = ["--bus", bus, "--params", str(share_file("config/robot_params.yaml")), *pairs]
-    nodes = {node: subprocess.Popen([program, node, *arguments]) for node in NODES}
+    commands = {node: command(programs, node, f"record.{os.getpid()}", folder, settings) for node in (*LOOP, TELEMETRY)}
+    plant_command = commands.pop(PLANT)
+    nodes = {node: subprocess.Popen(each) for node, each in commands.items()}
     try:
-        plant = subprocess.run([program, "mujoco_plant", *arguments], check=False, timeout=2 * seconds + START_LIMIT)
+        plant = subprocess.run(plant_command, check=False, timeout=2 * seconds + START_LIMIT)
         if plant.returncode != 0:
             raise RuntimeError(f"mujoco_plant ended with {plant.returncode}")
-        telemetry = nodes.pop("telemetry")
+        telemetry = nodes.pop(TELEMETRY)
         telemetry.send_signal(signal.SIGINT)
         _, status, usage = os.wait4(telemetry.pid, 0)
         telemetry.returncode = os.waitstatus_to_exitcode(status)
@@ -201,12 +192,3 @@ def run_nodes(programs: Path, bus: str, settings: dict[str, Any], seconds: float
             node.send_signal(signal.SIGINT)
         for node in nodes.values():
             node.wait(START_LIMIT)
-
-
-def script(cycles: int) -> str:
-    """A command every half second, so that none times out: speeds and turns that never repeat."""
-    rows = ["cycle,linear,angular,event"]
-    for k in range(1, cycles, 500):
-        t = k / 1000
-        rows.append(f"{k},{0.4 * math.sin(0.31 * t):.4f},{0.5 * math.sin(0.47 * t):.4f},")
-    return "\n".join(rows) + "\n"

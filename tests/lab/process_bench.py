@@ -1,5 +1,5 @@
-"""Four nodes and a telemetry as processes on the wall clock, whose nodes are killed, stopped, started again and tuned at
-random moments, on a drive with emergency stops and resets: what the log says is computed again, bit for bit.
+"""Four nodes and a telemetry as processes on the wall clock: nodes are killed, stopped, started again and tuned at
+random moments, on a drive with emergency stops and resets. What the log says is computed again, bit for bit.
 
 scripts/bench processes --first 17 --runs 1
 """
@@ -17,17 +17,16 @@ from typing import Any
 
 import numpy as np
 from robot_control._robot_control import replay_log
-from robot_control.installed_files import share_file
 from robot_control.replay.recorded_setup import recorded_setup
 
-from lab.log_bench import NODES, START_LIMIT, row
+from lab.log_bench import row
+from lab.participants import LOOP, START_LIMIT, TELEMETRY, command, remove_shared_memory
 
 ALL_RUNS = 20
 EVENTS = 12  # of each run
 LONGEST_PAUSE = 1.0  # s, before each
 LONGEST_STOP = 0.3  # s, of a node that gets SIGSTOP
 LEAST_COMPARED = 500  # rows of each law
-LOOP = ("mujoco_plant", *(node for node in NODES if node != "telemetry"))
 ACTS = ("kill", "stop", "tune")
 LAP = 4000  # cycles: a drive, an emergency stop in every other lap, rest, a reset
 
@@ -36,20 +35,9 @@ class Nodes:
     """As processes of rc_participant."""
 
     def __init__(self, programs: Path, folder: Path) -> None:
-        settings = {
-            "robot.command_script": folder / "script.csv",
-            "robot.wait_for_nodes": "true",
-            "robot.wait_for_telemetry": "true",
-            "telemetry.directory": folder,
-            "telemetry.csv": "false",
-            "telemetry.record": "always",
-            "telemetry.black_box": 0,
-        }
-        pairs = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
-        common = ["--bus", bus(), "--params", str(share_file("config/robot_params.yaml")), *pairs]
-        program = str(programs.parent / "support" / "rc_participant")
         signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # which the nodes inherit until they take it
-        self._commands = {node: [program, node, *common] for node in (*LOOP, "telemetry")}
+        settings = {"telemetry.black_box": 0}
+        self._commands = {node: command(programs, node, bus(), folder, settings) for node in (*LOOP, TELEMETRY)}
         self._running = {node: self._begin(node) for node in self._commands}
 
     def act(self, what: str, node: str, seconds: float) -> None:
@@ -131,8 +119,7 @@ def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> list[
             nodes.end()
         finally:
             nodes.kill()
-            for path in Path("/dev/shm").glob(f"robot_control.*.{bus()}.*"):
-                path.unlink(missing_ok=True)
+            remove_shared_memory(bus())
         log = folder / "run.bag"
         report = replay_log(str(log), recorded_setup(log, folder).layers(), None)
     for sentence in (*report["differences"][:5], *report["gaps"]):

@@ -1,0 +1,43 @@
+"""Nodes of a robot as processes without ROS (tests/support/participant.cpp), whose telemetry records every cycle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+from robot_control.installed_files import share_file
+
+PLANT, TELEMETRY = "mujoco_plant", "telemetry"
+LOOP = (PLANT, "state_estimator", "diff_drive_controller", "safety_monitor")
+START_LIMIT = 30.0  # s until all nodes run
+RECORDING = {
+    "robot.wait_for_nodes": "true",
+    "robot.wait_for_telemetry": "true",
+    "telemetry.csv": "false",
+    "telemetry.record": "always",
+}
+
+
+def command(programs: Path, node: str, bus: str, folder: Path, settings: Mapping[str, object]) -> list[str]:
+    """Of one node, which takes commands from script.csv in `folder`; the log goes there, too."""
+    script_and_log = {"robot.command_script": folder / "script.csv", "telemetry.directory": folder}
+    pairs = [f"{key}={value}" for key, value in {**RECORDING, **script_and_log, **settings}.items()]
+    program = programs.parent / "support" / "rc_participant"
+    parameters = share_file("config/robot_params.yaml")
+    return [str(program), node, "--bus", bus, "--params", str(parameters), *(w for p in pairs for w in ("--set", p))]
+
+
+def remove_shared_memory(bus: str) -> None:
+    """That killed nodes have left."""
+    for path in Path("/dev/shm").glob(f"robot_control.*.{bus}.*"):
+        path.unlink(missing_ok=True)
+
+
+def script(cycles: int) -> str:
+    """A command every half second, so that none times out: speeds and turns that never repeat."""
+    rows = ["cycle,linear,angular,event"]
+    for k in range(1, cycles, 500):
+        t = k / 1000
+        rows.append(f"{k},{0.4 * math.sin(0.31 * t):.4f},{0.5 * math.sin(0.47 * t):.4f},")
+    return "\n".join(rows) + "\n"
