@@ -8,8 +8,6 @@
 namespace robot_control {
 namespace {
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-
 /// The header of a record in the file, and where its data are. The header's bytes are copied: the window moves on.
 struct FileRecord {
   std::string bytes;
@@ -80,13 +78,13 @@ BagReader::BagReader(const std::string& path, Early early) : file_(path), early_
 }
 
 BagReader::End BagReader::read_bag_header() {
-  if (file_.size() < kMagic.size() || file_.read(0, kMagic.size(), "version") != kMagic) {
-    const std::size_t shown = std::min<std::uint64_t>(file_.size(), kMagic.size());
+  if (file_.size() < kBagMagic.size() || file_.read(0, kBagMagic.size(), "version") != kBagMagic) {
+    const std::size_t shown = std::min<std::uint64_t>(file_.size(), kBagMagic.size());
     throw BagError({}, "version",
                    "the file begins with '" + printable(file_.read(0, shown, "version"), 40) +
                        "' instead of '#ROSBAG V2.0' and a line end");
   }
-  const FileRecord record = read_file_record(file_, kMagic.size());
+  const FileRecord record = read_file_record(file_, kBagMagic.size());
   expect_data(file_, record);
   const BagHeader header = record.header();
   if (header.op() != BagOp::kBagHeader) throw BagError(header.place(), "op", "the first record is no bag header");
@@ -146,10 +144,10 @@ void BagReader::read_records(const End& end) {
   if (at == end.index) begin_list();
   const auto expect = [&](std::size_t count, std::size_t announced, const char* field, const char* what) {
     if (count == announced) return;
-    throw BagError({.offset = kMagic.size()}, field,
+    throw BagError({.offset = kBagMagic.size()}, field,
                    std::to_string(announced) + ", but there are " + std::to_string(count) + what, listed < end.chunks);
   };
-  if (!behind_) throw BagError({.offset = kMagic.size()}, "index_pos", "no record begins there");
+  if (!behind_) throw BagError({.offset = kBagMagic.size()}, "index_pos", "no record begins there");
   expect(connections_.size(), end.connections, "conn_count", " connections");
   expect(defined, end.connections, "conn_count", " connection records behind the chunks");
   expect(chunks_.size(), end.chunks, "chunk_count", " chunks");

@@ -13,6 +13,8 @@
 
 namespace robot_control {
 
+inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
+
 inline constexpr std::uint32_t kLargestBagHeader = 1U << 16U;  ///< bytes; rosbag's own have less than 200, and a topic
 
 /// Values of the field `op`.

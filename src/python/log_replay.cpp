@@ -100,7 +100,6 @@ std::vector<std::string> doubts(const LogHeader& logged, const LogHeader& here) 
 
 /// `logged`: the parameters of the log; `varied`: others, or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
-  TraceReader reader(path);
   const Parameters parameters = parameters_in(logged, logged.first);
   const RobotModel robot = robot_in(parameters);
   Replay replay(parameters, robot);
@@ -117,20 +116,23 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     replay.vary(others, robot_in(others), [&](const VariedRow& row) { columns.add(row); });
     for (const LiveParameter& each : live_parameters(others, "diff_drive_controller")) live.push_back(each.key);
   }
-  const double period = reader.header().period;
+  LogHeader header;
+  std::string cut;
   {
     const py::gil_scoped_release release;
     // All snapshots first: a telemetry that finds a node's rows before its snapshots writes the first of these late.
-    reader.read({.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
-    reader.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(period)); }});
+    TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+    header = reader.header();
+    cut = reader.cut();
+    reader.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(header.period)); }});
     replay.finish();
   }
   py::dict result = described(replay.report());
   result["varied"] = columns.arrays();
-  result["doubts"] = doubts(reader.header(), log_header(parameters, robot));
-  result["cut"] = reader.cut();
+  result["doubts"] = doubts(header, log_header(parameters, robot));
+  result["cut"] = cut;
   result["live"] = live;
-  result["period"] = period;
+  result["period"] = header.period;
   return result;
 }
 

@@ -14,8 +14,6 @@
 
 namespace robot_control {
 
-inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
-
 /// Appends values as a bag and a ROS message have them: little endian, texts and lists behind their length.
 class ByteSink {
  public:

@@ -18,12 +18,7 @@ class OwnedRow {
   JoinedRow joined() const noexcept {
     JoinedRow row{.run = run_, .cycle = cycle_, .time = 0, .driver = driver()};
     row.repeats = repeats_;
-    const JoinedRow::Laws ran{estimator(), controller(), monitor()};
-    if (repeats_) {
-      row.laws = ran;
-    } else {
-      row.set(ran);
-    }
+    row.set({estimator(), controller(), monitor()});
     return row;
   }
 

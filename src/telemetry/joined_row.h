@@ -30,9 +30,10 @@ struct JoinedRow {
   /// no row of the run.
   bool repeats = false;
 
-  /// Fills in the rows of the laws, and of them those whose frame was published.
+  /// Fills in the rows of the laws, and of them those whose frame was published; where it `repeats`, the former alone.
   void set(const Laws& ran) noexcept {
     laws = ran;
+    if (repeats) return;
     if (laws.estimator != nullptr && published(laws.estimator->state.head)) estimator = laws.estimator;
     if (laws.controller != nullptr && published(laws.controller->command.head)) controller = laws.controller;
     if (laws.monitor != nullptr && published(laws.monitor->permit.head)) monitor = laws.monitor;

@@ -8,15 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <numeric>
-#include <optional>
 #include <string_view>
 #include <system_error>
 
 #include "telemetry/log_error.h"
+#include "telemetry/numbered_name.h"
 
 namespace robot_control {
 namespace {
@@ -26,24 +25,11 @@ namespace fs = std::filesystem;
 /// Bytes that a bag begins with. Where there was nothing to record until SIGKILL, it has no more.
 constexpr std::uintmax_t kBagWithoutMessage = 4117;
 
+constexpr std::string_view kBegin = "run.";
 constexpr std::array kKinds{LogKind::kCsv, LogKind::kBag};
 
 std::string_view suffix_of(LogKind kind) {
   return kind == LogKind::kCsv ? ".csv" : ".bag";
-}
-
-/// N of "run.N.csv".
-std::optional<std::uint64_t> number_of(const std::string& name, LogKind kind) {
-  constexpr std::string_view kBegin = "run.";
-  const std::string_view end_of_name = suffix_of(kind);
-  if (name.size() <= kBegin.size() + end_of_name.size()) return {};
-  if (!name.starts_with(kBegin) || !name.ends_with(end_of_name)) return {};
-  const char* const first = name.data() + kBegin.size();
-  const char* const last = name.data() + name.size() - end_of_name.size();
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(first, last, number);
-  if (error != std::errc() || end != last) return {};
-  return number;
 }
 
 }  // namespace
@@ -89,7 +75,7 @@ void LogFolder::look() {
     std::error_code gone;
     if (!fs::is_regular_file(entry->symlink_status(gone))) continue;
     for (const LogKind kind : kKinds) {
-      const auto number = number_of(name, kind);
+      const auto number = number_in(name, kBegin, suffix_of(kind));
       const std::uintmax_t bytes = number ? entry->file_size(gone) : 0;
       if (!number || gone) continue;
       kept_.push_back({.number = *number, .kind = kind, .bytes = static_cast<std::int64_t>(bytes)});
@@ -100,7 +86,7 @@ void LogFolder::look() {
 }
 
 std::string LogFolder::name(std::uint64_t number, LogKind kind) const {
-  const std::string file = "run." + std::to_string(number) + std::string(suffix_of(kind));
+  const std::string file = std::string(kBegin) + std::to_string(number) + std::string(suffix_of(kind));
   return (fs::path(directory_) / file).string();
 }
 

@@ -1,15 +1,13 @@
 #include "recording/black_box/black_box_folder.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <optional>
-#include <string_view>
 #include <system_error>
 
 #include "recording/black_box/black_box_reader.h"
 #include "recording/black_box/saved_black_box.h"
 #include "telemetry/log_error.h"
+#include "telemetry/numbered_name.h"
 
 namespace robot_control {
 namespace {
@@ -21,16 +19,6 @@ constexpr const char* kRing = ".ring";
 
 std::string prefix_of(IncidentKind kind) {
   return kind == IncidentKind::kStop ? "stop." : "crash.";
-}
-
-/// N of PREFIX N SUFFIX.
-std::optional<std::uint64_t> number_of(std::string_view name, std::string_view prefix, std::string_view suffix) {
-  if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) || !name.ends_with(suffix)) return {};
-  const char* const last = name.data() + name.size() - suffix.size();
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(name.data() + prefix.size(), last, number);
-  if (error != std::errc() || end != last) return {};
-  return number;
 }
 
 /// False also where it is no black box.
@@ -65,7 +53,7 @@ std::vector<BlackBoxFolder::File> BlackBoxFolder::files(IncidentKind kind, const
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code gone;
-    const auto number = number_of(entry->path().filename().string(), prefix_of(kind), suffix);
+    const auto number = number_in(entry->path().filename().string(), prefix_of(kind), suffix);
     if (!number || !fs::is_regular_file(entry->symlink_status(gone))) continue;
     found.push_back({.number = *number, .path = entry->path().string()});
   }
@@ -121,7 +109,7 @@ std::vector<std::string> BlackBoxFolder::unsaved() const {
 }
 
 SavedIncident BlackBoxFolder::save(const std::string& ring, IncidentKind kind, std::uint64_t build) const {
-  const auto number = number_of(fs::path(ring).filename().string(), prefix_of(kind), kRing);
+  const auto number = number_in(fs::path(ring).filename().string(), prefix_of(kind), kRing);
   const std::string bag = name(kind, number.value_or(next(kind)), kBag);
   const SavedBlackBox saved = save_black_box(ring, build, bag);
   std::error_code ignored;

@@ -71,8 +71,7 @@ void add_row(TraceFields& to) {
   to.push_back(of_row<u64>(
       "lost",
       "rows lost since telemetry began: in the rings, or not taken by the disk. Cycles that are missing though it "
-      "stays "
-      "the same were left out, because nothing moved (telemetry.record)",
+      "stays the same were left out, because nothing moved (telemetry.record)",
       [](S s) { return s.lost; }, [](R r, u64 value) { r.lost = value; }));
 }
 
@@ -119,14 +118,9 @@ JoinedRow TraceRow::joined(double period) const {
   JoinedRow result{.run = run, .cycle = cycle, .time = row_time(cycle, period)};
   result.repeats = repeats;
   if ((parts & kPartDriver) != 0) result.driver = &driver;
-  const JoinedRow::Laws ran{.estimator = (parts & kPartEstimator) != 0 ? &estimator : nullptr,
-                            .controller = (parts & kPartController) != 0 ? &controller : nullptr,
-                            .monitor = (parts & kPartMonitor) != 0 ? &monitor : nullptr};
-  if (repeats) {
-    result.laws = ran;
-  } else {
-    result.set(ran);
-  }
+  result.set({.estimator = (parts & kPartEstimator) != 0 ? &estimator : nullptr,
+              .controller = (parts & kPartController) != 0 ? &controller : nullptr,
+              .monitor = (parts & kPartMonitor) != 0 ? &monitor : nullptr});
   return result;
 }
 
