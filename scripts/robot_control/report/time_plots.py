@@ -68,13 +68,12 @@ def _of(drive: Drive, number: int, count: int, lines: list[tuple[str, Line]]) ->
     """Columns of one of `count` drives; of two only the first and last of the lines, in the drive's colour."""
     if count == 1:
         return [(line, drive.time, drive.column(name)) for name, line in lines]
-    kept = [lines[0], lines[-1]] if len(lines) > 1 else lines
     colour = OF_DRIVES[number]
+    looks = {lines[0]: (1.0, "dashed"), lines[-1]: (1.4, "solid")}
     return [
-        (Line(f"{drive.name}: {line.label}", colour, 1.4 if i else 1.0, "solid" if i else "dashed"),
-         drive.time, drive.column(name))
-        for i, (name, line) in enumerate(kept if len(kept) > 1 else [("", Line("", "")), *kept]) if name
-    ]  # fmt: skip
+        (Line(f"{drive.name}: {line.label}", colour, width, dash), drive.time, drive.column(name))
+        for (name, line), (width, dash) in looks.items()
+    ]
 
 
 def speeds(axis: TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
