@@ -24,14 +24,25 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
+/// Bytes that are not UTF-8 become U+FFFD: a scene or a calibration file may hold some.
+py::str text_of(const std::string& bytes) {
+  PyObject* const text = PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "replace");
+  if (text == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(text);
+}
+
 py::dict header_of(const LogHeader& header) {
   using namespace py::literals;
-  return py::dict("robot"_a = header.robot, "joints"_a = header.joints, "wheels"_a = header.wheels,
-                  "period"_a = header.period, "clock"_a = header.clock, "record"_a = header.record,
-                  "part"_a = header.part, "parameters"_a = header.parameters, "urdf"_a = header.urdf,
-                  "scene"_a = header.scene, "calibration"_a = header.calibration, "version"_a = header.version,
-                  "build"_a = header.build, "host"_a = header.host, "kernel"_a = header.kernel,
-                  "processor"_a = header.processor, "libraries"_a = header.libraries, "missing"_a = header.missing);
+  py::list joints;
+  for (const std::string& joint : header.joints) joints.append(text_of(joint));
+  return py::dict("robot"_a = text_of(header.robot), "joints"_a = joints, "wheels"_a = header.wheels,
+                  "period"_a = header.period, "clock"_a = text_of(header.clock), "record"_a = text_of(header.record),
+                  "part"_a = header.part, "parameters"_a = text_of(header.parameters), "urdf"_a = text_of(header.urdf),
+                  "scene"_a = text_of(header.scene), "calibration"_a = text_of(header.calibration),
+                  "version"_a = text_of(header.version), "build"_a = text_of(header.build),
+                  "host"_a = text_of(header.host), "kernel"_a = text_of(header.kernel),
+                  "processor"_a = text_of(header.processor), "libraries"_a = text_of(header.libraries),
+                  "missing"_a = text_of(header.missing));
 }
 
 /// A column of the table that grows with the rows.
@@ -71,7 +82,7 @@ class Table {
 
   py::dict columns() {
     py::dict result;
-    for (FilledColumn& each : columns_) result[py::str(each.column.name)] = array_of(std::move(each.values));
+    for (FilledColumn& each : columns_) result[text_of(each.column.name)] = array_of(std::move(each.values));
     return result;
   }
   py::array_t<double> times() { return array_of(std::move(times_)); }

@@ -1,7 +1,10 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from robot_control import ClosedLoop
 from robot_control.common.run_log import LogError, is_run_log, joint_names, last, read_log, read_run
+from robot_control.installed_files import share_file
 from std_msgs.msg import String
 
 
@@ -106,6 +109,16 @@ def test_a_bag_says_of_which_robot_and_how_it_was_made(bag_and_log):
     assert (run.runs, run.lost, run.cut) == (1, 0, "")
     assert run.ros_time is not None
     assert np.all(np.diff(run.ros_time) > 0)
+
+
+def test_a_scene_that_is_not_utf_8_does_not_make_a_log_unreadable(tmp_path):
+    scene = Path(share_file("urdf/scenes/flat.xml")).read_bytes().replace(b"<mujoco", b"<!-- 20 \xb0C --><mujoco", 1)
+    (tmp_path / "scene.xml").write_bytes(scene)
+    loop = ClosedLoop(scene=str(tmp_path / "scene.xml"))
+    loop.log_into(tmp_path)
+    loop.run(0.1)
+    loop.end_log()
+    assert "<!-- 20 \ufffdC -->" in read_run(tmp_path / "run.bag").header["scene"]
 
 
 def test_of_several_runs_in_a_bag_the_last_is_read(tmp_path):
