@@ -15,7 +15,11 @@ LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default 
 ARRIVED = 0.15  # m
 TIMEOUT = 15.0  # s, then another waypoint
 WHEEL_COLUMNS = ("effort", "velocity_measured", "velocity_command")
-COLUMNS = ("permit_causes", "permit_warnings", "gate_verdict", "supervisor_state", "truth_x", "truth_y", "truth_yaw")
+COLUMNS = (
+    *("permit_action", "permit_causes", "permit_warnings", "gate_verdict", "supervisor_state"),
+    *("truth_x", "truth_y", "truth_yaw", "estimate_flags", "time"),
+    *("limited_linear", "limited_angular", "estimate_linear", "estimate_angular"),
+)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 from robot_control.closed_loop import ClosedLoop, Log
 from robot_control.common.cause_names import causes_in
+from robot_control.report.drive import Drive as ReportedDrive
+from robot_control.report.figures import DEGRADED
 
 from lab.drives import turning_drive
 from lab.drives.normal_drive import LINEAR_LIMIT, WHEEL_COLUMNS, NormalDrive, area_of
@@ -54,6 +56,7 @@ class Driven:
     causes: list[str]
     warnings: list[str]  # but for the true ones
     distance: float  # m
+    degraded: float  # share of the time while driving, as report.py has it
 
     def __str__(self) -> str:
         drive = self.drive
@@ -122,7 +125,9 @@ def carry_out(drive: Drive) -> Driven:
     causes = causes_in(log["permit_causes"])
     if causes == ["stall"] and (stuck(log, drive.rate) or pushed_in_vain(log, loop)):
         causes = []
-    return Driven(drive, causes, sorted(warnings), float(log["distance"][0]))
+    moving = ReportedDrive("", log).driving()
+    degraded = float(np.mean(log["estimate_flags"].astype(int)[moving] & DEGRADED != 0)) if moving.any() else 0.0
+    return Driven(drive, causes, sorted(warnings), float(log["distance"][0]), degraded)
 
 
 def _turn(job: tuple[str, int, str]) -> turning_drive.Turning:
@@ -148,12 +153,16 @@ def bench(
         turned.append(turning)
         if turning.causes or turning.warnings:
             say(str(turning))
+    degraded = [outcome.degraded for outcome in driven]
     simulated = sum(drive.seconds for drive in drives) + sum(turning.seconds for turning in turned)
     figures = [
         ("simulated", simulated / 3600, "h"),
         ("distance", sum(outcome.distance for outcome in driven) / 1000, "km"),
         ("drives with a stop", sum(bool(outcome.causes) for outcome in driven), ""),
         ("drives with a warning", sum(bool(outcome.warnings) for outcome in driven), ""),
+        ("degraded, of the time while driving", float(np.mean(degraded)), ""),
+        ("degraded, in 95 % of the drives at most", float(np.percentile(degraded, 95)), ""),
+        ("degraded, most of any drive", max(degraded), ""),
         ("sequences of turns", len(turned), ""),
         ("of them with a stop", sum(bool(turning.causes) for turning in turned), ""),
         ("of them with a warning", sum(bool(turning.warnings) for turning in turned), ""),
