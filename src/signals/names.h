@@ -261,7 +261,7 @@ inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, 
   return text;
 }
 
-/// "the topic e_stop said true (publish false on e_stop); …". Allocates.
+/// "the emergency stop button is pressed (release the button); …". Allocates.
 inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits) {
   std::string text;
   for (const BitName& row : table) {

@@ -35,7 +35,7 @@ struct VelocityCommand {
 
 /// The operator's inputs to the safety monitor. Each counter grows by one with every event.
 struct OperatorInput {
-  std::uint64_t e_stop_level = 0;     ///< last value on topic `e_stop`: 1 = true
+  std::uint64_t e_stop_level = 0;     ///< 1: the last value of a publisher on topic `e_stop` is true
   std::uint64_t e_stop_messages = 0;  ///< on that topic, true or false
   std::uint64_t e_stop_triggers = 0;  ///< true on the topic
   std::uint64_t e_stop_services = 0;  ///< calls of `e_stop_trigger`

@@ -157,13 +157,15 @@ TEST_F(SafetyStatusTest, DoesNotClaimToHaveReleasedWhatWasNotStopped) {
 
 TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheSenders) {
   permit_.reset_refusal = kRefusalCommand;
-  EXPECT_THAT(reset_text(stopped(), permit_, {"/send_cmd", "/teleop"}), HasSubstr("/send_cmd, /teleop"));
+  EXPECT_THAT(reset_text(stopped(), permit_, {.commands = {"/send_cmd", "/teleop"}, .e_stop = {}}),
+              HasSubstr("/send_cmd, /teleop"));
 }
 
 TEST_F(SafetyStatusTest, AnswersARefusedResetWithTheCauseThatPersists) {
   permit_.reset_refusal = kRefusalCauseActive;
   permit_.active = kCauseEmergencyStopTopic;
-  EXPECT_THAT(reset_text(stopped(), permit_, {}), HasSubstr("e_stop"));
+  EXPECT_THAT(reset_text(stopped(), permit_, {.commands = {}, .e_stop = {"/panel", "/gate"}}),
+              HasSubstr("true on e_stop: /panel, /gate"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 import itertools
 import math
 import os
+import subprocess
 from pathlib import Path
 
 import rospy
@@ -14,6 +15,11 @@ from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu, JointState
 from system_support import CONTROLLER, ESTIMATOR, LOOP, MONITOR, RobotTestCase, page_faults_of, schedule_of, wait_for
 from tf2_msgs.msg import TFMessage
+
+
+def publish(value: str) -> None:
+    """On e_stop, by a node of its own, which has left on return."""
+    subprocess.run(["rostopic", "pub", "-1", "e_stop", "std_msgs/Bool", value], check=True, capture_output=True)
 
 
 class DrivesTest(RobotTestCase):
@@ -114,6 +120,28 @@ class DrivesTest(RobotTestCase):
     def test_stops_on_the_service_too(self) -> None:
         self.assertTrue(self.robot.call("e_stop_trigger").success)
         wait_for("its cause", lambda: "e_stop_service" in self.robot.causes)
+        self.robot.release()
+
+    def test_a_false_on_e_stop_ends_the_level_of_its_own_publisher_alone(self) -> None:
+        robot = self.robot
+        robot.send_e_stop(True)
+        wait_for("the stop", lambda: "e_stop_topic" in robot.causes)
+        publish("false")
+        refused = robot.call("e_stop_reset")
+        self.assertFalse(refused.success)
+        self.assertIn(f"true on e_stop: {rospy.get_name()}", refused.message)
+        robot.send_e_stop(False)
+        robot.release()
+
+    def test_the_level_of_a_publisher_that_has_left_ends_at_a_reset_after_the_false_of_another_one(self) -> None:
+        publish("true")
+        wait_for("the stop", lambda: "e_stop_topic" in self.robot.causes)
+        self.robot.send_e_stop(False)  # of a publisher that sent before
+        refused = self.robot.call("e_stop_reset")
+        self.assertIn("true on e_stop: /rostopic_", refused.message)
+        self.assertIn("rostopic pub -1 e_stop std_msgs/Bool false", refused.message)
+        publish("false")
+        self.assertIn("e_stop_topic", self.robot.causes, "false alone does not reset")
         self.robot.release()
 
     def test_resets_odometry(self) -> None:

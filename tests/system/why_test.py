@@ -84,7 +84,7 @@ class WhyTest(RobotTestCase):
         self.assertEqual(code, 1)
         self.assertTrue(words.startswith("Stopped: "), words)
         self.assertIn("the topic e_stop said true", words)
-        self.assertIn("operator: publish false on e_stop", words)
+        self.assertIn("operator: let the node that published true publish false", words)
         self.assertIn("$ rosservice call /e_stop_reset", words)
         self.robot.send_e_stop(False)
         self.robot.release()

@@ -43,7 +43,10 @@ def in_words(answer: Answer, facts: Facts) -> str:
     causes = () if safety is None else safety.causes
     if answer.accepted is False and any(cause.name == "e_stop_topic" and cause.active for cause in causes):
         command = f"rostopic pub -1 {facts.path('e_stop')} std_msgs/Bool false"
-        return f"reset REFUSED: the topic e_stop still says true; once its reason is gone: {command}, then r, y again"
+        return (
+            f"reset REFUSED: the topic e_stop still says true; once its reason is gone, by its publisher's false, or "
+            f"if that has ended: {command}, then r, y again"
+        )
     return f"reset {VERDICTS[answer.accepted]}: {answer.text}"
 
 

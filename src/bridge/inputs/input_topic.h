@@ -31,18 +31,19 @@ class InputTopic {
       ros::NodeHandle& handle, const std::function<void(const Message&)>& receive,
       const std::function<void()>& malformed = [] {}) {
     connect_with_sender(
-        handle, [receive](const Message& message, const std::string&) { receive(message); }, malformed);
+        handle, [receive](const Message& message, const std::string&) { receive(message); },
+        [malformed](const std::string&) { malformed(); });
   }
 
   /// The same with the name of the node that published it.
   void connect_with_sender(
       ros::NodeHandle& handle, const std::function<void(const Message&, const std::string&)>& receive,
-      const std::function<void()>& malformed = [] {}) {
+      const std::function<void(const std::string&)>& malformed = [](const std::string&) {}) {
     using Event = ros::MessageEvent<const BoundedMessage>;
     const boost::function<void(const Event&)> callback = [this, receive, malformed](const Event& event) {
       const BoundedMessage& received = *event.getConstMessage();
       if (received.accepted) return receive(received.message, event.getPublisherName());
-      malformed();
+      malformed(event.getPublisherName());
       warn();
     };
     subscriber_ = handle.subscribe<BoundedMessage, const Event&>(name_, queue_, callback, nullptr,

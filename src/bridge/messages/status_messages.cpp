@@ -124,14 +124,15 @@ bool news(const Permit& last, const Permit& now) {
          last.head.run != now.head.run;
 }
 
-std::string reset_text(const Permit& before, const Permit& permit, const std::vector<std::string>& senders) {
+std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers) {
   if (permit.reset_refusal == 0) return before.causes == 0 ? "nothing was stopped" : "released";
   std::string text = "refused: " + sentences_of(kResetRefusalNames, permit.reset_refusal);
   if ((permit.reset_refusal & kRefusalCauseActive) != 0) {
     text += "; persists: " + sentences_of(kStopCauseNames, permit.active);
+    if (!publishers.e_stop.empty()) text += "; true on e_stop: " + joined(publishers.e_stop);
   }
-  if ((permit.reset_refusal & kRefusalCommand) != 0 && !senders.empty()) {
-    text += "; publishing on cmd_vel: " + joined(senders);
+  if ((permit.reset_refusal & kRefusalCommand) != 0 && !publishers.commands.empty()) {
+    text += "; publishing on cmd_vel: " + joined(publishers.commands);
   }
   if ((permit.reset_refusal & kRefusalInit) != 0) {
     text += "; waiting: " + sentences_of(kMissingNodeNames, permit.missing);

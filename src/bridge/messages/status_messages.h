@@ -25,8 +25,14 @@ msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);
 /// Does `now` differ from `last` in more than cycle, stamp and measured values?
 bool news(const Permit& last, const Permit& now);
 
+/// Nodes that may be the reason of a refusal.
+struct Publishers {
+  std::vector<std::string> commands;  ///< on cmd_vel
+  std::vector<std::string> e_stop;    ///< whose last message on e_stop was true
+};
+
 /// The answer to e_stop_reset: what it released, or why it was refused and what to do. `before`: the last permit
-/// without the answer; `permit`: the one with it; `senders`: the nodes on cmd_vel.
-std::string reset_text(const Permit& before, const Permit& permit, const std::vector<std::string>& senders);
+/// without the answer; `permit`: the one with it.
+std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers);
 
 }  // namespace robot_control

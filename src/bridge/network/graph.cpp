@@ -7,19 +7,40 @@
 
 namespace robot_control {
 
-std::vector<std::string> publishers_of(const std::vector<std::string>& topics) {
+namespace {
+
+/// [[topic, [node, …]], …] of publishers, then of subscribers.
+std::optional<XmlRpc::XmlRpcValue> system_state() {
   XmlRpc::XmlRpcValue request;
   XmlRpc::XmlRpcValue response;
   XmlRpc::XmlRpcValue state;
   request[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", request, response, state, false)) return std::nullopt;
+  return state;
+}
+
+std::vector<std::string> nodes_of(XmlRpc::XmlRpcValue& list, const std::vector<std::string>& topics) {
   std::vector<std::string> nodes;
-  if (!ros::master::execute("getSystemState", request, response, state, false)) return nodes;
-  XmlRpc::XmlRpcValue& published = state[0];  // [[topic, [node, …]], …]
-  for (int i = 0; i < published.size(); ++i) {
-    if (std::ranges::find(topics, static_cast<std::string>(published[i][0])) == topics.end()) continue;
-    for (int j = 0; j < published[i][1].size(); ++j) nodes.push_back(published[i][1][j]);
+  for (int i = 0; i < list.size(); ++i) {
+    if (std::ranges::find(topics, static_cast<std::string>(list[i][0])) == topics.end()) continue;
+    for (int j = 0; j < list[i][1].size(); ++j) nodes.push_back(list[i][1][j]);
   }
   return nodes;
+}
+
+}  // namespace
+
+std::vector<std::string> publishers_of(const std::vector<std::string>& topics) {
+  auto state = system_state();
+  return state ? nodes_of((*state)[0], topics) : std::vector<std::string>();
+}
+
+std::optional<std::vector<std::string>> publishers_known_to_reach(const std::string& topic) {
+  auto state = system_state();
+  if (!state) return std::nullopt;
+  const std::vector<std::string> subscribers = nodes_of((*state)[1], {topic});
+  if (std::ranges::find(subscribers, ros::this_node::getName()) == subscribers.end()) return std::nullopt;
+  return nodes_of((*state)[0], {topic});
 }
 
 }  // namespace robot_control

@@ -1,6 +1,7 @@
 #pragma once
 /// Questions to the ROS master.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,5 +9,9 @@ namespace robot_control {
 
 /// Nodes that publish any of these topics (resolved names); empty when the master does not answer.
 std::vector<std::string> publishers_of(const std::vector<std::string>& topics);
+
+/// Nodes that publish this topic (resolved name), from a master that knows this node as its subscriber. None: it does
+/// not answer, or does not know this node, as after its restart; then it does not know the others either.
+std::optional<std::vector<std::string>> publishers_known_to_reach(const std::string& topic);
 
 }  // namespace robot_control

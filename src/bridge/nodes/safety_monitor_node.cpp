@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "bridge/inputs/e_stop_levels.h"
 #include "bridge/inputs/input_topic.h"
 #include "bridge/messages/messages.h"
 #include "bridge/messages/status_messages.h"
@@ -34,10 +35,12 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   void connect(ros::NodeHandle& handle) override {
     for (const std::string& topic : command_topics()) command_topics_.push_back(handle.resolveName(topic));
     status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
+    e_stop_topic_ = handle.resolveName("e_stop");
     // A malformed message stops the robot, too: its sender may have meant a stop.
-    e_stop_.connect(
-        handle, [this](const msg::Bool& message) { receive_e_stop(message.data != 0); },
-        [this] { receive_e_stop(true); });
+    e_stop_.connect_with_sender(
+        handle,
+        [this](const msg::Bool& message, const std::string& sender) { receive_e_stop(sender, message.data != 0); },
+        [this](const std::string& sender) { receive_e_stop(sender, true); });
     heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
     clearance_.connect(handle, [this](const msg::Float64& message) { receive_clearance(message.data); });
     trigger_ = handle.advertiseService("e_stop_trigger", &SafetyMonitorNode::trigger, this);
@@ -108,12 +111,32 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     process().cycle().inbox().store(input_);
   }
 
-  void receive_e_stop(bool stop) {
+  void receive_e_stop(const std::string& publisher, bool stop) {
     const std::lock_guard lock(input_mutex_);
-    input_.e_stop_level = stop ? 1 : 0;
+    levels_.receive(publisher, stop);
+    input_.e_stop_level = levels_.stopped() ? 1 : 0;
     ++input_.e_stop_messages;
     if (stop) ++input_.e_stop_triggers;
     process().cycle().inbox().store(input_);
+  }
+
+  /// Ends the levels of publishers that have left, where that is known. The master is not asked while the inputs are
+  /// locked: it may take its time.
+  void settle_e_stop() {
+    {
+      const std::lock_guard lock(input_mutex_);
+      if (!levels_.unsettled()) return;
+    }
+    const auto present = publishers_known_to_reach(e_stop_topic_);
+    if (!present) return;
+    const std::lock_guard lock(input_mutex_);
+    levels_.settle(*present);
+    input_.e_stop_level = levels_.stopped() ? 1 : 0;
+  }
+
+  std::vector<std::string> e_stop_publishers() {
+    const std::lock_guard lock(input_mutex_);
+    return levels_.publishers();
   }
 
   void receive_clearance(double clearance) {
@@ -145,6 +168,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
       response.message = "another reset is being answered: ask again";
       return true;
     }
+    settle_e_stop();
     Permit permit;
     Permit before;
     if (seen(permit)) before = permit;
@@ -156,7 +180,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
         continue;
       }
       response.success = permit.reset_refusal == 0;
-      response.message = ascii(reset_text(before, permit, publishers_of(command_topics_)));
+      response.message = ascii(
+          reset_text(before, permit, {.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()}));
       return true;
     }
     response.success = 0;
@@ -166,6 +191,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   }
 
   std::vector<std::string> command_topics_;
+  std::string e_stop_topic_;
   ros::Publisher status_;
   InputTopic<BoundedBool> e_stop_{"e_stop", 10};
   InputTopic<BoundedEmpty> heartbeat_{"heartbeat", 1};
@@ -174,6 +200,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   ros::ServiceServer reset_;
   std::mutex input_mutex_;
   std::mutex reset_mutex_;
+  EStopLevels levels_;
   OperatorInput input_;
   StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9, parameters().controller.cmd_vel_timeout};
   Permit reported_;
