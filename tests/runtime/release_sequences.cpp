@@ -2,25 +2,32 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <random>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "bridge/inputs/command_input.h"
 #include "bridge/inputs/command_mux.h"
+#include "bridge/inputs/e_stop_levels.h"
+#include "control/derived_tuning.h"
 #include "cycle_fixture.h"
 
 namespace robot_control {
 namespace {
 
 enum Node : std::size_t { kDriverNode, kEstimatorNode, kControllerNode, kMonitorNode, kNodes };
-enum class Message { kNone, kZero, kMotion, kNotFinite, kStale };
+enum class Message { kNone, kZero, kMotion, kNotFinite, kStale, kAgedZero, kAgedMotion };
 
-constexpr double kTimeout = 0.05;  // s
+constexpr double kTimeout = 0.05;  // s, at first
 constexpr std::int64_t kTimeoutTicks = 50;
-constexpr std::int64_t kJudgesMargin = 6;  // ticks, of the judge's T
-constexpr std::int64_t kInTransit = 3;     // driver cycles from a message to the command frame that the monitor reads
+constexpr std::array kTimeouts{0.0, 0.02, kTimeout, 0.1};  // s, that set_parameters takes
+constexpr std::int64_t kJudgesMargin = 6;                  // ticks, of the judge's T
+constexpr std::int64_t kInTransit = 3;  // driver cycles from a message to the command frame that the monitor reads
 constexpr std::int64_t kBrakesWithin = kPermitLife + 2;  // driver cycles for which the last permit lives at the gate
 constexpr std::int64_t kNever = -1'000'000;
 
@@ -39,10 +46,19 @@ struct Sender {
   std::int64_t received_at = kNever;
   std::int64_t received_cycle = kNever;  // of all driver cycles
 
+  std::int64_t silence = kTimeoutTicks;  // ticks, the shortest since then after which it is forgotten
+
   bool requests_motion(std::int64_t now) const {
-    return received != Message::kNone && received != Message::kZero &&
-           now - received_at < kTimeoutTicks - kJudgesMargin;
+    return received != Message::kNone && received != Message::kZero && now - received_at < silence - kJudgesMargin;
   }
+};
+
+/// A publisher of e_stop, as the judge knows it.
+struct Button {
+  std::string name;
+  bool level = false;      // its last word
+  bool withdrawn = false;  // another publisher's first message said false since
+  bool present = true;
 };
 
 class Sequence {
@@ -90,8 +106,8 @@ class Sequence {
             parameters_, robot_, kPeriod,
             ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
             CommandScript(), nullptr);
-        inbox_.emplace(kTimeout, parameters_.one_sender);
-        mux_.emplace(two_sources(), kTimeout, parameters_.one_sender);
+        inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
+        mux_.emplace(two_sources(), parameters_.cmd_vel_timeout, parameters_.one_sender);
         for (Sender& sender : senders_) sender.received = Message::kNone;
         break;
       case kMonitorNode:
@@ -100,6 +116,9 @@ class Sequence {
             MonitorCycle::Channels{&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}, CommandScript(),
             nullptr);
         operator_input_ = {};
+        levels_ = {};
+        for (Button& button : buttons_) button.level = false;  // a restarted monitor does not know of it
+        buttons_heard_.clear();
         last_permit_ = {};
         break;
       case kNodes:
@@ -140,12 +159,73 @@ class Sequence {
       driver_->begin_run(random_() | 1);
       take_release_back();
     }
-    if (chance(500) && monitor_ && !away(kMonitorNode)) {
+    if (chance(300) && controller_ && !away(kControllerNode)) tune();
+    if (!monitor_ || away(kMonitorNode)) return;
+    if (chance(500)) {
       ++operator_input_.e_stop_services;
-      if (!stopped_) stop_cycle_ = cycles_;
-      stopped_ = true;
+      stop();
     }
-    if (chance(20)) ++operator_input_.resets;
+    press();
+    if (chance(20)) reset();
+  }
+
+  void stop() {
+    if (!stopped_) stop_cycle_ = cycles_;
+    stopped_ = true;
+  }
+
+  /// As set_parameters does.
+  void tune() {
+    silence_before_ = silence();
+    parameters_.cmd_vel_timeout = kTimeouts[random_() % kTimeouts.size()];
+    DriveTuning tuning = drive_tuning(parameters_, robot_, kPeriod);
+    tuning.count = ++tunings_;
+    controller_->tunings().store(tuning);
+    inbox_->set_timeout(parameters_.cmd_vel_timeout);
+    mux_->set_timeout(parameters_.cmd_vel_timeout);
+    for (Sender& sender : senders_) sender.silence = std::min(sender.silence, silence());
+  }
+
+  std::int64_t silence() const { return std::llround(silence_needed(parameters_.cmd_vel_timeout) / kPeriod); }
+
+  /// The shorter of the present timeout and the one before it, whose frames may still be under way.
+  std::int64_t shortest_silence() const { return std::min(silence(), silence_before_); }
+
+  /// Publishers of e_stop: two that come and go, and now and then one that sends a single false.
+  void press() {
+    for (Button& button : buttons_) {
+      if (chance(400)) button.present = !button.present;
+      if (button.present && chance(button.level ? 60 : 400)) publish(button, !button.level);
+    }
+    if (!chance(100)) return;
+    Button once{.name = "/once_" + std::to_string(now_)};
+    publish(once, false);
+  }
+
+  void publish(Button& button, bool level) {
+    button.level = level;
+    button.withdrawn = false;
+    levels_.receive(button.name, level);
+    operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
+    ++operator_input_.e_stop_messages;
+    if (level) ++operator_input_.e_stop_triggers;
+    if (level) stop();
+    const bool first = std::exchange(buttons_heard_[button.name], true) == false;
+    if (level || !first) return;
+    for (Button& other : buttons_) other.withdrawn |= other.name != button.name;
+  }
+
+  void reset() {
+    std::vector<std::string> present;
+    for (const Button& button : buttons_) {
+      if (button.present) present.push_back(button.name);
+    }
+    if (levels_.unsettled()) levels_.settle(present);
+    operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
+    ++operator_input_.resets;
+    // What ends with this request is decided now, whatever becomes of the publishers until the answer.
+    for (Button& button : buttons_) button.level = button.level && (button.present || !button.withdrawn);
+    held_ = std::ranges::any_of(buttons_, &Button::level);
   }
 
   bool away(Node node) const { return dead_[node] || now_ < away_until_[node]; }
@@ -153,8 +233,9 @@ class Sequence {
   void send() {
     for (Sender& sender : senders_) {
       if (chance(150)) {
-        constexpr std::array kChoices{Message::kNone,   Message::kNone,      Message::kZero, Message::kZero,
-                                      Message::kMotion, Message::kNotFinite, Message::kStale};
+        constexpr std::array kChoices{Message::kNone,  Message::kNone,     Message::kZero,
+                                      Message::kZero,  Message::kMotion,   Message::kNotFinite,
+                                      Message::kStale, Message::kAgedZero, Message::kAgedMotion};
         sender.message = kChoices[random_() % kChoices.size()];
         if (chance(3)) sender.message = Message::kMotion;
         sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
@@ -178,21 +259,28 @@ class Sequence {
 
   void receive(Sender& sender) {
     ArrivedCommand arrived{.sender = sender.name, .twist = {}, .stamp_ns = 0};
-    if (sender.message == Message::kMotion) arrived.twist.linear[0] = 0.5;
+    if (sender.message == Message::kMotion || sender.message == Message::kAgedMotion) arrived.twist.linear[0] = 0.5;
     if (sender.message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
     if (sender.message == Message::kStale) arrived.stamp_ns = 1;
-    const ArrivalTime time{.ros_ns = 1'000'000'000'000, .loop_ns = loop_ns()};
+    // The clock that senders stamp with jumps as it likes.
+    const ArrivalTime time{.ros_ns = 1'000'000'000'000 + below(2'000'000'000), .loop_ns = loop_ns()};
+    const bool aged = sender.message == Message::kAgedZero || sender.message == Message::kAgedMotion;
+    if (aged) arrived.stamp_ns = time.ros_ns - below(150'000'000) + (chance(5) ? 120'000'000 : 0);
+    const std::uint64_t refused = intake().value().stale;
     if (with_list_) {
       mux_->receive(static_cast<std::size_t>(&sender - senders_.data()), arrived, time);
     } else {
       inbox_->receive(arrived, time);
     }
-    sender.received = sender.message;
+    const bool accepted_zero =
+        zero(arrived.twist) && intake().value().stale == refused;  // without a timeout none is old
+    sender.received = accepted_zero ? Message::kZero : Message::kMotion;
     sender.received_at = now_;
+    sender.silence = shortest_silence();
     sender.received_cycle = cycles_;
     const bool alone = std::ranges::none_of(
         senders_, [&](const Sender& other) { return &other != &sender && other.requests_motion(now_); });
-    if (sender.message == Message::kZero && alone) released_ = true;
+    if (sender.received == Message::kZero && alone) released_ = true;
   }
 
   CommandIntake& intake() {
@@ -221,10 +309,11 @@ class Sequence {
   }
 
   const char* judge() {
-    if (now_ - std::max(started_at_, last_sent_) >= kTimeoutTicks - kJudgesMargin) released_ = true;
+    if (now_ - std::max(started_at_, last_sent_) >= shortest_silence() - kJudgesMargin) released_ = true;
     if (std::exchange(accepted_, false)) {
       ++figures_.accepted_resets;
       stopped_ = false;
+      if (held_) return "a reset was accepted while a publisher's last word on e_stop was true";
       for (const Sender& sender : senders_) {
         if (sender.requests_motion(now_) && cycles_ - sender.received_cycle >= kInTransit)
           return "a reset was accepted while a motion was requested";
@@ -255,6 +344,12 @@ class Sequence {
   std::optional<CommandInput> inbox_;
   std::optional<CommandMux> mux_;  ///< instead, with a list of sources
   OperatorInput operator_input_;
+  EStopLevels levels_;
+  std::array<Button, 2> buttons_{Button{.name = "/panel"}, Button{.name = "/gate"}};
+  std::map<std::string, bool> buttons_heard_;
+  bool held_ = false;  ///< at the last reset request a level was not to end
+  std::uint64_t tunings_ = 0;
+  std::int64_t silence_before_ = kTimeoutTicks;
   std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
   std::array<bool, 2> waiting_{};
   std::array<bool, kNodes> dead_{};
