@@ -15,7 +15,7 @@ from robot_control.msg import DriveState
 from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
-from system_support import Program, RobotTestCase, repository, wait_for
+from system_support import NoBool, Program, RobotTestCase, repository, wait_for
 
 
 class CommandSourcesTest(RobotTestCase):
@@ -74,6 +74,18 @@ class CommandSourcesTest(RobotTestCase):
     def test_a_lock_stops_it_and_its_end_lets_it_go_on(self) -> None:
         self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)
         self.pause.publish(Bool(True))
+        try:
+            wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=lambda: self.robot.send(0.5, 0.0))
+            self.assertIn("cmd_vel: locked by pause", self.state.sources)
+        finally:
+            self.pause.publish(Bool(False))
+        wait_for("0.5 m/s again", self.robot.driving, every=lambda: self.robot.send(0.5, 0.0))
+
+    def test_what_is_no_bool_on_a_lock_locks(self) -> None:
+        self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)
+        malformed = rospy.Publisher("pause", NoBool, queue_size=1)
+        wait_for("a subscriber", lambda: malformed.get_num_connections() > 0)
+        malformed.publish(NoBool())
         try:
             wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=lambda: self.robot.send(0.5, 0.0))
             self.assertIn("cmd_vel: locked by pause", self.state.sources)

@@ -18,8 +18,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from lab import hostile
 from robot_control.srv import SetParameters
 from roscpp.srv import GetLoggers, SetLoggerLevel
-from std_msgs.msg import Bool
-from system_support import CONTROLLER, LIMIT, LOOP, MONITOR, RobotTestCase, wait_for
+from system_support import CONTROLLER, LIMIT, LOOP, MONITOR, NoBool, RobotTestCase, wait_for
 
 HOSTILE_RUNS = 10_000
 HOSTILE_TIME = 10.0
@@ -66,13 +65,6 @@ class LongName(TwistStamped):
     def __init__(self) -> None:
         super().__init__()
         self.header.frame_id = "a" * 1_000_000
-
-
-class NoBool(Bool):
-    """Nothing at all."""
-
-    def serialize(self, buff: BytesIO) -> None:
-        buff.write(b"")
 
 
 class MalformedTest(RobotTestCase):

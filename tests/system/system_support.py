@@ -13,6 +13,7 @@ import tempfile
 import time
 import unittest
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -159,6 +160,13 @@ def refusal(
         program.end()
     assert code == 1, f"{name} ended with {code}, not 1:\n{program.output}"
     return program.output
+
+
+class NoBool(Bool):
+    """Nothing at all."""
+
+    def serialize(self, buff: BytesIO) -> None:
+        buff.write(b"")
 
 
 class Robot:

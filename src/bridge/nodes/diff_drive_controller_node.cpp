@@ -138,12 +138,18 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
       }
     }
     for (std::size_t i = 0; i < list_.locks.size(); ++i) {
-      locks_.emplace_back(list_.locks[i].topic, 10).connect(handle, [this, i](const msg::Bool& message) {
-        const std::lock_guard lock(input_mutex_);
-        mux_->receive_lock(i, message.data != 0, loop_ns());
-        process().cycle().inbox().store(mux_->value());
-      });
+      // A malformed message locks, too: its sender may have meant a lock.
+      locks_.emplace_back(list_.locks[i].topic, 10)
+          .connect(
+              handle, [this, i](const msg::Bool& message) { receive_lock(i, message.data != 0); },
+              [this, i] { receive_lock(i, true); });
     }
+  }
+
+  void receive_lock(std::size_t index, bool set) {
+    const std::lock_guard lock(input_mutex_);
+    mux_->receive_lock(index, set, loop_ns());
+    process().cycle().inbox().store(mux_->value());
   }
 
   void add_sources(msg::DriveState& message) {
