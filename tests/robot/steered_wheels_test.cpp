@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "robot/bodies/rigid_bodies.h"
@@ -79,6 +80,62 @@ TEST(HolonomicDrive, RollersOnTheWheelsAreRefusedWithTheReason) {
     EXPECT_THAT(refusal_of(robot_of(text)),
                 AllOf(HasSubstr("rollers"), AnyOf(HasSubstr("omni"), HasSubstr("mecanum"))));
   }
+}
+
+constexpr std::array<const char*, 4> kPlaces{"0.2 0.25 0", "0.2 -0.25 0", "-0.2 0.25 0", "-0.2 -0.25 0"};
+
+TEST(HolonomicDrive, OneWheelWithRollersAmongPlainOnesIsNamedFirst) {
+  for (const bool joints : {true, false}) {
+    for (std::size_t odd = 0; odd < kPlaces.size(); ++odd) {
+      std::string text = base();
+      for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+        const std::string name = "w" + std::to_string(i);
+        text += i == odd ? roller_wheel(name, kPlaces[i], 8, M_PI / 4, joints) : wheel(name, kPlaces[i]);
+      }
+      EXPECT_THAT(refusal_of(robot_of(text)),
+                  AllOf(HasSubstr("<joint name=\"w" + std::to_string(odd) + "\">: its rim is 8 rollers"),
+                        HasSubstr("leave the rollers out"), Not(HasSubstr("robot/left_wheel_joints"))))
+          << odd;
+    }
+  }
+}
+
+/// Plain wheels in front and, `drop` m deeper, wheels with rollers behind; what is not said to drive is a caster.
+std::string with_roller_wheels_behind(double drop, bool joints) {
+  const auto behind = [&](double y) { return xyz(-0.2, y, -drop); };
+  return base() + wheel("fl", kPlaces[0]) + wheel("fr", kPlaces[1]) + roller_wheel("rl", behind(0.25), 8, 0, joints) +
+         roller_wheel("rr", behind(-0.25), 8, 0, joints);
+}
+
+TEST(HolonomicDrive, RollersBesideADriveAreRefusedWhereTheyMayDriveAndCastersWhereTheyDoNot) {
+  for (const bool joints : {true, false}) {
+    const std::string alike = with_roller_wheels_behind(0, joints);
+    EXPECT_THAT(refusal_of(robot_of(alike)), AllOf(HasSubstr("rl"), HasSubstr("rollers"), HasSubstr("as high as")));
+    EXPECT_NO_THROW(read_robot(robot_of(alike + transmission("fl") + transmission("fr")), {}));
+    EXPECT_NO_THROW(read_robot(robot_of(with_roller_wheels_behind(0.02, joints)), {}));
+    const std::string all = alike + transmission("fl") + transmission("fr") + transmission("rl") + transmission("rr");
+    EXPECT_THAT(refusal_of(robot_of(all)), HasSubstr("rollers"));
+    RobotParameters named;
+    named.left_wheel_joints = {"fl"};
+    named.right_wheel_joints = {"fr"};
+    EXPECT_THAT(notes_of(read_robot(robot_of(alike), named), RobotNote::Kind::kSuspicious), HasSubstr("rollers"));
+  }
+}
+
+TEST(HolonomicDrive, ADriveWheelThatIsCalledMecanumOrOmniIsRefusedEvenIfItIsTheOnlyOne) {
+  for (const std::string word : {"mecanum", "Omni"}) {
+    for (const std::string& others : {std::string(), wheel("rl", kPlaces[2]) + wheel("rr", kPlaces[3])}) {
+      const std::string text = base() + wheel(word + "_left", kPlaces[0]) + wheel("fr", kPlaces[1]) + others;
+      EXPECT_THAT(refusal_of(robot_of(text)), AllOf(HasSubstr(word + "_left"), HasSubstr("its name says"),
+                                                    HasSubstr("name the wheels by robot/left_wheel_joints")));
+    }
+  }
+  RobotParameters named;
+  named.left_wheel_joints = {"omni_left"};
+  named.right_wheel_joints = {"fr"};
+  const RobotModel robot =
+      read_robot(robot_of(base() + wheel("omni_left", kPlaces[0]) + wheel("fr", kPlaces[1])), named);
+  EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious), HasSubstr("its name says omni"));
 }
 
 TEST(HolonomicDrive, WheelsThatRollAcrossAreRefusedWithTheReason) {

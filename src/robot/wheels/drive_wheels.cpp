@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "description/urdf_document.h"
 #include "description/wording.h"
@@ -51,8 +53,7 @@ class Search {
 
   std::vector<RollingBody> drive_wheels() const {
     if (candidates_.empty()) {
-      refuse(robot_.source, "<robot>", "no drive wheels found: " + (rejected_.empty() ? "no joint turns" : rejected_),
-             remedy());
+      refuse_unclear("no drive wheels found: " + (rejected_.empty() ? "no joint turns" : rejected_));
     }
     std::vector<RollingBody> driven;
     for (const RollingBody& candidate : candidates_) {
@@ -75,10 +76,18 @@ class Search {
       text += (&candidate == &candidates_.front() ? "" : "; ") + described(robot_, candidate);
     }
     if (!rejected_.empty()) text += ". Not: " + rejected_;
-    refuse(robot_.source, "<robot>", text, remedy());
+    refuse_unclear(text);
   }
 
  private:
+  /// Rollers are named first: who reads of pairs that do not match would look for another fault.
+  [[noreturn]] void refuse_unclear(const std::string& text) const {
+    if (!roller_wheel_) refuse(robot_.source, "<robot>", text, remedy());
+    const auto& [index, rollers] = *roller_wheel_;
+    refuse(robot_.source, joint_element(robot_.bodies[index].joint.name),
+           rollers_objection(rollers) + "; and without it " + text, kRollersRemedy);
+  }
+
   std::vector<std::string> names_of(const std::vector<RollingBody>& wheels) const {
     std::vector<std::string> names;
     for (const RollingBody& wheel : wheels) names.push_back(robot_.bodies[wheel.body].joint.name);
@@ -110,6 +119,7 @@ class Search {
     const std::string& joint = body.joint.name;
     if (rollers_of(robot_, body.parent) > 0) return;
     if (const std::size_t rollers = rollers_of(robot_, index); rollers > 0) {
+      if (!roller_wheel_) roller_wheel_ = {index, rollers};
       return reject(joint, rollers_objection(rollers));
     }
     const bool named = looks_like_a_wheel(robot_, joint);
@@ -180,6 +190,7 @@ class Search {
   std::vector<RollingBody> hanging_;  // above the floor
   std::size_t rolling_ = 0;           // candidates at any height
   std::string rejected_;
+  std::optional<std::pair<std::size_t, std::size_t>> roller_wheel_;  // the first one's body, and its rollers
 };
 
 void note_lying_names(const RigidBodies& robot, const RollingBody& wheel, std::vector<RobotNote>& notes) {

@@ -25,7 +25,7 @@ RollingBody named_wheel(const RigidBodies& robot, const std::string& joint) {
   const RigidBody& body = *robot.moved_by(joint);
   const auto index = static_cast<std::size_t>(&body - robot.bodies.data());
   if (const std::size_t rollers = rollers_of(robot, index); rollers > 0) {
-    refuse(robot.source, element, rollers_objection(rollers), "Leave the rollers out of the URDF");
+    refuse(robot.source, element, rollers_objection(rollers), kRollersRemedy);
   }
   const RollingMeasure measure = measure_wheel(body);
   if (body.joint.type == JointType::kPrismatic) {

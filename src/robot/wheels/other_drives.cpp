@@ -6,6 +6,7 @@
 
 #include "description/wording.h"
 #include "robot/bodies/feet.h"
+#include "robot/wheels/rollers.h"
 #include "robot/wheels/swivel.h"
 #include "robot/wheels/wheel.h"
 
@@ -26,6 +27,7 @@ class Judge {
     for (std::size_t i = 1; i < robot.bodies.size(); ++i) {
       if (!is_drive_wheel(i)) judge(i);
     }
+    judge_names();
   }
 
  private:
@@ -43,6 +45,8 @@ class Judge {
 
   void judge(std::size_t index) {
     const RigidBody& body = robot_.bodies[index];
+    if (rollers_of(robot_, body.parent) > 0) return;
+    if (const std::size_t rollers = rollers_of(robot_, index); rollers > 0) return judge_rollers(body, rollers);
     const RollingMeasure measure = measure_wheel(body);
     if (!measure.objection.empty() || turns_on_a_drive_wheel(index)) return;
     if (measure.wheel.centre_base[2] - measure.wheel.radius > floor_height(train_) + kCasterTolerance) return;
@@ -73,10 +77,39 @@ class Judge {
     const bool ball = shape != nullptr && shape->type == ShapeType::kSphere;
     const double radius = train_.wheels.front().wheel.radius;
     const bool alike = std::abs(measure.wheel.radius - radius) <= kAlike * radius;
-    const bool unsaid = std::none_of(train_.wheels.begin(), train_.wheels.end(), [this](const RollingBody& wheel) {
-      return robot_.bodies[wheel.body].joint.driven;
-    });
-    return !ball && alike && unsaid;
+    return !ball && alike && no_drive_is_said();
+  }
+
+  bool no_drive_is_said() const {
+    return std::none_of(train_.wheels.begin(), train_.wheels.end(),
+                        [this](const RollingBody& wheel) { return robot_.bodies[wheel.body].joint.driven; });
+  }
+
+  /// A passive omni wheel is a caster. It stands as high above the floor as its radius.
+  void judge_rollers(const RigidBody& body, std::size_t rollers) {
+    const double radius = train_.wheels.front().wheel.radius;
+    const double height = body.in_root.translation().z() - floor_height(train_);
+    const bool alike = std::abs(height - radius) <= kAlike * radius;
+    if (body.joint.driven) refuse_or_note(body, "the file says that it is driven, and " + rollers_objection(rollers));
+    if (!body.joint.driven && alike && no_drive_is_said()) {
+      refuse_or_note(body, "it stands as high as the drive wheels, nothing says that it is not driven, and " +
+                               rollers_objection(rollers));
+    }
+  }
+
+  /// What the wheel's own names say, and not that of the whole robot.
+  void judge_names() {
+    for (const RollingBody& wheel : train_.wheels) {
+      const RigidBody& body = robot_.bodies[wheel.body];
+      for (const std::string word : {"mecanum", "omni"}) {
+        const auto says = [&](const std::string& name) { return lower_case(name).find(word) != std::string::npos; };
+        if (!says(body.joint.name + " " + body.name) || says(robot_.bodies[0].name + " " + robot_.name)) continue;
+        refuse_or_note(body, "its name says " + word +
+                                 ": such a wheel rolls sideways, too, and only plain wheels are "
+                                 "driven here");
+        break;
+      }
+    }
   }
 
   bool on_the_middle_line(const RollingMeasure& measure) const {

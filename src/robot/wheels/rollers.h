@@ -14,6 +14,10 @@ namespace robot_control {
 
 inline constexpr std::size_t kLeastRollers = 4;
 
+inline constexpr const char* kRollersRemedy =
+    "Only differential and skid-steer drives are supported; to drive it as one all the same, leave the rollers out of "
+    "the URDF";
+
 /// How many rollers the body carries; 0 where they are fewer than kLeastRollers.
 std::size_t rollers_of(const RigidBodies& robot, std::size_t body);
 
