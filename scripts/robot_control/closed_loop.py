@@ -8,7 +8,7 @@ log["truth_linear"]  # numpy, one value per cycle
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from os import PathLike, fspath
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from robot_control._robot_control import ClosedLoop as _ClosedLoop
 from robot_control._robot_control import end_log, log_into
+from robot_control.common.files import utf8
 from robot_control.parameter_layers import flow_text, layered
 
 Log = dict[str, NDArray[np.float64]]
@@ -34,6 +35,7 @@ class ClosedLoop:
 
     Raises:
         ParameterError: every missing, unknown, mistyped or out-of-range value at once.
+        ValueError: a path or another text is not UTF-8.
         RobotError: the robot description cannot be driven.
         DriverError: the scene does not compile.
 
@@ -50,7 +52,7 @@ class ClosedLoop:
         self._running = False
         self._path, self._values = layered(params, urdf)
         if scene is not None:
-            self._values.append(("mujoco_plant.scene", fspath(scene)))
+            self._values.append(("mujoco_plant.scene", utf8(scene)))
         self._paused = False
         self._loop = self._new_loop(seed)
 
@@ -87,7 +89,7 @@ class ClosedLoop:
         Raises:
             ValueError: an unknown word, with the list of those there are.
         """
-        self._loop.inject_fault(component, kind)
+        self._loop.inject_fault(utf8(component), utf8(kind))
 
     def set_parameters(self, values: Mapping[str, Any]) -> None:
         """As `diff_drive_controller/set_parameter_map`: limits and gains from the next cycle on, kept over `reset()`.
@@ -172,7 +174,7 @@ class ClosedLoop:
             RunLogError: it cannot be written.
         """
         self._refuse_inside_a_run("log_into")
-        log_into(self._loop, fspath(folder))
+        log_into(self._loop, utf8(folder))
 
     def end_log(self) -> None:
         """Completes run.bag.

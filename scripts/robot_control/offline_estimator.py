@@ -8,13 +8,14 @@ out["x"], out["y"], out["yaw"], out["pose_covariance"]  # numpy, a row per sampl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from os import PathLike, fspath
+from os import PathLike
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robot_control._robot_control import OfflineEstimator, signal_names
+from robot_control.common.files import utf8
 from robot_control.parameter_layers import layered, leaves
 
 FloatArray = NDArray[np.float64]
@@ -230,7 +231,7 @@ class Estimator:
             RuntimeError: nothing was learned, or beyond what a robot can be.
             OSError: it cannot be written.
         """
-        self._estimator.save_calibration(fspath(path))
+        self._estimator.save_calibration(utf8(path))
 
     @property
     def period(self) -> float:

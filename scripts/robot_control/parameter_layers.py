@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from os import PathLike, fspath
+from os import PathLike
 from typing import Any
 
 import numpy as np
 
+from robot_control.common.files import utf8
 from robot_control.installed_files import share_file
 
 DEFAULTS = "config/robot_params.yaml"
@@ -17,11 +18,15 @@ DEFAULTS = "config/robot_params.yaml"
 def layered(
     params: str | PathLike[str] | Mapping[str, Any] | None, urdf: str | PathLike[str] | None = None
 ) -> tuple[str, list[tuple[str, str]]]:
-    """The file `params`, or the installed one with the nested dict `params` over it; `urdf` overrides `robot.urdf`."""
+    """The file `params`, or the installed one with the nested dict `params` over it; `urdf` overrides `robot.urdf`.
+
+    Raises:
+        InputFileError: a text or a name is not UTF-8.
+    """
     values = list(leaves(params)) if isinstance(params, Mapping) else []
-    path = share_file(DEFAULTS) if params is None or isinstance(params, Mapping) else fspath(params)
+    path = share_file(DEFAULTS) if params is None or isinstance(params, Mapping) else utf8(params)
     if urdf is not None:
-        values.append(("robot.urdf", fspath(urdf)))
+        values.append(("robot.urdf", utf8(urdf)))
     return path, values
 
 
@@ -32,7 +37,7 @@ def leaves(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str
         if isinstance(value, Mapping):
             yield from leaves(value, path + ".")
         else:
-            yield path, _yaml(value)
+            yield utf8(path), utf8(_yaml(value))
 
 
 def flow_text(value: object) -> str:

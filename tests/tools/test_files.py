@@ -1,13 +1,19 @@
 """Files that a user names: what is read, what is replaced, and what of them stands in a message."""
 
+import importlib
 import os
+import re
 import resource
+import shutil
 import stat
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+from robot_control import ClosedLoop, Estimator
 from robot_control.common.files import InputFileError, NewFiles, check_input, fit_for_message, printable, write_text
+from robot_control.installed_files import share_file
 
 
 def test_only_regular_files_up_to_a_size_are_read(tmp_path):
@@ -25,6 +31,54 @@ def test_only_regular_files_up_to_a_size_are_read(tmp_path):
             check_input(type(tmp_path)(path), 10**9)
     with pytest.raises(InputFileError, match="has 5 bytes; at most 4 are read"):
         check_input(tmp_path / "file", 4)
+
+
+FOREIGN = os.fsdecode(b"\xff")
+"""a byte that no UTF-8 has, as Python reads it in a file's name"""
+
+
+@pytest.mark.parametrize("kind", [str, os.fsencode, Path])
+def test_a_name_that_is_not_utf8_is_refused_by_name(kind, tmp_path):
+    shutil.copy(share_file("urdf/diffbot.urdf"), tmp_path / f"{FOREIGN}.urdf")
+    name = kind(str(tmp_path / f"{FOREIGN}.urdf"))
+    for call in (
+        lambda: ClosedLoop(name),
+        lambda: ClosedLoop(urdf=name),
+        lambda: ClosedLoop(scene=name),
+        lambda: ClosedLoop().log_into(name),
+        lambda: Estimator(name),
+        lambda: Estimator().save_calibration(name),
+    ):
+        with pytest.raises(InputFileError, match=r"\\udcff.urdf is not UTF-8"):
+            call()
+
+
+@pytest.mark.parametrize("values", [{"robot": {"urdf": FOREIGN}}, {FOREIGN: 1}, {FOREIGN: {"urdf": "a"}}])
+def test_a_parameter_that_is_not_utf8_is_refused(values):
+    with pytest.raises(InputFileError, match="is not UTF-8"):
+        ClosedLoop(values)
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments"),
+    [
+        ("inspect", ["%.urdf"]),
+        ("inspect", ["--params", "%.yaml", share_file("urdf/diffbot.urdf")]),
+        ("estimate", ["%.bag"]),
+        ("report", ["%.bag"]),
+        ("export", ["%.bag", "--csv", "out.csv"]),
+        ("replay", ["%.bag"]),
+    ],
+)
+def test_a_program_refuses_such_a_name_in_one_line(program, arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path(f"{FOREIGN}.bag").write_text("#ROSBAG V2.0\n")
+    main = importlib.import_module(f"robot_control.{program}.main").main
+    with pytest.raises(SystemExit) as refusal:
+        main([argument.replace("%", FOREIGN) for argument in arguments])
+    said = capsys.readouterr().err.rstrip() or str(refusal.value)
+    assert re.search(r"udcff\.(urdf|yaml|bag) is not UTF-8", said)
+    assert "\n" not in said
 
 
 def test_a_message_repeats_no_control_character_and_no_long_input():

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robot_control._robot_control import RunLogError, TraceError, save_black_box
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message
+from robot_control.common.files import fit_for_message, utf8
 
 RING = "ring"
 BEFORE = "ring.before"
@@ -35,7 +35,7 @@ def main(arguments: list[str] | None = None) -> None:
         ring = ring_of(given)
         if bag.exists():
             raise FileExistsError(f"{bag} exists; name another folder: --out OUT")
-        rows, _, missing = save_black_box(str(ring), str(bag))
+        rows, _, missing = save_black_box(utf8(ring), utf8(bag))
     except (RunLogError, TraceError, OSError, ValueError, RuntimeError) as error:
         sys.exit(f"blackbox.py: {fit_for_message(in_words(error))}{_beside(given)}")
     print(f"{rows} cycles of {ring} in {bag}{_beside(given)}")

@@ -37,7 +37,7 @@ from robot_control.calibrate.law import (
 from robot_control.calibrate.moves import Move, Pilot, square, straight
 from robot_control.calibrate.robot import CalibratedRobot
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.files import fit_for_message, printable, write_text
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
 from robot_control.common.terminal_dialog import NoAnswerError, Questions
@@ -244,7 +244,8 @@ def main() -> None:
         for sentence in outcome.warnings:
             print(f"! {sentence}")
         write_text(options.out, outcome.yaml)
-        print(f"wrote {options.out}: rosparam load it (in the robot's namespace), then restart every node")
+        name = printable(str(options.out))
+        print(f"wrote {name}: rosparam load it (in the robot's namespace), then restart every node")
     except REFUSALS as error:
         sys.exit(f"calibrate.py: {fit_for_message(in_words(error))}")
 

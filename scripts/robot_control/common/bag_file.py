@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from robot_control._robot_control import BagError, BagReader
-from robot_control.common.files import LARGEST_TABLE, check_input, printable
+from robot_control.common.files import LARGEST_TABLE, check_input, printable, utf8
 
 
 class BagFileError(ValueError):
@@ -39,7 +39,7 @@ class BagFile:
             pass
         self._path = path
         try:
-            self._reader = BagReader(str(path))
+            self._reader = BagReader(utf8(path))
         except (BagError, RuntimeError) as error:
             raise BagFileError(f"{path} is no ROS 1 bag that can be read: {error}") from None
         self.cut = self._reader.cut

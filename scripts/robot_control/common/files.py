@@ -47,6 +47,20 @@ def check_input(path: Path, most: int) -> None:
         raise InputFileError(f"{path} has {status.st_size} bytes; at most {most} are read")
 
 
+def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
+    """A path or another text for the compiled part, which takes UTF-8 alone.
+
+    Raises:
+        InputFileError: it is of other bytes, as a file's name may be.
+    """
+    name = os.fsdecode(text)
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        raise InputFileError(f"{printable(name)} is not UTF-8, and only such names are read: rename it") from None
+    return name
+
+
 def printable(text: str, most: int = LARGEST_ECHO) -> str:
     """Text from outside for a message: at most `most` characters of it, those that do not print as escapes."""
     shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text[:most])

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_control._robot_control import BagError, TraceError, read_run_bag, read_run_header
-from robot_control.common.files import LARGEST_TABLE, check_input, printable
+from robot_control.common.files import LARGEST_TABLE, check_input, printable, utf8
 
 BAG_MAGIC = b"#ROSBAG"
 BLACK_BOX_MAGIC = b"RCBLACK"
@@ -79,7 +79,7 @@ def is_bag(path: Path) -> bool:
 def is_run_log(path: Path) -> bool:
     """Whether the file is a run.bag: a ROS bag that begins with a TraceHeader."""
     try:
-        return is_bag(path) and bool(read_run_header(str(path)))
+        return is_bag(path) and bool(read_run_header(utf8(path)))
     except (BagError, TraceError):
         return False
 
@@ -99,7 +99,7 @@ def read_run(path: Path, columns: Sequence[str] = ()) -> RunLog:
 
 def _read_bag(path: Path, columns: Sequence[str]) -> RunLog:
     try:
-        read = read_run_bag(str(path), list(columns))
+        read = read_run_bag(utf8(path), list(columns))
     except (BagError, TraceError, RuntimeError) as error:
         named = str(error).startswith(str(path))
         raise LogError(str(error) if named else f"{path}: {error}") from None

@@ -16,6 +16,7 @@ from types import FrameType
 from typing import IO
 
 from robot_control.common.file_errors import in_words
+from robot_control.common.files import printable
 from robot_control.common.run_log import LogError, read_log
 from robot_control.demo.arguments import parse
 from robot_control.demo.loop_timing import processor_time, stolen_share
@@ -98,7 +99,7 @@ def run_demo(seconds: float, out: Path) -> int:
     (out / "summary.json").write_text(to_json(summary))
     verdict = "tracked" if summary.passed else "NOT TRACKED"
     draw_run(log, summary, f"{LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png")
-    print(f"\n{to_table(summary)}\n\n{verdict}; see {out}/summary.json, run.csv, run.png")
+    print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.csv, run.png")
     return 0 if summary.passed else 1
 
 

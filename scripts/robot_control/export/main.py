@@ -8,7 +8,7 @@ from pathlib import Path
 
 from robot_control._robot_control import BagError, BagReader, TraceError, write_run_csv
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, fit_for_message
+from robot_control.common.files import NewFiles, fit_for_message, utf8
 from robot_control.common.run_log import LogError, is_bag
 from robot_control.export.mcap_file import McapError, write_mcap
 
@@ -31,10 +31,10 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         if not is_bag(options.input):
             raise LogError(f"{options.input} is no ROS bag")
-        cut = BagReader(str(options.input)).cut
+        cut = BagReader(utf8(options.input)).cut
         with NewFiles() as files:
             if options.csv is not None:
-                write_run_csv(str(options.input), str(files.name(options.csv)))
+                write_run_csv(utf8(options.input), utf8(files.name(options.csv)))
             if options.mcap is not None:
                 write_mcap(options.input, files.name(options.mcap))
             if options.topics is not None:

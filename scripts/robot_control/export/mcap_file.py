@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from robot_control._robot_control import BagReader
+from robot_control.common.files import utf8
 from robot_control.common.pypi import use_packages
 
 
@@ -19,7 +20,7 @@ def write_mcap(source: Path, target: Path) -> None:
         from mcap.writer import Writer
     except ImportError as error:
         raise McapError(f"an MCAP needs PyPI's package mcap ({error}): scripts/setup --export") from None
-    bag = BagReader(str(source))
+    bag = BagReader(utf8(source))
     with target.open("wb") as file:
         writer = Writer(file)
         writer.start(profile="ros1", library="robot_control export.py")

@@ -15,6 +15,7 @@ import matplotlib.image
 from robot_control import _robot_control
 from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.common.file_errors import in_words
+from robot_control.common.files import printable
 from robot_control.common.run_log import LogError
 from robot_control.drive.send_plan import positive
 from robot_control.installed_files import share_file
@@ -128,10 +129,10 @@ def main(given: list[str] | None = None) -> None:
             path = out / f"render_{number}.png"
             moment = round((len(moments) - 1) * number / options.pictures)
             matplotlib.image.imsave(path, film.picture(moment))
-            print(f"wrote {path} ({moments[moment].time:.1f} s)")
+            print(f"wrote {printable(str(path))} ({moments[moment].time:.1f} s)")
         if not options.no_video:
             refusal = write_video(film, options.size, out / "render.mp4")
-            print(refusal or f"wrote {out / 'render.mp4'} ({moments[-1].time - moments[0].time:.0f} s)")
+            print(refusal or f"wrote {printable(str(out / 'render.mp4'))} ({moments[-1].time - moments[0].time:.0f} s)")
     except (RobotError, ParameterError, DriverError, RenderError, LogError, OSError, ValueError) as error:
         sys.exit(f"scripts/render: {in_words(error)}")
 

@@ -12,7 +12,7 @@ from typing import Any
 from robot_control import ParameterError, RobotError
 from robot_control._robot_control import BagError, replay_log
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message
+from robot_control.common.files import fit_for_message, utf8
 from robot_control.common.picture_file import check_picture
 from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup
 
@@ -32,7 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         with tempfile.TemporaryDirectory() as folder:
             setup = recorded_setup(options.log, Path(folder))
             varied = setup.varied(options.params, options.set) if options.set or options.params else None
-            report = replay_log(str(options.log), setup.layers(), varied)
+            report = replay_log(utf8(options.log), setup.layers(), varied)
         print(text_of(report, setup, options.law))
         for key in without_effect([key for key, _ in options.set], report["live"]):
             print(f"! {key} has no effect here: {WITHOUT_EFFECT}")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robot_control._robot_control import read_run_header
+from robot_control.common.files import utf8
 from robot_control.common.run_log import LogError, is_bag
 
 Layers = tuple[str, list[tuple[str, str]]]
@@ -42,7 +43,7 @@ def recorded_setup(log: Path, folder: Path) -> RecordedSetup:
     """
     if not is_bag(log):
         raise LogError(f"{log} is no ROS bag")
-    header = read_run_header(str(log))
+    header = read_run_header(utf8(log))
     parameters, urdf = folder / "parameters.yaml", folder / "robot.urdf"
     parameters.write_text(header["parameters"])
     urdf.write_text(header["urdf"])
