@@ -82,6 +82,18 @@ TEST(HolonomicDrive, RollersOnTheWheelsAreRefusedWithTheReason) {
   }
 }
 
+TEST(DriveWheel, ThatHangsOnAnotherOneIsRefused) {
+  const std::string text = base() + wheel("left", "0 0.25 0") + link("right_link", inertial("1") + tyre("0.1")) +
+                           joint({.name = "right", .child = "right_link", .xyz = "0 -0.5 0", .parent = "left_link"});
+  RobotParameters named;
+  named.left_wheel_joints = {"left"};
+  named.right_wheel_joints = {"right"};
+  for (const RobotParameters& parameters : {RobotParameters(), named}) {
+    EXPECT_THAT(refusal_of(robot_of(text), parameters),
+                AllOf(HasSubstr("<joint name=\"right\">"), HasSubstr("hangs on left")));
+  }
+}
+
 constexpr std::array<const char*, 4> kPlaces{"0.2 0.25 0", "0.2 -0.25 0", "-0.2 0.25 0", "-0.2 -0.25 0"};
 
 TEST(HolonomicDrive, OneWheelWithRollersAmongPlainOnesIsNamedFirst) {

@@ -193,6 +193,18 @@ class Search {
   std::optional<std::pair<std::size_t, std::size_t>> roller_wheel_;  // the first one's body, and its rollers
 };
 
+/// A wheel's angle counts from the body that it hangs on: from another wheel it would be the sum of both.
+void refuse_wheels_on_wheels(const RigidBodies& robot, const std::vector<RollingBody>& wheels) {
+  for (const RollingBody& wheel : wheels) {
+    for (std::size_t i = robot.bodies[wheel.body].parent; i != 0; i = robot.bodies[i].parent) {
+      if (std::ranges::find(wheels, i, &RollingBody::body) == wheels.end()) continue;
+      refuse(robot.source, joint_element(robot.bodies[wheel.body].joint.name),
+             "it hangs on " + robot.bodies[i].joint.name + ", which drives, too: its angle would count from that wheel",
+             "Give both joints the same <parent>, the body that carries them");
+    }
+  }
+}
+
 void note_lying_names(const RigidBodies& robot, const RollingBody& wheel, std::vector<RobotNote>& notes) {
   const RigidBody& body = robot.bodies[wheel.body];
   const std::string names = body.joint.name + " " + body.name;
@@ -253,6 +265,7 @@ DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& par
     refuse(robot.source, "<robot>", std::to_string(train.wheels.size()) + " drive wheels",
            "At most " + std::to_string(kMaxWheels) + " are supported; tracks are not");
   }
+  refuse_wheels_on_wheels(robot, train.wheels);
   for (const RollingBody& wheel : train.wheels) note_lying_names(robot, wheel, notes);
   for (const RollingBody& wheel : train.wheels) note_out_of_round(robot, wheel, notes);
   train.casters = find_casters(robot, train.wheels, notes);
