@@ -250,5 +250,14 @@ TEST(RobotAssumptions, TheImuIsFoundByAWordOfItsName) {
   EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("no link \"nowhere\""));
 }
 
+TEST(NegativeNumbers, OfAJointAreTakenAsNotGivenAndNoted) {
+  for (const std::string rest : {"<limit effort=\"-5\" velocity=\"9\"/>", "<limit effort=\"5\" velocity=\"-9\"/>",
+                                 "<dynamics damping=\"-5\"/>", "<dynamics friction=\"-5\"/>"}) {
+    const std::string text = base() + wheel("left", "0 0.25 0", "0.1", rest) + wheel("right", "0 -0.25 0");
+    EXPECT_THAT(notes_of(read_robot(robot_of(text), {}), RobotNote::Kind::kSuspicious), HasSubstr("is negative"))
+        << rest;
+  }
+}
+
 }  // namespace
 }  // namespace robot_control

@@ -13,11 +13,19 @@ JointType type_of(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE ? JointType::kRevolute : JointType::kPrismatic;
 }
 
+void note_negative(const char* attribute, double value, const std::string& element, std::vector<RobotNote>& notes) {
+  if (!(value < 0)) return;
+  notes.push_back({RobotNote::Kind::kSuspicious, element,
+                   std::string(attribute) + "=\"" + number(value) + "\"> is negative: taken as not given"});
+}
+
 void read_limits(const urdf::JointLimits& limits, const std::string& source, BodyJoint& joint,
                  std::vector<RobotNote>& notes) {
   const std::string element = joint_element(joint.name);
   joint.effort_limit = limits.effort > 0 ? limits.effort : 0;
   joint.velocity_limit = limits.velocity > 0 ? limits.velocity : 0;
+  note_negative("<limit effort", limits.effort, element, notes);
+  note_negative("<limit velocity", limits.velocity, element, notes);
   if (joint.type == JointType::kContinuous) return;
   if (!(limits.lower <= limits.upper)) {
     refuse(source, element, "<limit> from " + number(limits.lower) + " to " + number(limits.upper),
@@ -64,6 +72,8 @@ BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, std::v
   if (joint.dynamics) {
     result.damping = std::max(0.0, joint.dynamics->damping);
     result.friction = std::max(0.0, joint.dynamics->friction);
+    note_negative("<dynamics damping", joint.dynamics->damping, joint_element(joint.name), notes);
+    note_negative("<dynamics friction", joint.dynamics->friction, joint_element(joint.name), notes);
   }
   if (joint.mimic) {
     result.mimicked = joint.mimic->joint_name;
