@@ -15,6 +15,7 @@
 #include "control/wheel_loops/quantisation_ripple.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
 #include "control/wheel_loops/wheel_loop_stability.h"
+#include "robot/suspicions.h"
 
 namespace robot_control {
 
@@ -317,7 +318,9 @@ void check_loops(const DriveControllerParameters& parameters, const RobotModel& 
     if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
     judged.push_back(loop);
     if (const Load* load = loop.unstable_load()) {
-      problems.push_back(unstable_message(loop, derived, joint.name, *load));
+      const std::string suspicions = suspicions_of(described);
+      problems.push_back(unstable_message(loop, derived, joint.name, *load) +
+                         (suspicions.empty() ? "" : " " + suspicions));
     } else if (const Load* swinging = loop.underdamped_load(derived)) {
       problems.push_back(underdamped_message(loop, derived, joint.name, *swinging));
     } else if (const Load* shaken = gains_are_set ? loop.oscillating_load(derived) : nullptr) {

@@ -80,7 +80,7 @@ std::optional<double> given_deceleration(const RobotModel& robot) {
 }
 
 void note_tipping(RobotModel& robot) {
-  const double limit = given_deceleration(robot).value_or(kRamp);
+  const double limit = given_deceleration(robot).value_or(kUsualRamp);
   const double lifting = lifting_deceleration(robot);
   if (!(lifting > 0)) {
     // Springs give way until other parts stand on the ground than at the zero pose.

@@ -5,7 +5,7 @@
 ///   masses    more than a block of steel as large as the robot, the box about all its shapes: grams
 ///   base      less than kLightBase of the whole mass is in the root and what is fixed to it: an <inertial> is missing
 ///   tipping   the first wheel lifts (tipping.h) at less than the robot's own limit: what the wheels' given torque
-///             limits brake it by, at most g; where none is given, kRamp. Or nothing carries it before or behind its
+///             limits brake it by, at most g; where none is given, kUsualRamp. Or nothing carries it before or behind its
 ///             centre of gravity, and it has no springs
 ///   wheels    their torque limits, less their joints' friction, accelerate the robot by less than kWeak
 ///   root      farther than kFar diagonals of the robot from its wheels: a world that the robot is fixed to
@@ -21,7 +21,7 @@ inline constexpr double kLargestWheel = 0.6;  ///< m, radius
 inline constexpr double kLargestPart = 20;    ///< m
 inline constexpr double kSteel = 7850;        ///< kg/m³
 inline constexpr double kLightBase = 0.15;
-inline constexpr double kRamp = 2;  ///< m/s², default of max_linear_emergency_deceleration
+inline constexpr double kUsualRamp = 2;  ///< m/s², default of max_linear_emergency_deceleration
 
 inline constexpr double kWeak = 0.05;  ///< m/s²; an incline of 0.3° holds it
 inline constexpr double kFar = 2;

@@ -135,6 +135,14 @@ TEST(ControlProblems, LeaveARobotItsOwnLossesHoweverLargeTheyAre) {
   EXPECT_THAT(control_problems(parameters, robot, 1e-3), IsEmpty());
 }
 
+TEST(ControlProblems, NameWhatIsSuspiciousOfARobotThatNoGainsFit) {
+  RobotModel robot = make_test_robot();
+  robot.notes.push_back({RobotNote::Kind::kSuspicious, "<robot>", "are lengths in millimetres?"});
+  DriveControllerParameters parameters;
+  parameters.pid_kp = 20;
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), Each(HasSubstr("are lengths in millimetres?")));
+}
+
 // Stable with the wheels that the set makes heavier, and unstable with those that are there.
 TEST(ControlProblems, RefuseGainsThatOnlyTheRobotOfTheSetBears) {
   DriveControllerParameters parameters;
