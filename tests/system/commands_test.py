@@ -157,12 +157,11 @@ class CommandsTest(RobotTestCase):
             other.end()
         wait_for(
             "the end of it",
-            lambda: any(  # the second where this node stalls for longer than a sender counts
-                end in self.log
-                for end in (f"one sender of commands is left: {rospy.get_name()}", "no node sends commands any more")
-            ),
+            lambda: self.desk.values.get("senders") == rospy.get_name(),
             every=lambda: self.desk.send_aged(0.5, 0.0),
         )
+        # Where one of them stalls for longer than a sender counts, that is the first end, and the line for it.
+        self.assertRegex(self.log, "one sender of commands is left: |no node sends commands any more")
 
     def test_drive_state_compares_every_wheel_with_its_target(self) -> None:
         def steady() -> bool:

@@ -40,7 +40,7 @@ class DescriptionTest(unittest.TestCase):
             urdf.write_text(other_robot())
             self.robot.nodes[PLANT] = Program(PLANT, f"_urdf:={urdf}")
             wait_for("the description", lambda: PORT in rospy.get_param("robot_description", ""))
-            self.assertEqual(rospy.get_param("robot/urdf"), str(urdf))
+            wait_for("its file", lambda: rospy.get_param("robot/urdf", "") == str(urdf))
             self.robot.start(*(name for name in LOOP if name != PLANT))
             self.await_other_robot()
             self.assertIn(f"left wheels {PORT}", self.robot.nodes[PLANT].output)

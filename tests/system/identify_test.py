@@ -17,6 +17,8 @@ from robot_control.msg import SafetyStatus
 from system_support import CONTROLLER, PLANT, STALL_CAUSES, Program, RobotTestCase, init_test_node, nightly, wait_for
 
 FRICTION = 0.1  # N·m, hidden in the plant
+BEGINNING = 60.0
+"""s; before it drives, identify.py loads numpy, reads all parameters and starts a telemetry of its own."""
 ATTEMPTS = 3  # a stalling machine may stop the robot in the middle of the half minute that this takes
 
 
@@ -57,7 +59,7 @@ class IdentifyTest(RobotTestCase):
         """What it says when it does not begin."""
         start = self.robot.distance
         with self.started(*arguments) as program:
-            self.assertEqual(program.wait(60.0), 1, program.output)
+            self.assertEqual(program.wait(BEGINNING), 1, program.output)
             self.assertLess(abs(self.robot.distance - start), 0.005, "no motion")
             self.assertFalse(self.output.exists())
             return program.output
@@ -122,7 +124,9 @@ class IdentifyTest(RobotTestCase):
         """While it drives. A stalling machine may stop the robot before: then it ends, and is started again."""
         for _ in range(ATTEMPTS):
             with self.started() as program:
-                wait_for("motion or the end", lambda: abs(self.robot.speed) > 0.1 or not program.running)
+                wait_for(
+                    "motion or the end", lambda: abs(self.robot.speed) > 0.1 or not program.running, limit=BEGINNING
+                )
                 if program.running:
                     yield program
                     return
