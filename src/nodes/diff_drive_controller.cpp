@@ -3,6 +3,8 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "diff_drive_controller",
-                  [](const Setup& setup) { return make_diff_drive_controller(setup); });
+  return run_node(argc, argv,
+                  {.name = "diff_drive_controller",
+                   .purpose = "Turns velocity commands into torques of the wheels, within the limits of the robot.",
+                   .make = [](const Setup& setup) { return make_diff_drive_controller(setup); }});
 }

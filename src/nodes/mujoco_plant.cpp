@@ -3,5 +3,9 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "mujoco_plant", make_mujoco_plant);
+  return run_node(argc, argv,
+                  {.name = "mujoco_plant",
+                   .purpose = "Simulates the robot: motors, sensors and the world around it, in MuJoCo. The last check "
+                              "of every command is here.",
+                   .make = make_mujoco_plant});
 }

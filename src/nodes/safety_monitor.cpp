@@ -3,5 +3,9 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "safety_monitor", [](const Setup& setup) { return make_safety_monitor(setup); });
+  return run_node(
+      argc, argv,
+      {.name = "safety_monitor",
+       .purpose = "Permits motion or stops it, beside the chain of the other nodes; holds stops until they are reset.",
+       .make = [](const Setup& setup) { return make_safety_monitor(setup); }});
 }

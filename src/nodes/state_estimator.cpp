@@ -3,5 +3,8 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "state_estimator", [](const Setup& setup) { return make_state_estimator(setup); });
+  return run_node(argc, argv,
+                  {.name = "state_estimator",
+                   .purpose = "Estimates pose and speed of the robot from its wheels and its inertial sensors.",
+                   .make = [](const Setup& setup) { return make_state_estimator(setup); }});
 }

@@ -4,6 +4,9 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv, "state_estimator",
-                  [](const Setup& setup) { return make_state_estimator(setup, faulty_estimator_output()); });
+  return run_node(argc, argv,
+                  {.name = "state_estimator",
+                   .purpose = "Estimates pose and speed of the robot from its wheels and its inertial sensors. Faults "
+                              "can be injected into its output.",
+                   .make = [](const Setup& setup) { return make_state_estimator(setup, faulty_estimator_output()); }});
 }

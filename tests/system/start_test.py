@@ -68,6 +68,19 @@ class StartTest(unittest.TestCase):
     def setUpClass(cls) -> None:
         init_test_node("start_test")
 
+    def test_prints_its_usage_or_refuses_an_argument_without_a_master(self) -> None:
+        environment = {"ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}"}
+        programs = [*LOOP, "telemetry", *(f"{name}_with_faults" for name in LOOP if name != PLANT)]
+        with tempfile.TemporaryDirectory() as folder:
+            for name in programs:
+                program = Program(name, "--help", environment=environment, prefix=["env", "-C", folder])
+                self.assertEqual(program.wait(), 0, program.output)
+                self.assertIn(f"usage: rosrun robot_control {name} ", program.output)
+                for argument in ("--verbose", "surplus"):
+                    said = refusal(name, argument, environment=environment, prefix=["env", "-C", folder])
+                    self.assertIn(f"argument '{argument}' is unknown", said)
+            self.assertEqual(list(Path(folder).iterdir()), [], "a node that does not start writes nothing")
+
     def test_refuses_bad_parameters_all_at_once(self) -> None:
         folder = repository() / "config"
         tree = yaml.safe_load((folder / "robot_params.yaml").read_text())

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "bridge/messages/messages.h"
 #include "bridge/network/accepted_sockets.h"
@@ -16,6 +17,7 @@
 #include "bridge/network/wire_guard.h"
 #include "bridge/nodes/launch_end.h"
 #include "bridge/reports/diagnostics.h"
+#include "bridge/startup/command_line.h"
 #include "bridge/startup/description.h"
 #include "hal/bus_cleanup.h"
 #include "rt/clock.h"
@@ -179,7 +181,13 @@ class NodeLoop {
 
 }  // namespace
 
-int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
+int run_node(int argc, char** argv, const NodeProgram& program) {
+  const std::string& name = program.name;
+  const std::string file = std::filesystem::path(argv[0]).filename().string();
+  if (const auto answer = answer_command_line(file, program.purpose, {argv + 1, argv + argc})) {
+    std::fputs(answer->text.c_str(), answer->refused ? stderr : stdout);
+    return answer->refused ? 1 : 0;
+  }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
   std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep their point
   install_last_words(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
@@ -196,7 +204,7 @@ int run_node(int argc, char** argv, const std::string& name, MakeNode make) {
     const Setup setup = read_setup(name);
     const LoopParameters& loop = setup.parameters.loop;
     prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
-    const std::unique_ptr<Node> node = make(setup);
+    const std::unique_ptr<Node> node = program.make(setup);
 
     ros::NodeHandle handle;
     catch_signals();  // again: ROS puts a handler of its own

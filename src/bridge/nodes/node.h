@@ -52,8 +52,14 @@ class Node {
 /// Takes the locks; throws BusError and whatever refuses the start.
 using MakeNode = std::unique_ptr<Node> (*)(const Setup&);
 
-/// The body of main. 0: ended by SIGINT, SIGTERM, ROS or by itself. 1: refused, reported on stderr.
-int run_node(int argc, char** argv, const std::string& name, MakeNode make);
+struct NodeProgram {
+  std::string name;     ///< of the node and of its block of parameters
+  std::string purpose;  ///< what the node does, in sentences
+  MakeNode make;
+};
+
+/// The body of main. 0: --help, or ended by SIGINT, SIGTERM, ROS or by itself. 1: refused, reported on stderr.
+int run_node(int argc, char** argv, const NodeProgram& program);
 
 /// Publish tick for topics of these rates [Hz], in a loop of this period: a quarter of the shortest interval,
 /// 0.25 … 2 ms. In lockstep, where simulated time runs much faster, the shortest.
