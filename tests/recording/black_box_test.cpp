@@ -68,6 +68,22 @@ TEST_F(ABlackBox, IsSavedToOneNameByTwoProcessesAtOnce) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("saved")), {}), 1) << "nothing is left beside it";
 }
 
+TEST_F(ABlackBox, LeavesNoBagWhereverTheCallerGivesUp) {
+  BlackBox box(path("ring"), kBytes, build_id(), header());
+  drive_on(box, 300);
+  int asked = 0;
+  save_black_box(path("ring"), build_id(), path("saved/run.bag"), [&] { return ++asked < 0; });
+  std::filesystem::remove_all(path("saved"));
+  ASSERT_GT(asked, 300);
+  for (int last = 1; last <= asked; last += 1 + asked / 50) {
+    int calls = 0;
+    const auto give_up = [&] { return ++calls == last; };
+    EXPECT_THROW(save_black_box(path("ring"), build_id(), path("saved/run.bag"), give_up), SavingGivenUp);
+    EXPECT_EQ(calls, last) << "at once";
+    EXPECT_FALSE(std::filesystem::exists(path("saved")));
+  }
+}
+
 TEST_F(ABlackBox, OfAnotherBuildIsRefusedByItsName) {
   BlackBox box(path("ring"), kBytes, 0x0123456789abcdefU, header());
   EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("by the build 0123456789abcdef")));

@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "recording/black_box/black_box_reader.h"
-#include "recording/black_box/saved_black_box.h"
 #include "telemetry/log_error.h"
 #include "telemetry/numbered_name.h"
 
@@ -108,10 +107,11 @@ std::vector<std::string> BlackBoxFolder::unsaved() const {
   return paths;
 }
 
-SavedIncident BlackBoxFolder::save(const std::string& ring, IncidentKind kind, std::uint64_t build) const {
+SavedIncident BlackBoxFolder::save(const std::string& ring, IncidentKind kind, std::uint64_t build,
+                                   const GiveUp& give_up) const {
   const auto number = number_in(fs::path(ring).filename().string(), prefix_of(kind), kRing);
   const std::string bag = name(kind, number.value_or(next(kind)), kBag);
-  const SavedBlackBox saved = save_black_box(ring, build, bag);
+  const SavedBlackBox saved = save_black_box(ring, build, bag, give_up);
   std::error_code ignored;
   if (number) fs::remove(ring, ignored);
   remove_oldest(kind);

@@ -4,7 +4,8 @@
 ///   ring          it
 ///   ring.before   the one before, whose writer has ended orderly
 ///   stop.N.bag    what it held some seconds after a latched stop
-///   crash.N.bag   what one held whose writer did not end orderly; until it is saved, crash.N.ring
+///   crash.N.bag   what one held whose writer did not end orderly, or had no time to save a stop; until it is saved,
+///                 crash.N.ring
 ///
 /// The higher N, the newer. Of stops and of crashes the newest `keep` are kept.
 
@@ -12,6 +13,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "recording/black_box/saved_black_box.h"
 
 namespace robot_control {
 
@@ -36,8 +39,8 @@ class BlackBoxFolder {
   std::vector<std::string> unsaved() const;
 
   /// Writes what `ring` holds to the next bag of this kind, of a crash to that of its number; removes the oldest.
-  /// Throws LogError; then no bag is there.
-  SavedIncident save(const std::string& ring, IncidentKind kind, std::uint64_t build) const;
+  /// Throws LogError; then no bag is there. Throws SavingGivenUp.
+  SavedIncident save(const std::string& ring, IncidentKind kind, std::uint64_t build, const GiveUp& give_up = {}) const;
 
  private:
   struct File {

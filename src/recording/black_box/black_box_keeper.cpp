@@ -14,7 +14,7 @@
 namespace robot_control {
 namespace {
 
-constexpr const char* kCrashed = "telemetry had not ended orderly";
+constexpr const char* kCrashed = "telemetry had not ended orderly, or had no time to save a stop";
 
 }  // namespace
 
@@ -28,7 +28,7 @@ BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std
   } catch (const LogError&) {
     if (unsaved_.empty()) throw;
     // The ring of a telemetry that was killed may be what takes the room: saved, it is a third as large.
-    for (const std::string& ring : std::exchange(unsaved_, {})) note(save(ring, IncidentKind::kCrash, kCrashed));
+    for (const std::string& ring : std::exchange(unsaved_, {})) note(save(ring, IncidentKind::kCrash, kCrashed, {}));
     make_box();
   }
 }
@@ -74,32 +74,43 @@ void BlackBoxKeeper::look_at_size() {
   notes_.emplace_back(text.data());
 }
 
-BlackBoxKeeper::~BlackBoxKeeper() = default;
+BlackBoxKeeper::~BlackBoxKeeper() {
+  ends_.store(true);
+}
 
-BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why) const {
+BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why,
+                                             const GiveUp& give_up) const {
   try {
-    const SavedIncident saved = folder_.save(ring, kind, build_);
+    const SavedIncident saved = folder_.save(ring, kind, build_, give_up);
     const std::string missing = saved.missing.empty() ? "" : "; " + saved.missing;
     return {.saved = true, .note = "saved " + saved.bag + ": " + why + missing};
   } catch (const EmptyBlackBox&) {
     std::error_code ignored;
     if (kind == IncidentKind::kCrash) std::filesystem::remove(ring, ignored);
     return {};
+  } catch (const SavingGivenUp&) {
+    return {.given_up = true, .note = {}};
   } catch (const std::exception& error) {
     return {.note = "not saved (" + why + "): " + error.what()};
   }
 }
 
 void BlackBoxKeeper::begin(const std::string& ring, IncidentKind kind, const std::string& why) {
-  saving_ = std::async(std::launch::async, [this, ring, kind, why] {
+  saving_ = kind == IncidentKind::kStop ? why : "";
+  outcome_ = std::async(std::launch::async, [this, ring, kind, why] {
     constexpr int kLowest = 19;
     setpriority(PRIO_PROCESS, 0, kLowest);  // of this thread
-    return save(ring, kind, why);
+    return save(ring, kind, why, [this] { return ends_.load(); });
   });
 }
 
-void BlackBoxKeeper::take_outcome() {
-  if (saving_.valid()) note(saving_.get());
+/// False: it was given up.
+bool BlackBoxKeeper::take_outcome() {
+  if (!outcome_.valid()) return true;
+  Outcome outcome = outcome_.get();
+  const bool given_up = outcome.given_up;
+  note(std::move(outcome));
+  return !given_up;
 }
 
 void BlackBoxKeeper::note(Outcome outcome) {
@@ -114,7 +125,7 @@ void BlackBoxKeeper::poll(std::int64_t now_ns) {
     box_->add_header(encoded_);
     header_ns_ = now_ns + kHeaderNs;
   }
-  if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (outcome_.valid() && outcome_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   take_outcome();
   if (watch_.due(now_ns)) {
     const std::uint64_t causes = watch_.take();
@@ -125,10 +136,18 @@ void BlackBoxKeeper::poll(std::int64_t now_ns) {
   }
 }
 
-void BlackBoxKeeper::finish() {
-  take_outcome();
-  if (watch_.pending() && keep_ != 0) {
-    note(save(folder_.ring(), IncidentKind::kStop, names_of(kStopCauseNames, watch_.take(), ", ")));
+/// The thread gets little of a busy machine, and roslaunch kills a node that takes 15 s to end.
+void BlackBoxKeeper::finish(const GiveUp& late) {
+  ends_.store(true);
+  std::string why = take_outcome() ? "" : saving_;
+  if (watch_.pending()) why += (why.empty() ? "" : ", ") + names_of(kStopCauseNames, watch_.take(), ", ");
+  if (!why.empty() && keep_ != 0) {
+    Outcome outcome = save(folder_.ring(), IncidentKind::kStop, why, late);
+    if (outcome.given_up) {
+      notes_.push_back("not saved (" + why + "): telemetry ends; the next one in this folder saves it as a crash");
+      return;
+    }
+    note(std::move(outcome));
   }
   if (box_ != nullptr) box_->mark_ended();
 }

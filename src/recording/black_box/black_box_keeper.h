@@ -2,6 +2,7 @@
 /// The black box of a robot, and its incidents: what it holds some seconds after a latched stop is saved as a bag, and
 /// so is that of a telemetry that was killed. A thread of the lowest priority writes them, one at a time.
 
+#include <atomic>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "recording/black_box/black_box.h"
 #include "recording/black_box/black_box_folder.h"
 #include "recording/black_box/incident_watch.h"
+#include "recording/black_box/saved_black_box.h"
 
 namespace robot_control {
 
@@ -49,8 +51,10 @@ class BlackBoxKeeper {
   /// every `kRetryNs`.
   void poll(std::int64_t now_ns);
 
-  /// The end: saves a stop that waits for what follows, and marks the ring as ended orderly.
-  void finish();
+  /// The end: what the thread is saving is given up; a stop that waits for what follows, or was given up, is saved
+  /// here, with the priority of the caller, and the ring is marked as ended orderly. Where `late` becomes true first,
+  /// the ring is not marked: the next keeper of this folder saves it, as that of a crash.
+  void finish(const GiveUp& late = {});
 
   std::uint64_t saved() const noexcept { return saved_; }
 
@@ -60,14 +64,15 @@ class BlackBoxKeeper {
  private:
   struct Outcome {
     bool saved = false;
+    bool given_up = false;
     std::string note;
   };
   void make_box();
   void look_for_box(std::int64_t now_ns);
   void look_at_size();
-  Outcome save(const std::string& ring, IncidentKind kind, const std::string& why) const;
+  Outcome save(const std::string& ring, IncidentKind kind, const std::string& why, const GiveUp& give_up) const;
   void begin(const std::string& ring, IncidentKind kind, const std::string& why);
-  void take_outcome();
+  bool take_outcome();
   void note(Outcome outcome);
 
   BlackBoxFolder folder_;
@@ -80,9 +85,11 @@ class BlackBoxKeeper {
   std::unique_ptr<BlackBox> box_;  ///< null: it was removed, and no other could be made
   IncidentWatch watch_;
   std::vector<std::string> unsaved_;  ///< oldest first
-  std::future<Outcome> saving_;
-  std::int64_t look_ns_ = 0;  ///< when to look for the ring again
-  bool absent_ = false;       ///< and said
+  std::string saving_;                ///< why, where it is a stop
+  std::atomic<bool> ends_{false};
+  std::future<Outcome> outcome_;  ///< of what the thread saves; its destructor waits for the thread
+  std::int64_t look_ns_ = 0;      ///< when to look for the ring again
+  bool absent_ = false;           ///< and said
   bool size_looked_at_ = false;
   std::uint64_t saved_ = 0;
   std::vector<std::string> notes_;

@@ -177,6 +177,7 @@ BlackBoxDamage BlackBoxReader::read(const Use& use) const {
   std::vector<Segment> all;
   std::uint64_t newest = 0;
   for (std::uint64_t i = 0; i < segments_; ++i) {
+    if (use.segment) use.segment();
     all.push_back(look(i));
     newest = std::max(newest, all.back().sequence);
   }
@@ -194,7 +195,10 @@ BlackBoxDamage BlackBoxReader::read(const Use& use) const {
   }
   std::ranges::sort(sound, {}, &Segment::sequence);
   Walk walk(use, damage, newest < segments_);
-  for (const Segment& each : sound) walk.read(each, load(each.number));
+  for (const Segment& each : sound) {
+    if (use.segment) use.segment();
+    walk.read(each, load(each.number));
+  }
   return damage;
 }
 

@@ -56,7 +56,8 @@ class BlackBoxReader {
 
   struct Use {
     std::function<void(const BlackBoxRecord&)> record;
-    std::function<void()> gap = {};  ///< between the record before and the one after, others are missing
+    std::function<void()> gap = {};      ///< between the record before and the one after, others are missing
+    std::function<void()> segment = {};  ///< before one is read, which happens twice; it may throw, as the others
   };
 
   /// Gives every record, oldest first. What was written again while it was read is missing only between others.

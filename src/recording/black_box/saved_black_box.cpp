@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <system_error>
@@ -122,15 +123,16 @@ struct Survey {
 };
 
 /// Records are unpacked only where some are missing, to name those.
-Survey survey_of(const BlackBoxReader& reader) {
+Survey survey_of(const BlackBoxReader& reader, const std::function<void()>& go_on) {
   Survey survey;
-  survey.damage = reader.read({.record = [&](const BlackBoxRecord& record) {
+  const auto count = [&](const BlackBoxRecord& record) {
     ++survey.records;
     if (record.kind < kLaws) ++survey.rows;
     if (record.kind == static_cast<std::uint32_t>(BlackBoxKind::kHeader) && survey.header.empty()) {
       survey.header = record.data;
     }
-  }});
+  };
+  survey.damage = reader.read({.record = count, .segment = go_on});
   if (survey.damage.none()) return survey;
   const auto unpacker = std::make_unique<Unpacker>();  // 100 KB
   const auto look = [&](const BlackBoxRecord& record) {
@@ -138,7 +140,7 @@ Survey survey_of(const BlackBoxReader& reader) {
       if constexpr (requires { head_of(value); }) survey.lost.row(record.kind, head_of(value));
     });
   };
-  reader.read({.record = look, .gap = [&] { survey.lost.gap(); }});
+  reader.read({.record = look, .gap = [&] { survey.lost.gap(); }, .segment = go_on});
   return survey;
 }
 
@@ -186,6 +188,12 @@ class Growing {
 
   std::string folder() const { return folder_.string(); }
 
+  /// The bag is not wanted: closing it takes nothing to the disk, which may last seconds.
+  void empty() {
+    std::error_code ignored;
+    fs::resize_file(folder_ / "run.bag", 0, ignored);
+  }
+
   void finish() {
     std::error_code error;
     fs::rename(folder_ / "run.bag", bag_, error);
@@ -224,10 +232,14 @@ LogHeader header_of(std::string_view encoded, const std::string& path) {
 
 }  // namespace
 
-SavedBlackBox save_black_box(const std::string& path, std::uint64_t build, const std::string& bag) {
+SavedBlackBox save_black_box(const std::string& path, std::uint64_t build, const std::string& bag,
+                             const GiveUp& give_up) {
   const BlackBoxReader reader(path);
+  const auto go_on = [&] {
+    if (give_up && give_up()) throw SavingGivenUp("saving " + path + " was given up");
+  };
   const std::string_view first = first_header(reader, build, path);
-  const Survey survey = survey_of(reader);
+  const Survey survey = survey_of(reader, go_on);
   LogHeader header = header_of(survey.header.empty() ? first : survey.header, path);
   header.missing = missing_in(reader, survey);
   if (survey.records == 0 && !header.missing.empty()) {
@@ -237,7 +249,16 @@ SavedBlackBox save_black_box(const std::string& path, std::uint64_t build, const
   Growing growing(bag);
   LogFolder logs(growing.folder(), 0);
   const auto saver = std::make_unique<Saver>(logs, header);  // 100 KB
-  reader.read({.record = [&](const BlackBoxRecord& record) { saver->take(record); }, .gap = [&] { saver->gap(); }});
+  const auto take = [&](const BlackBoxRecord& record) {
+    go_on();
+    saver->take(record);
+  };
+  try {
+    reader.read({.record = take, .gap = [&] { saver->gap(); }, .segment = go_on});
+  } catch (const SavingGivenUp&) {
+    growing.empty();
+    throw;
+  }
   SavedBlackBox saved = saver->finish();
   growing.finish();
   saved.missing = header.missing;

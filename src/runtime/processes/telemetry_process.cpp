@@ -241,8 +241,10 @@ void TelemetryProcess::finish() {
   join_.finish();
   if (csv_ != nullptr) write_down(csv_problem_, [this] { csv_->close(); });
   if (bag_ != nullptr) write_down(bag_problem_, [this] { bag_->close(); });
-  // Last: a stop that is to be saved takes seconds, and who ends this process may not wait for it.
-  if (black_box_ != nullptr) black_box_->finish();
+  // Last: a stop that is to be saved takes seconds, and roslaunch kills a node that takes 15 s to end.
+  constexpr std::int64_t kSavingNs = 5'000'000'000;
+  const std::int64_t end_ns = monotonic_ns() + kSavingNs;
+  if (black_box_ != nullptr) black_box_->finish([end_ns] { return monotonic_ns() >= end_ns; });
   const TelemetryCounts missing = counts();
   std::string text;
   const auto add = [&](std::uint64_t rows, const std::string& path, const std::string& problem) {
