@@ -5,8 +5,8 @@
 ///   masses    more than a block of steel as large as the robot, the box about all its shapes: grams
 ///   base      less than kLightBase of the whole mass is in the root and what is fixed to it: an <inertial> is missing
 ///   tipping   the first wheel lifts (tipping.h) at less than the robot's own limit: what the wheels' given torque
-///             limits brake it by, at most g; where none is given, kUsualRamp. Or nothing carries it before or behind its
-///             centre of gravity, and it has no springs
+///             limits brake it by, at most g; where none is given, kUsualRamp. Or nothing carries it before or behind
+///             its centre of gravity, and it has no springs
 ///   wheels    their torque limits, less their joints' friction, accelerate the robot by less than kWeak
 ///   root      farther than kFar diagonals of the robot from its wheels: a world that the robot is fixed to
 ///   mecanum   the file speaks of such wheels, and more than two drive

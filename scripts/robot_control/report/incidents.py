@@ -16,7 +16,7 @@ TOGETHER = 0.5
 """s: two of a kind that are closer are one"""
 STOPPING = names.number_of("SupervisorState", "STOPPING")
 MOMENT = 20
-"""cycles without a node: of more the monitor makes a stop; the gate bridges some, and brakes in the others"""
+"""cycles without a node: a stretch with more stands alone"""
 LONGEST_STOP = 10.0
 """s in which a robot is expected to come to rest"""
 
@@ -115,9 +115,11 @@ def _slips(drive: Drive) -> Iterator[Incident]:
         of = names.bits_in("SlipReason", _union(slip[begin:end]))
         title = ", ".join(one.name for one in of) or "slip"
         yield Incident(3, "slip", *_span(drive, begin, end), title, [one.sentence for one in of])
+    (flag,) = names.bits_in("StateFlag", DEGRADED)
+    reasons = names.bits_in("DegradedReason", names.mask_of("DegradedReason", "position", "heading"))
+    evidence = [f"perhaps {one.sentence} (remedy: {one.remedy})" for one in reasons]
     for begin, end in joined(intervals(flags & DEGRADED != 0), _rows(drive, TOGETHER)):
-        title = "a correction of slip was taken back, or the gyro's bias is not known yet"
-        yield Incident(2, "degraded", *_span(drive, begin, end), title)
+        yield Incident(2, "degraded", *_span(drive, begin, end), flag.sentence, evidence)
 
 
 def _warnings(drive: Drive) -> Iterator[Incident]:

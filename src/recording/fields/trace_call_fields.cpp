@@ -62,7 +62,7 @@ void add_operator(TraceFields& to, const std::string& name, Get) {
   [](auto& part) -> auto& {    \
     return Get{}(part).member; \
   }
-  number("e_stop_level", "1: the last value of a publisher on e_stop is true", OF(e_stop_level));
+  number("e_stop_level", "1: last value on e_stop is true", OF(e_stop_level));
   number("e_stop_messages", "on that topic", OF(e_stop_messages));
   number("e_stop_triggers", "true on that topic", OF(e_stop_triggers));
   number("e_stop_services", "calls of e_stop_trigger", OF(e_stop_services));

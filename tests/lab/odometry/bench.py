@@ -36,8 +36,8 @@ def all_runs(
     cache: Path | None = None,
     runner: Runner | None = None,
 ) -> list[Run]:
-    """In the order of scenarios and seeds; `level`: one of sensor_errors.LEVELS; `pictured`: the seed whose runs keep what a plot needs; `cache`: folder of
-    recordings, taken where they are there.
+    """In the order of scenarios and seeds; `level`: one of sensor_errors.LEVELS; `pictured`: the seed whose runs keep
+    what a plot needs; `cache`: folder of recordings, taken where they are there.
     """
     order = sorted(scenarios, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else 9)
     work = [(scenario, seed) for scenario in order for seed in seeds]

@@ -59,7 +59,7 @@ def yaws(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
 
 
 def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise]:
-    """Of the scenarios that there are runs of; of sensors that err more than their data sheet says, those of the field."""
+    """Of the scenarios that there are runs of; beyond the errors of the data sheet, those of the field."""
     if level != "data_sheet":
         return field(runs)
     there = {run.scenario for run in runs}
