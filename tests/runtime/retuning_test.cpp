@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+#include <string_view>
 #include <thread>
 
 #include "cycle_fixture.h"
@@ -82,6 +84,28 @@ TEST_F(RetuningTest, RefusesTheWholeSetWithEveryReason) {
   }
   EXPECT_EQ(retuning.in_force().max_linear_speed, 1.0);
   EXPECT_EQ(sentence(retuning.set("{max_linear_speed: 0.9}")), "set 1: max_linear_speed from 1 to 0.9");
+}
+
+TEST_F(RetuningTest, WhateverTextComesIsTakenOrRefusedAsAWhole) {
+  constexpr std::string_view kSigns = ":#-[]{}\"'\n \t,!&*|>%@?.~é";
+  std::uint64_t taken = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::string text = "{max_linear_speed: 0.5, keep_curvature: true, cmd_vel_timeout: 1.0}";
+    for (auto left = 1 + random() % 6; left != 0; --left) {
+      text.insert(random() % (text.size() + 1), 1, kSigns[random() % kSigns.size()]);
+    }
+    try {
+      retuning.set(text);
+      ++taken;
+    } catch (const ParameterError&) {
+      continue;
+    }
+    EXPECT_EQ(handed_over().count, taken);
+  }
+  EXPECT_GT(taken, 0u);
+  EXPECT_LT(taken, 2000u);
 }
 
 // A speed of the wheels ω needs a limit of max(1.1 ω, ω + 1): 18.75/1.1 = 17.05 rad/s, 1.2 m/s beside 2 rad/s.
