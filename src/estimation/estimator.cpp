@@ -48,7 +48,8 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
       wheel_velocities_(robot, parameters.speed_bandwidth, period),
       sides_{Side{SideEncoder(robot, robot_control::Side::kLeft), SpeedTracker(parameters.speed_bandwidth, period)},
              Side{SideEncoder(robot, robot_control::Side::kRight), SpeedTracker(parameters.speed_bandwidth, period)}},
-      watch_(rest_params(parameters, robot)) {
+      watch_(rest_params(parameters, robot)),
+      gyro_noise_(parameters.gyro_noise) {
   const Vector3 bias = in_base(parameters.gyro_bias);
   fresh_core_.set_bias(bias[2], parameters.gyro_bias_initial);
   calibrate(parameters.calibration, fresh_core_);
@@ -67,11 +68,12 @@ void Estimator::enter_run() noexcept {
   slip_.restart();
   slide_.reset();
   watch_.reset();
+  gyro_noise_ = GyroNoise(parameters_.gyro_noise);
   imu_.reset();
   const Vector3 bias = in_base(parameters_.gyro_bias);
   gyro_bias_ = {bias[0], bias[1]};
   gyro_variance_.fill(square(parameters_.gyro_bias_initial));
-  gyro_learned_ = rested_once_ = false;
+  gyro_learned_ = rested_once_ = moved_ = false;
   for (Side& side : sides_) {
     side.encoder.reset();
     side.speed.reset(0);
@@ -81,6 +83,8 @@ void Estimator::enter_run() noexcept {
   wheel_velocities_.reset();
   height_ = own_yaw_ = 0;
   block_ = {};
+  jitter_.reset();
+  recent_ = {};
   usual_gap_ = last_sample_ = silence_ = silent_turn_ = turning_ = 0;
   rate_follows_ = false;
   resting_ = true;
@@ -124,7 +128,8 @@ void Estimator::resume(const StateFrame& last) noexcept {
   rejected_ = last.rejected;
   skipped_ = last.skipped;
   cycle_ = last.head.cycle;
-  rested_once_ = true;
+  rested_once_ = moved_ = true;
+  core_.replace_bias();
   core_.hold_corrections(false);
   began_ = restart_pending_ = true;
   resting_ = false;
@@ -172,6 +177,11 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
     core_.add_yaw_variance(square(kRestartYaw) + square(wheel_rate() * dt));
   } else if (dt > 0) {
     follow_wheels();
+    if (both_read()) {
+      const SideEncoder& left = sides_[kLeft].encoder;
+      recent_.add((left.travel() + sides_[kRight].encoder.travel()) / 2, left.time(),
+                  std::max(std::abs(core_.offset()), left.gap()));
+    }
     slide_.age(dt);
     if (resting_) {
       rest(dt);
@@ -224,6 +234,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     if (reading == EncoderReading::kTravel && side.encoder.time() > 0) {
       side.speed.step(side.encoder.travel(), side.encoder.time());
     }
+    if (reading == EncoderReading::kTravel && i == kLeft) jitter_.add(side.encoder.time());
     if (reading == EncoderReading::kOffset || reading == EncoderReading::kLost) block_ = {};
     if (reading == EncoderReading::kLost) {
       side.credited = 0;
@@ -248,7 +259,7 @@ Estimator::Lead Estimator::ahead() const noexcept {
   if (resting_) return {};
   Lead lead;
   if (core_.offset() > 0) {
-    lead.speed = forward_speed();
+    lead.speed = lost(kLeft) || lost(kRight) ? forward_speed() : recent_.speed() - slide_.excess();
   } else {
     lead.rate = -turning_;
   }

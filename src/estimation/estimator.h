@@ -39,12 +39,14 @@
 #include "estimation/inertial/imu_samples.h"
 #include "estimation/inertial/rate_tracker.h"
 #include "estimation/planar/planar_core.h"
+#include "estimation/rest/gyro_noise.h"
 #include "estimation/rest/rest_watch.h"
 #include "estimation/slip/slip_correction.h"
 #include "estimation/slip/slip_statistic.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/wheels/side_encoder.h"
 #include "estimation/wheels/speed_tracker.h"
+#include "estimation/wheels/stamp_jitter.h"
 #include "estimation/wheels/wheel_geometry.h"
 #include "estimation/wheels/wheel_velocities.h"
 #include "robot/robot_model.h"
@@ -122,6 +124,19 @@ class Estimator {
     double time = 0, left = 0, right = 0;  ///< s, m
   };
 
+  /// Travel of the middle of the wheels over about the clock offset: one reading alone is a poor speed where stamps
+  /// jitter or counts are few.
+  struct Recent {
+    double way = 0, time = 0;  ///< m, s
+
+    void add(double travel, double dt, double span) noexcept {
+      const double keep = span / (span + dt);
+      way = keep * way + travel;
+      time = keep * time + dt;
+    }
+    double speed() const noexcept { return time > 0 ? way / time : 0; }  ///< m/s
+  };
+
   /// Of the middle of the wheels.
   struct Travel {
     double distance = 0;  ///< m
@@ -175,7 +190,8 @@ class Estimator {
 
   void fill(StateFrame& out) const noexcept;
   void fill_pose(StateFrame& out) const noexcept;
-  void fill_pose_covariance(const Lead& lead, double yaw, const Planar& lever, StateFrame& out) const noexcept;
+  double wheels_late() const noexcept;
+  void fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept;
   void fill_twist(StateFrame& out) const noexcept;
   void fill_learned(StateFrame& out) const noexcept;
   void fill_health(StateFrame& out) const noexcept;
@@ -197,17 +213,21 @@ class Estimator {
   PlanarCore core_;
   Tilt tilt_;
   RestWatch watch_;
+  GyroNoise gyro_noise_;
   SlipStatistic slip_;
   SlipCorrection slide_;
 
   std::array<double, 2> gyro_bias_{};      ///< rad/s, x and y; z is the core's
   std::array<double, 2> gyro_variance_{};  ///< (rad/s)²
   bool gyro_learned_ = false;              ///< since the reset a rest was seen
+  bool moved_ = false;                     ///< since the reset
   bool rested_once_ = false;               ///< likewise, and the rest was over
   double height_ = 0;                      ///< m
   double own_yaw_ = 0;                     ///< rad, of the slip statistic's axes
   Planar own_way_;                         ///< m, of this step, in these axes
   Block block_;
+  Recent recent_;
+  StampJitter jitter_;      ///< of the wheels' readings
   double usual_gap_ = 0;    ///< s, between two readings of the wheels
   double last_sample_ = 0;  ///< rad/s, of the gyro about z
   double silence_ = 0;      ///< s, since a gyro was lost

@@ -175,7 +175,7 @@ void Estimator::judge_slip() noexcept {
   slip_.judge({.acceleration = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
                .base = core_.deviation(PlanarCore::kBase),
                .offset = core_.deviation(PlanarCore::kOffset),
-               .bias = core_.deviation(PlanarCore::kBias)},
+               .bias = std::sqrt(core_.bias_variance())},
               learns);
   for (const auto& [sensor, channel] :
        {std::pair{kAccelerometer, SlipStatistic::kAlong}, std::pair{kLateralContact, SlipStatistic::kAcross},
@@ -221,7 +221,8 @@ void Estimator::compare_turns(double dt) noexcept {
   if (!both_read() || (block_.open && block_.time < kBlock)) return;
   if (!imu_.gyro() || silence_ > 0) return;
   if (block_.open) {
-    const auto [nis, used] = core_.end_block(block_.left, block_.right, rate_.rate().z(), block_.time);
+    const auto [nis, used] =
+        core_.end_block(block_.left, block_.right, rate_.rate().z(), block_.time, jitter_.variance());
     for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
       note(sensor, nis, block_.time);
       if (!used) ++rejected_[sensor];

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "estimation/estimator.h"
 #include "estimation/values.h"
@@ -65,11 +66,17 @@ void Estimator::fill_pose(StateFrame& out) const noexcept {
   }
   out.pose_odom.orientation =
       parameters_.planar ? Quaternion{0, 0, std::sin(middle.yaw / 2), std::cos(middle.yaw / 2)} : out.attitude;
-  fill_pose_covariance(lead, middle.yaw, lever, out);
+  fill_pose_covariance(middle.yaw, lever, out);
 }
 
-void Estimator::fill_pose_covariance(const Lead& lead, double yaw, const Planar& lever,
-                                     StateFrame& out) const noexcept {
+/// Probability that the clock offset is positive.
+double Estimator::wheels_late() const noexcept {
+  const double deviation = core_.deviation(PlanarCore::kOffset);
+  if (deviation == 0) return core_.offset() > 0 ? 1 : 0;
+  return std::erfc(-core_.offset() / deviation / std::numbers::sqrt2) / 2;
+}
+
+void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept {
   constexpr std::size_t kStates[4] = {PlanarCore::kX, PlanarCore::kY, PlanarCore::kYaw, PlanarCore::kOffset};
   Eigen::Matrix4d states;
   for (int i = 0; i < 4; ++i) {
@@ -78,10 +85,17 @@ void Estimator::fill_pose_covariance(const Lead& lead, double yaw, const Planar&
   Eigen::Matrix<double, 3, 4> by = Eigen::Matrix<double, 3, 4>::Identity();
   by(0, 2) = lever.y;
   by(1, 2) = -lever.x;
-  by.col(3) << lead.speed * std::cos(yaw) + lead.rate * lever.y, lead.speed * std::sin(yaw) - lead.rate * lever.x,
-      lead.rate;
-  if (placed_) by.setZero();
-  const Eigen::Matrix3d known = by * states * by.transpose();
+  const double late = wheels_late();
+  const double speed = late * forward_speed();
+  const double rate = resting_ ? 0 : (late - 1) * turning_;
+  const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0);
+  by.col(3) = speed * along + rate * Eigen::Vector3d(lever.y, -lever.x, 1);
+  Eigen::Matrix3d known = by * states * by.transpose();
+  const Eigen::Vector3d motion =
+      forward_speed() * along + (resting_ ? 0 : turning_) * Eigen::Vector3d(lever.y, -lever.x, 1);
+  known += square(imu_.gyro_gap()) / 8 * motion * motion.transpose();
+  known += (square(encoder_) + square(forward_speed()) * jitter_.variance()) * along * along.transpose();
+  if (placed_) known.setZero();
   out.pose_covariance = {};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -110,8 +124,7 @@ void Estimator::fill_twist(StateFrame& out) const noexcept {
   const double quantum = std::sqrt(12.0) * encoder_ / period_;
   const double speed = std::abs(wheel_speed()) + geometry_.wheel_base / 2 * std::abs(wheel_rate());
   double wheel = square(kSpeedShare * quantum) + square(core_.slip()) * parameters_.speed_bandwidth * speed;
-  double turn = core_.covariance(PlanarCore::kBias, PlanarCore::kBias) +
-                square(parameters_.gyro_noise) / period_ * rate_noise_gain_ +
+  double turn = core_.bias_variance() + square(parameters_.gyro_noise) / period_ * rate_noise_gain_ +
                 square(parameters_.gyro_scale_deviation * rate.z());
   if (!imu_.gyro()) turn = 4 * wheel / square(geometry_.wheel_base);
   if (resting_) wheel = turn = 0;
@@ -125,15 +138,15 @@ void Estimator::fill_twist(StateFrame& out) const noexcept {
   }
   out.twist_covariance = {};
   out.twist_covariance[0] = forward + square(geometry_.axle_y) * turn;
-  out.twist_covariance[7] = sideways + square(geometry_.axle_x) * turn;
+  out.twist_covariance[7] =
+      sideways + square(geometry_.axle_x) * turn + square(rate.z() * core_.deviation(PlanarCore::kIcr));
   out.twist_covariance[35] = turn;
   for (const std::size_t i : {14U, 21U, 28U}) out.twist_covariance[i] = kPlanarVariance;
 }
 
 void Estimator::fill_learned(StateFrame& out) const noexcept {
   const Eigen::Vector3d bias(gyro_bias_[0], gyro_bias_[1], core_.bias());
-  const Eigen::Vector3d variance(gyro_variance_[0], gyro_variance_[1],
-                                 core_.covariance(PlanarCore::kBias, PlanarCore::kBias));
+  const Eigen::Vector3d variance(gyro_variance_[0], gyro_variance_[1], core_.bias_variance());
   const Eigen::Vector3d force(tilt_.bias(0), tilt_.bias(1), tilt_.vertical_bias());
   out.gyro_bias = array(base_from_imu_.transpose() * bias);
   out.accelerometer_bias = array(base_from_imu_.transpose() * force);
@@ -170,7 +183,7 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (out.slip != 0) out.flags |= kStateSlip;
   out.degraded = 0;
   if (slide_.taken_back()) out.degraded |= kDegradedPosition;
-  const bool unknown = core_.deviation(PlanarCore::kBias) > kUnknownBias;
+  const bool unknown = core_.bias_variance() > square(kUnknownBias);
   if (!resting_ && imu_.gyro() && unknown) out.degraded |= kDegradedHeading;
   if (out.degraded != 0) out.flags |= kStateDegraded;
   out.residual_level = slip_.level();

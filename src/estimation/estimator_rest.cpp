@@ -27,10 +27,10 @@ RestWindow Estimator::watch_rest(double dt) noexcept {
     force = array(*imu_.accelerometer());
     sample.accelerometer = &force;
   }
-  const double noise = square(parameters_.gyro_noise) / parameters_.standstill_time;
+  const double noise = square(gyro_noise_.density()) / parameters_.standstill_time;
   const Vector3 bias{gyro_bias_[0], gyro_bias_[1], core_.bias()};
   const Vector3 deviation{std::sqrt(gyro_variance_[0] + noise), std::sqrt(gyro_variance_[1] + noise),
-                          std::sqrt(core_.covariance(PlanarCore::kBias, PlanarCore::kBias) + noise)};
+                          std::sqrt(core_.bias_variance() + noise)};
   return watch_.step(sample, bias, deviation);
 }
 
@@ -59,6 +59,7 @@ void Estimator::rest(double dt) noexcept {
 
 void Estimator::begin_rest() noexcept {
   resting_ = true;
+  gyro_noise_.interrupt();
   held_ = kept_ = {};
   slide_.end();
   block_ = {};
@@ -75,6 +76,7 @@ void Estimator::begin_rest() noexcept {
 
 void Estimator::end_rest() noexcept {
   rested_once_ = rested_once_ || gyro_learned_;
+  moved_ = true;
   resting_ = false;
   lasting_flags_ &= ~std::uint64_t{kStateStandstill};
   flags_ &= ~std::uint64_t{kStateStandstill};
@@ -108,7 +110,10 @@ void Estimator::learn_at_rest() noexcept {
   lasting_flags_ |= kStateStandstill;
   core_.age(window);
   if (watch_.gyro()) {
+    if (!rested_once_ && !moved_) core_.replace_bias();
     core_.hold_corrections(false);
+    gyro_noise_.add((*watch_.gyro())[2], window);
+    core_.set_gyro_noise(gyro_noise_.density());
     const double variance = square(parameters_.gyro_noise) / window;
     if (watch_.reopened()) {
       core_.open_bias(square((*watch_.gyro())[2] - core_.bias()));

@@ -50,6 +50,14 @@ double encoder_deviation(const EstimatorParameters& parameters, const RobotModel
   return parameters.encoder_noise * std::ranges::max(robot.wheels, {}, &WheelModel::radius).radius;
 }
 
+double icr_deviation(const RobotModel& robot) {
+  const auto along = [](const WheelModel& wheel) { return wheel.centre_base[0]; };
+  const auto [last, first] = std::ranges::minmax(robot.wheels, {}, along);
+  const double scrubs = std::sqrt(std::max(0.0, robot.wheel_base_multiplier - 1)) * robot.wheel_base;
+  const double length = along(first) - along(last);
+  return (length > 0 ? length : scrubs) / std::sqrt(12.0);
+}
+
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot) {
   const double learns = parameters.self_calibration ? 1.0 : 0.0;
   return {.wheel_base = robot.effective_wheel_base(),
@@ -60,7 +68,8 @@ PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotM
           .encoder = encoder_deviation(parameters, robot),
           .slip_least = parameters.wheel_slip_noise,
           .ratio_deviation = learns * parameters.calibration.radius_ratio_deviation,
-          .wheel_base_deviation = learns * parameters.calibration.wheel_base_deviation};
+          .wheel_base_deviation = learns * parameters.calibration.wheel_base_deviation,
+          .icr_deviation = icr_deviation(robot)};
 }
 
 TiltParams tilt_params(const EstimatorParameters& parameters) {

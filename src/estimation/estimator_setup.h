@@ -18,6 +18,11 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
 /// m, standard deviation of one side's reading.
 double encoder_deviation(const EstimatorParameters& parameters, const RobotModel& robot);
 
+/// m, standard deviation of where along x the robot turns: wherever between the first and the last axle its load puts
+/// it. Where the wheels' places are not known, the length between the axles is that which the multiplier of the wheel
+/// base follows from (RobotModel::wheel_base_multiplier).
+double icr_deviation(const RobotModel& robot);
+
 /// Without self_calibration ratio and wheel base are known for ever.
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot);
 TiltParams tilt_params(const EstimatorParameters& parameters);

@@ -69,8 +69,8 @@ TEST_F(EstimatorLeverTest, TheTwistIsThatOfBaseLink) {
               of_middle_.twist_covariance[7] + kAhead * kAhead * of_middle_.twist_covariance[35], 1e-12);
 }
 
-// Grown by the restart's constants; that of the yaw swings base_link, too. Straight on the clock offset does not
-// matter.
+// Grown by the restart's constants; that of the yaw swings base_link, too. The clock offset is open again: whether the
+// wheels are late is even, and then the robot is ahead of them by its speed times the offset.
 TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
   for (int i = 0; i < 2000; ++i) step(0.4, 0);
   const auto expect_kept = [&](const StateFrame& before, double axle) {
@@ -82,9 +82,13 @@ TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
     restarted.step(robot_.frame(), state);
     const double yaw = Estimator::kRestartYaw * Estimator::kRestartYaw;
     const double position = Estimator::kRestartPosition * Estimator::kRestartPosition;
+    const double late = 0.5 * 0.4 * PlanarCoreParams{}.clock_offset;
+    const double reading = EstimatorParameters{}.encoder_noise * two_wheeler().wheels[0].radius;
     EXPECT_NEAR(state.pose_covariance[35], before.pose_covariance[35] + yaw, 1e-9) << axle;
     EXPECT_NEAR(state.pose_covariance[0] + state.pose_covariance[7],
-                before.pose_covariance[0] + before.pose_covariance[7] + 2 * position + axle * axle * yaw, 1e-9)
+                before.pose_covariance[0] + before.pose_covariance[7] + 2 * position + axle * axle * yaw + late * late +
+                    reading * reading,
+                1e-9)
         << axle;
   };
   expect_kept(of_middle_, 0);

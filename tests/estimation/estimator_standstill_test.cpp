@@ -59,14 +59,16 @@ TEST_F(EstimatorStandstillTest, LearnsTheBiasUnderNoise) {
   }
 }
 
-// Noise as in the parameters: the published deviation is that of the mean, 2.44e-4/√T, and the error is within it.
+// Noise as in the parameters: the published deviation is that of the mean, 2.44e-4/√T, and the error is within it. The
+// noise is learned from nineteen differences of windows, which scatter by √(3/19)/2 = 20 % of it, and begins as twice
+// as much, worth four: √((4·4 + 19)/23) = 1.23.
 TEST_F(EstimatorStandstillTest, KnowsHowWellItKnowsTheBias) {
   const EstimatorParameters parameters;
   robot_.gyro_bias.z() = 0.01;
   robot_.noise = {.gyro = parameters.gyro_noise, .accelerometer = 1e-3, .counts = 0};
   drive(0, 0, 20 * kWindow);
   const double expected = parameters.gyro_noise / std::sqrt(20 * parameters.standstill_time);
-  EXPECT_NEAR(state_.gyro_bias_deviation[2], expected, 0.1 * expected);
+  EXPECT_NEAR(state_.gyro_bias_deviation[2], 1.23 * expected, 2 * 0.2 * expected);
   EXPECT_NEAR(state_.gyro_bias[2], 0.01, 4 * expected);
 }
 

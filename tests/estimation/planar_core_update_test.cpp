@@ -63,7 +63,7 @@ TEST_F(CoreUpdateTest, ABlockIsAKalmanUpdateThatConsidersTheGyrosScale) {
   const CoreMatrix p = matrix_of(core_);
   for (int i = 0; i < p.rows(); ++i) {
     for (int k = 0; k < p.cols(); ++k) {
-      if (i == k && (i == PlanarCore::kRatio || i == PlanarCore::kBase)) {
+      if (i == k && (i == PlanarCore::kRatio || i == PlanarCore::kBase || i == PlanarCore::kOffset)) {
         EXPECT_GT(p(i, i), expected(i, i)) << "it walks";
       } else {
         EXPECT_NEAR(p(i, k), expected(i, k), 1e-9 * std::sqrt(before(i, i) * before(k, k))) << i << ", " << k;
@@ -155,8 +155,28 @@ TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
   ASSERT_GT(std::abs(held[PlanarCore::kBias]), 0);
   const CoreMatrix expected = matrix_of(free) + held * held.transpose();
   EXPECT_LT((matrix_of(core_) - expected).cwiseAbs().maxCoeff(), kRounding * expected.cwiseAbs().maxCoeff());
+  core_.replace_bias();
   core_.hold_corrections(false);
   EXPECT_LT((values_of(core_) - values_of(free)).norm(), 1e-15);
+}
+
+// A rest of 1 s shows a bias to 2.44e-4 rad/s; that a gyro has any bias of the prior's 0.05 rather than the one that
+// the path was driven by is the likelier where it is beyond √(2 ln(0.05/2.44e-4)) = 3.3 of these.
+TEST_F(CoreUpdateTest, APathIsNotCorrectedByABiasThatIsNotProven) {
+  for (const double bias : {2.0 * 2.44e-4, 5.0 * 2.44e-4}) {
+    PlanarCore core{PlanarCoreParams{}};
+    core.hold_corrections(true);
+    core.turn_by_gyro(0.5, 30.0);
+    core.roll(0.5, 0.5, 0.3);
+    const CoreVector x = values_of(core);
+    core.hold_corrections(false);
+    core.rest(bias, 2.44e-4 * 2.44e-4, false);
+    const CoreVector moved = values_of(core) - x;
+    const bool proven = bias > 3.3 * 2.44e-4;
+    EXPECT_EQ(moved.norm() > 0, proven) << bias;
+    EXPECT_NEAR(moved[PlanarCore::kYaw], proven ? -30.0 * bias : 0, 30.0 * 1e-6) << bias;
+    EXPECT_GT(core.deviation(PlanarCore::kYaw), proven ? 0 : 30.0 * bias) << "what was not corrected";
+  }
 }
 
 TEST_F(CoreUpdateTest, PlacingForgetsWhatThePoseWasCorrelatedWith) {

@@ -39,7 +39,8 @@ class ImuSamples {
   bool gyro_catches_up() const noexcept { return gyro_.catches_up; }
   const Eigen::Vector3d& last_gyro() const noexcept { return gyro_.last; }
   const Eigen::Vector3d& last_accelerometer() const noexcept { return accelerometer_.last; }
-  bool refused() const noexcept { return refused_; }  ///< the last step brought a sample that is none
+  double gyro_gap() const noexcept { return gyro_.gap; }  ///< s, between two samples
+  bool refused() const noexcept { return refused_; }      ///< the last step brought a sample that is none
 
  private:
   struct Channel {

@@ -1,6 +1,7 @@
 #include "estimation/planar/planar_core.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace robot_control {
 namespace {
@@ -15,17 +16,22 @@ constexpr double kSignificant = 10;
 constexpr double kTurnSlip = 5e-4;      // rad/√rad, of a hard tyre on a hard floor
 constexpr double kProvenBias = 5;       // deviations
 constexpr double kLargestOffset = 0.4;  // s
+constexpr double kOffsetWalk = 2e-3;    // s/√s
 constexpr double kFirstTwist = 0.05;    // rad/√rad
 
 }  // namespace
 
 PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
-    : params_(params), slip_(std::max(kFirstSlip, params.slip_least)), twist_(kFirstTwist) {
+    : params_(params),
+      gyro_noise_(params.gyro_noise),
+      slip_(std::max(kFirstSlip, params.slip_least)),
+      twist_(kFirstTwist) {
   covariance_[kBias][kBias] = square(params.gyro_bias_initial);
   covariance_[kScale][kScale] = square(params.gyro_scale);
   covariance_[kRatio][kRatio] = square(params.ratio_deviation);
   covariance_[kBase][kBase] = square(params.wheel_base_deviation);
   covariance_[kOffset][kOffset] = square(params.clock_offset);
+  covariance_[kIcr][kIcr] = square(params.icr_deviation);
 }
 
 void PlanarCore::place(const PlanarPose& pose) noexcept {
@@ -40,7 +46,9 @@ void PlanarCore::place(const PlanarPose& pose) noexcept {
 void PlanarCore::set_bias(double bias, double deviation) noexcept {
   bias_ = bias;
   held_[kBias] = 0;
-  for (std::size_t k = 0; k < kSize; ++k) covariance_[kBias][k] = covariance_[k][kBias] = 0;
+  for (const std::size_t i : {kBias, kRestBias}) {
+    for (std::size_t k = 0; k < kSize; ++k) covariance_[i][k] = covariance_[k][i] = 0;
+  }
   covariance_[kBias][kBias] = square(deviation);
 }
 
@@ -64,13 +72,28 @@ void PlanarCore::add(std::size_t to, double factor, std::size_t from) noexcept {
   held_[to] += factor * held_[from];
 }
 
+/// The middle of the wheels moves sideways where the centre of rotation is not there.
+void PlanarCore::slide(double turned) noexcept {
+  if (params_.icr_deviation == 0) return;
+  add(kX, turned * std::sin(pose_.yaw), kIcr);
+  add(kY, -turned * std::cos(pose_.yaw), kIcr);
+}
+
 void PlanarCore::turn_by_gyro(double angle, double dt) noexcept {
   const double turned = angle - bias_ * dt;
   pose_.yaw += turned;
   age(dt);
+  slide(turned);
   add(kYaw, -dt, kBias);
+  add(kYaw, -dt, kRestBias);
+  add(kAnchor, -dt, kRestBias);
   add(kYaw, turned, kScale);
   covariance_[kYaw][kYaw] += square(params_.gyro_noise) * dt;
+  const double beyond = (square(gyro_noise_) - square(params_.gyro_noise)) * dt;  // considered: no block sees it
+  covariance_[kYaw][kYaw] += beyond;
+  covariance_[kYaw][kAnchor] += beyond;
+  covariance_[kAnchor][kYaw] += beyond;
+  covariance_[kAnchor][kAnchor] += beyond;
 }
 
 double PlanarCore::wheel_turn(double left, double right) const noexcept {
@@ -82,6 +105,7 @@ void PlanarCore::turn_by_wheels(double left, double right) noexcept {
   pose_.yaw += turned;
   add(kYaw, (left + right) / 2 / params_.wheel_base, kRatio);
   add(kYaw, -turned, kBase);
+  slide(turned);
   covariance_[kYaw][kYaw] +=
       square(slip_ / params_.wheel_base) * (std::abs(left) + std::abs(right)) + square(twist_) * std::abs(turned);
 }
@@ -120,7 +144,8 @@ void PlanarCore::begin_block(double rate) noexcept {
   for (std::size_t k = 0; k < kSize; ++k) covariance_[k][kAnchor] = covariance_[kAnchor][k];
 }
 
-PlanarCore::Innovation PlanarCore::end_block(double left, double right, double rate, double dt) noexcept {
+PlanarCore::Innovation PlanarCore::end_block(double left, double right, double rate, double dt,
+                                             double jitter) noexcept {
   const double way = (left + right) / 2;
   const double later = rate - anchor_rate_;
   const double angle = turned() - offset_ * later;
@@ -142,18 +167,22 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   for (std::size_t i = 0; i < kSize; ++i) s += h[i] * ph[i];
   const double rolled = std::abs(left) + std::abs(right);
   const double repeated = std::clamp(correlation_ / power_, 0.0, 0.9);
-  const double slips = square(slip_) * rolled;
-  s += 4 * square(params_.encoder) + (square(b * twist_) * std::abs(angle) + slips) * (1 + repeated) / (1 - repeated);
+  const double again = (1 + repeated) / (1 - repeated);
+  const double slips = square(slip_) * rolled * again;
+  const double twists = square(b * twist_) * std::abs(angle) * again;
+  s += 4 * square(params_.encoder) + twists + slips + b * b * jitter * (square(rate) + square(anchor_rate_));
   const double normalised = innovation / std::sqrt(s);
   const bool used = std::abs(normalised) <= kGate;
   if (used) {
     Row gain{};
     for (std::size_t i = 0; i < kSize; ++i) gain[i] = ph[i] / s;
-    gain[kScale] = 0;
+    gain[kScale] = gain[kRestBias] = gain[kIcr] = 0;
     if (params_.ratio_deviation == 0) gain[kRatio] = 0;
     correct(gain, ph, s, std::clamp(normalised, -kHuber, kHuber) * std::sqrt(s));
+    if (!holds_ || square(held_[kBias]) > square(kProvenBias) * covariance_[kBias][kBias]) release();
   }
-  learn(normalised, rolled, std::abs(angle));
+  learn(normalised, slips / s, twists / s);
+  if (params_.clock_offset > 0) covariance_[kOffset][kOffset] += square(kOffsetWalk) * dt;
   covariance_[kRatio][kRatio] += params_.ratio_deviation == 0 ? 0 : square(kRatioWalk * slip_) * std::abs(way);
   covariance_[kBase][kBase] += params_.wheel_base_deviation == 0 ? 0 : square(kBaseWalk * slip_) * rolled / 2;
   return {square(normalised), used};
@@ -161,7 +190,6 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
 
 void PlanarCore::correct(const Row& gain, const Row& ph, double s, double innovation) noexcept {
   for (std::size_t i = 0; i < kSize; ++i) held_[i] += gain[i] * innovation;
-  if (!holds_ || square(held_[kBias]) > square(kProvenBias) * covariance_[kBias][kBias]) release();
   for (std::size_t i = 0; i < kSize; ++i) {
     for (std::size_t k = 0; k < kSize; ++k) {
       covariance_[i][k] += gain[i] * gain[k] * s - gain[i] * ph[k] - ph[i] * gain[k];
@@ -169,31 +197,40 @@ void PlanarCore::correct(const Row& gain, const Row& ph, double s, double innova
   }
 }
 
+/// The Bayes factor of a bias that could be any against the one that the path was driven by.
+bool PlanarCore::bias_proven() const noexcept {
+  const double variance =
+      covariance_[kBias][kBias] + 2 * covariance_[kBias][kRestBias] + covariance_[kRestBias][kRestBias];
+  return square(held_[kBias]) > variance * std::max(1.0, std::log(square(params_.gyro_bias_initial) / variance));
+}
+
 void PlanarCore::release() noexcept {
-  pose_.x += held_[kX];
-  pose_.y += held_[kY];
-  pose_.yaw += held_[kYaw];
-  anchor_ += held_[kAnchor];
-  bias_ += held_[kBias];
+  const bool all = !bias_in_doubt_ || bias_proven();
+  const Row kept = held_;
+  if (all) {
+    pose_.x += held_[kX];
+    pose_.y += held_[kY];
+    pose_.yaw += held_[kYaw];
+    anchor_ += held_[kAnchor];
+    bias_ += held_[kBias];
+    bias_in_doubt_ = false;
+  }
   ratio_ += held_[kRatio];
   base_ += held_[kBase];
   offset_ = std::clamp(offset_ + held_[kOffset], -kLargestOffset, kLargestOffset);
   held_ = {};
+  if (all) return;
+  for (const std::size_t i : {kX, kY, kYaw, kAnchor, kBias}) held_[i] = kept[i];
 }
 
-void PlanarCore::learn(double normalised, double rolled, double angle) noexcept {
-  constexpr double kMoved = 0.02;  // m
-  constexpr double kTurns = 0.1;   // of the way
-  if (rolled < kMoved) return;
+void PlanarCore::learn(double normalised, double slips, double twists) noexcept {
   const double bounded = std::clamp(normalised, -3.0, 3.0);
   correlation_ += 0.05 * (bounded * last_ - correlation_);
   power_ = std::max(0.1, power_ + 0.05 * (bounded * bounded - power_));
   last_ = bounded;
-  const double step = std::exp(std::abs(normalised) > kMedian ? kSlipStep : -kSlipStep);
-  if (params_.wheel_base * angle > kTurns * rolled) {
-    twist_ = std::clamp(twist_ * step, kTurnSlip, 1.0);
-  }
-  slip_ = std::clamp(slip_ * step, params_.slip_least, kLargestSlip);
+  const double step = std::abs(normalised) > kMedian ? kSlipStep : -kSlipStep;
+  twist_ = std::clamp(twist_ * std::exp(step * twists), kTurnSlip, 1.0);
+  slip_ = std::clamp(slip_ * std::exp(step * slips), params_.slip_least, kLargestSlip);
 }
 
 void PlanarCore::rest(double mean, double variance, bool holds) noexcept {
@@ -204,9 +241,27 @@ void PlanarCore::rest(double mean, double variance, bool holds) noexcept {
     ph[i] = covariance_[i][kBias];
     gain[i] = ph[i] / s;
   }
-  gain[kScale] = 0;
+  gain[kScale] = gain[kRestBias] = gain[kIcr] = 0;
   if (holds) gain[kX] = gain[kY] = gain[kYaw] = gain[kAnchor] = 0;
   correct(gain, ph, s, mean - bias_ - held_[kBias]);
+  const double kept = 1 - gain[kBias];
+  const double beyond = variance * (square(gyro_noise_ / params_.gyro_noise) - 1);
+  gain[kRestBias] = std::exchange(gain[kBias], 0);
+  for (std::size_t i = 0; i < kSize; ++i) {
+    if (i != kRestBias && gain[i] != 0) add(i, -gain[i], kRestBias);
+  }
+  for (std::size_t k = 0; k < kSize; ++k) covariance_[kRestBias][k] *= kept;
+  for (std::size_t k = 0; k < kSize; ++k) covariance_[k][kRestBias] *= kept;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    for (std::size_t k = 0; k < kSize; ++k) covariance_[i][k] += gain[i] * gain[k] * beyond;
+  }
+  // Earlier windows, too, were as noisy as is known by now.
+  const double most = covariance_[kBias][kBias] * (square(gyro_noise_ / params_.gyro_noise) - 1);
+  double& excess = covariance_[kRestBias][kRestBias];
+  const double less = excess > most ? std::sqrt(most / excess) : 1;
+  for (std::size_t k = 0; k < kSize; ++k) covariance_[kRestBias][k] *= less;
+  for (std::size_t k = 0; k < kSize; ++k) covariance_[k][kRestBias] *= less;
+  if (!holds_) release();
 }
 
 }  // namespace robot_control

@@ -9,11 +9,14 @@
 ///   right − left = B (1 + β)(ψ − ψ₀ − τ (ω − ω₀)) − ε s    s = (left + right)/2, B: effective wheel base of the model
 ///
 /// Error state: x, y, ψ, b, ε (radius_ratio − 1), β (wheel_base_factor − 1), κ (gyro scale), τ, ψ₀ (yaw at the
-/// beginning of the block). κ is considered and not corrected (S. F. Schmidt, 1966): rolling does not distinguish it
-/// from β. The innovation pulls no harder than Huber's bound; beyond kGate deviations it is not used.
+/// beginning of the block). Considered and not corrected (S. F. Schmidt, 1966) are κ, which rolling does not
+/// distinguish from β; x_ICR, by how far ahead of the wheels' middle the robot turns, −x_ICR dψ sideways, which wheels
+/// and gyro do not see; and what a gyro that is noisier than its data sheet adds to the error of a rest's bias and to
+/// the yaw: the wheels' errors, alike for a while, would be taken for that. The innovation pulls no harder than Huber's
+/// bound; beyond kGate deviations it is not used.
 ///
-/// The slip noise, m/√m of either side, and that of turning, rad/√rad, are learned from the innovations of blocks that
-/// go ahead and that turn: steps of its logarithm towards the level at which half of them are below the median of a
+/// The slip noise, m/√m of either side, and that of turning, rad/√rad, are learned from the innovations, each by its
+/// share of their variance: steps of its logarithm towards the level at which half of them are below the median of a
 /// normal distribution (H. Robbins, S. Monro, A stochastic approximation method, 1951), from a pessimistic start. The
 /// walks of ε and β are in proportion to the first.
 
@@ -42,12 +45,13 @@ struct PlanarCoreParams {
   double slip_least = 8e-5;            ///< m/√m, of the best floor
   double ratio_deviation = 0.01;       ///< 0: held
   double wheel_base_deviation = 0.03;  ///< 0: held
-  double clock_offset = 0.05;          ///< s, standard deviation: recordings show 0.03 … 0.17
+  double icr_deviation = 0;            ///< m, of the instantaneous centre of rotation along x; 0: between two wheels
+  double clock_offset = 0.08;          ///< s, standard deviation: recordings show 0.03 … 0.17
 };
 
 class PlanarCore {
  public:
-  enum Index : std::size_t { kX, kY, kYaw, kBias, kRatio, kBase, kScale, kOffset, kAnchor, kSize };
+  enum Index : std::size_t { kX, kY, kYaw, kBias, kRatio, kBase, kScale, kOffset, kAnchor, kRestBias, kIcr, kSize };
   using Covariance = std::array<std::array<double, kSize>, kSize>;
   using Row = std::array<double, kSize>;
 
@@ -78,15 +82,20 @@ class PlanarCore {
   /// pose. Its covariance covers them.
   void hold_corrections(bool holds) noexcept {
     holds_ = holds;
+    if (holds) bias_in_doubt_ = true;
     if (!holds) release();
   }
+  /// The robot has not moved by the bias it began with: nothing of the path depends on it.
+  void replace_bias() noexcept { bias_in_doubt_ = false; }
 
   /// The travel of both sides is read: a block begins.
   void begin_block(double rate) noexcept;
-  /// It ends, after `left` and `right` m in `dt` s. `rate` rad/s: the gyro's at either end.
-  Innovation end_block(double left, double right, double rate, double dt) noexcept;
+  /// It ends, after `left` and `right` m in `dt` s. `rate` rad/s: the gyro's at either end. `jitter` s²: variance of
+  /// the stamps of the wheels.
+  Innovation end_block(double left, double right, double rate, double dt, double jitter = 0) noexcept;
   /// The gyro's mean at rest, rad/s. `holds`: the pose stays where it is.
   void rest(double mean, double variance, bool holds) noexcept;
+  void set_gyro_noise(double density) noexcept { gyro_noise_ = density; }  ///< rad/s/√Hz, learned
   void age(double dt) noexcept { covariance_[kBias][kBias] += square(params_.gyro_bias_walk) * dt; }
   void open_bias(double variance) noexcept { covariance_[kBias][kBias] += variance; }
 
@@ -94,6 +103,9 @@ class PlanarCore {
   /// Of the pose and what is learned as they are given out, corrections that are held back included.
   double covariance(std::size_t i, std::size_t k) const noexcept { return covariance_[i][k] + held_[i] * held_[k]; }
   double deviation(std::size_t i) const noexcept { return std::sqrt(std::max(0.0, covariance(i, i))); }
+  double bias_variance() const noexcept {  ///< (rad/s)²
+    return covariance(kBias, kBias) + 2 * covariance(kBias, kRestBias) + covariance(kRestBias, kRestBias);
+  }
   double bias() const noexcept { return bias_; }                  ///< rad/s
   double ratio() const noexcept { return ratio_; }                ///< ε
   double base() const noexcept { return base_; }                  ///< β
@@ -105,21 +117,25 @@ class PlanarCore {
   static constexpr double kRatioWalk = 0.04;  // 1/m, of the slip noise
   static constexpr double kBaseWalk = 0.25;   // 1/m
   void add(std::size_t to, double factor, std::size_t from) noexcept;
+  void slide(double turned) noexcept;
   void correct(const Row& gain, const Row& ph, double s, double innovation) noexcept;
   void release() noexcept;
-  void learn(double normalised, double rolled, double angle) noexcept;
+  bool bias_proven() const noexcept;
+  void learn(double normalised, double slips, double twists) noexcept;
 
   PlanarCoreParams params_;
   PlanarPose pose_;
   double bias_ = 0, ratio_ = 0, base_ = 0, offset_ = 0;
   double anchor_ = 0;
   double anchor_rate_ = 0;  ///< rad/s
+  double gyro_noise_ = 0;   ///< rad/s/√Hz, learned
   double slip_ = 0;
   double twist_ = 0;                               ///< rad/√rad, learned
   double last_ = 0, correlation_ = 0, power_ = 1;  // of the innovations
   Covariance covariance_{};
   Row held_{};  ///< corrections that are held back
   bool holds_ = false;
+  bool bias_in_doubt_ = false;  ///< the path was driven by a bias that no rest has shown yet
 };
 
 }  // namespace robot_control

@@ -20,6 +20,7 @@ from lab.odometry.recordings import Recording, merged
 FloatArray = NDArray[np.float64]
 
 RADIUS, BASE = 0.126, 0.78  # m, wheel and effective wheel base
+TRACK = 0.394  # m, between left and right wheels of the robot that slides sideways
 _STEP = 1e-3  # s, of the truth
 _SPEED = 0.5  # m/s, at which the vibration is given
 _SLOW_TIME = 3.0  # s, in which the accelerometer's slow error changes
@@ -87,7 +88,10 @@ def field_drive(errors: Errors, seed: int, duration: float = 60.0, name: str = "
     gyro, accel = _inertial(time, imu_time, (speed, rate, aside), errors, random)
     rows = merged((stamps, *angles), (imu_time, gyro, accel))
     truth = np.column_stack([time, x, y])[:: int(0.05 / _STEP)]
-    return Recording(name, *rows, rest=errors.rest, radius=RADIUS, base=BASE, counts=errors.counts, truth=truth)
+    track = TRACK if errors.sideways != 0 else None
+    return Recording(
+        name, *rows, rest=errors.rest, radius=RADIUS, base=BASE, counts=errors.counts, track=track, truth=truth
+    )
 
 
 def _motion(time: FloatArray, rest: float, random: np.random.Generator) -> tuple[FloatArray, FloatArray]:

@@ -53,6 +53,7 @@ class Recording:
         rest: s at the beginning in which the robot stands.
         radius, base: m; the effective wheel base where the recording's description names one.
         counts: of a wheel's turn; None: its encoder is fine.
+        track: m, between left and right wheels, where it is not the base: wheels behind each other; None: no such.
         truth: (n, 3) time, x, y of another sensor; empty where there is none.
     """
 
@@ -66,11 +67,14 @@ class Recording:
     radius: float
     base: float
     counts: float | None = None
+    track: float | None = None
     truth: FloatArray = field(default_factory=lambda: np.empty((0, 3)))
 
     def geometry(self) -> dict[str, Any]:
         """Arguments of `Estimator`."""
-        given: dict[str, Any] = {"wheel_radius": self.radius, "wheel_base": self.base}
+        given: dict[str, Any] = {"wheel_radius": self.radius, "wheel_base": self.track or self.base}
+        if self.track is not None:
+            given["params"] = {"robot": {"wheel_base_multiplier": self.base / self.track}}
         if self.counts is not None:
             given["encoder_counts"] = self.counts
         return given
