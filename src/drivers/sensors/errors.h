@@ -14,7 +14,7 @@ enum class ErrorLevel {
 };
 
 struct Errors {
-  ErrorLevel sensor_errors = ErrorLevel::kDataSheet;
+  ErrorLevel sensor_errors = ErrorLevel::kField;
 
   // The data sheet (sensor_errors.h). Gyro and accelerometer are those of a Bosch BMI088 (data sheet BST-BMI088-DS001,
   // section 1 "Specification", typical values): noise 0.014 °/s/√Hz and 175 µg/√Hz (mean of 160 in x and y, 190 in z),
