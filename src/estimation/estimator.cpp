@@ -195,6 +195,9 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   if (placed_) {
     place(*placed_);
     held_ = kept_ = {};
+    shortened_ = 0;
+    slip_.begin_path();
+    slide_.begin_path(slip_);
   }
 }
 

@@ -177,6 +177,31 @@ TEST_F(SlipCorrectionTest, OnAShakenRobotItTakesBackWhatItCorrected) {
   EXPECT_GT(std::sqrt(variance_), 0.5) << "it may have been one";
 }
 
+TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsTakenBack) {
+  calm_ = false;
+  spin(0.5);
+  go(0.5);
+  const Planar before = corrected_;
+  ASSERT_GT(std::hypot(before.x, before.y), 0.1);
+  body_.statistic.begin_path();
+  slide_.begin_path(body_.statistic);
+  go(20);
+  ASSERT_TRUE(slide_.gave_up());
+  EXPECT_NEAR(corrected_.x, before.x, 1e-12);
+  EXPECT_NEAR(corrected_.y, before.y, 1e-12);
+}
+
+// It is proven 0.1 … 0.8 s after it began.
+TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsCorrectedByASlideThatIsProvenLater) {
+  body_.left = body_.right = 0.5;
+  while (!slide_.active()) {
+    corrected_ = {};
+    body_.statistic.begin_path();
+    go(SlidingBody::kStep);
+  }
+  EXPECT_LE(std::hypot(corrected_.x, corrected_.y), 0.5 * SlipStatistic::kGrid * 1.1);
+}
+
 TEST_F(SlipCorrectionTest, ResetEndsIt) {
   spin(0.5);
   slide_.reset();

@@ -41,7 +41,9 @@ SlipCorrection::Step SlipCorrection::begin(const SlipStatistic& statistic, doubl
   total_ = {};
   slips_ = {true, true};
   sideways_ = true;
+  path_began_ = statistic.path_began();
   from_ = looked_ = onset;
+  if (onset.time < path_began_) from_ = statistic.before(path_began_);
   decide(statistic.last(), known);
   Step correction = travel(statistic.last(), known);
   correction.variance += square(kUncertain) * size();
@@ -173,7 +175,7 @@ SlipCorrection::Step SlipCorrection::step(const SlipStatistic& statistic, const 
   Step correction = travel(now, known);
   correction.variance += square(kUncertain) * std::max(0.0, size() - before);
   if (now.time - looked_.time < 2 * SlipStatistic::kGrid * (1 - 1e-9)) return correction;
-  const double carried = now.time - anchored_;
+  const double carried = now.time - std::max(anchored_, path_began_);
   const bool blind = slips_[0] && slips_[1];
   const Planar line = line_;
   decide(now, known);
@@ -192,6 +194,13 @@ SlipCorrection::Step SlipCorrection::step(const SlipStatistic& statistic, const 
   }
   if (agreed_ >= kAgreed || stood_ >= kStands || gave_up_) end();
   return correction;
+}
+
+void SlipCorrection::begin_path(const SlipStatistic& statistic) noexcept {
+  if (!active_) return;
+  path_began_ = statistic.now().time;
+  from_ = statistic.now();
+  total_ = {};
 }
 
 void SlipCorrection::end() noexcept {

@@ -55,6 +55,8 @@ class SlipCorrection {
     taken_back_ = std::max(0.0, taken_back_ - dt);
   }
   void end() noexcept;
+  /// The pose was set: what was corrected before is not taken back, and no line is renewed behind it.
+  void begin_path(const SlipStatistic& statistic) noexcept;
   void reset() noexcept { *this = SlipCorrection(); }
   const Planar& line() const noexcept { return line_; }  ///< m/s
   /// m/s, base axes: how much faster the wheels are than the ground, along; and how the robot slides across.
@@ -83,6 +85,7 @@ class SlipCorrection {
   SlipStatistic::Point from_;    ///< of the last correction
   SlipStatistic::Point looked_;  ///< of the last decision
   Planar line_;                  ///< m/s, slope of E without slip
+  double path_began_ = 0;        ///< s
   double anchored_ = 0;          ///< s, time since which the line has been carried on
   double agreed_ = 0, stood_ = 0;
   double onset_speed_ = 0;       ///< m/s, along

@@ -33,7 +33,7 @@ void SlipStatistic::restart() noexcept {
   inertial_ = before_ = {};
   learned_at_ = {};
   proven_ = {};
-  pulled_at_ = 0;
+  pulled_at_ = path_began_ = 0;
   pull_ = {};
   onset_ = {};
   nis_.fill(-1);

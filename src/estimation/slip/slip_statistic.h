@@ -93,6 +93,9 @@ class SlipStatistic {
     now_.rate = 0;
     restart_on({});
   }
+  /// The way until now is not to be corrected any more.
+  void begin_path() noexcept { path_began_ = now_.time; }
+  double path_began() const noexcept { return path_began_; }  ///< s
   /// True: a point was added.
   bool step(const Sample& sample) noexcept;
   /// At a point. `learns`: no slip is going on.
@@ -160,6 +163,7 @@ class SlipStatistic {
   std::array<std::array<double, kChannels>, kCount> onset_{};  ///< |D|/σ of the last proof
   Pull pull_;
   double pulled_at_ = 0;
+  double path_began_ = 0;  ///< s
 };
 
 }  // namespace robot_control
