@@ -98,11 +98,17 @@ RobotModel robot_of(const Parameters& parameters) {
   return read_robot(load_description(parameters.urdf), parameters.robot);
 }
 
+/// The machine as it is described: without the load off its centre of gravity that the errors of the field add.
+MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
+  parameters.sensor_errors = ErrorLevel::kIdeal;
+  return parameters;
+}
+
 /// The robot set down in the scene and at rest: how far it leans, rad, and which part of its weight the drive wheels
 /// carry; `unloaded` names those that carry nothing, and what stands on the ground instead.
 py::dict stand(const Parameters& parameters) {
   const RobotModel robot = robot_of(parameters);
-  MujocoPlant plant(robot, parameters.plant, parameters.loop.period());
+  MujocoPlant plant(robot, without_errors(parameters.plant), parameters.loop.period());
   plant.start();
   TruthFrame truth;
   plant.truth(truth);
@@ -172,7 +178,7 @@ void bind_parameters(py::module_& module) {
   };
   define("describe", [](const Parameters& parameters) { return describe(robot_of(parameters)); });
   define("mjcf", [](const Parameters& parameters) {
-    return exported_mjcf(robot_of(parameters), parameters.plant, parameters.loop.period());
+    return exported_mjcf(robot_of(parameters), without_errors(parameters.plant), parameters.loop.period());
   });
   define("stand", stand);
   define("wheel_loops", [](const Parameters& parameters) { return wheel_loops(parameters, robot_of(parameters)); });

@@ -19,7 +19,7 @@ SEEDS = range(3)
 
 def wander(rest: int, seconds: int, seed: int):
     """The last cycle after `rest` cycles at rest, then straight on and in curves by turns of 2 s."""
-    loop = ClosedLoop({"mujoco_plant": {"left_radius_error": LEFT}}, seed=seed)
+    loop = ClosedLoop({"mujoco_plant": {"left_radius_error": LEFT, "sensor_errors": "data_sheet"}}, seed=seed)
     loop.command(0.0, 0.0)
     log = loop.step(rest)
     for angular in ((0.0, 0.8, 0.0, -0.8) * seconds)[: seconds // 2]:
