@@ -38,8 +38,8 @@ UNTOLD = {  # by one run
 }
 MISSED = {
     # Slip is proven against the residuals of a real floor (docs/recordings.md), so a slow or long slide is found late:
-    # here 80 % of the time, and its end, too, with 3.3 % false. The covariance has the clock offset and the floor of real
-    # robots in it: with the sensors of a data sheet the mean NEES is 0.9 of 3, and too small 63 % of the times.
+    # here 80 % of the time, and its end, too, with 3.3 % false. The covariance has the clock offset and the floor of
+    # real robots in it: with the sensors of a data sheet the mean NEES is 0.9 of 3, and too small 63 % of the times.
     "slip above 20 % flagged": 62,
     "false alarms, slip": 4.5,
     "NEES of the pose in its band": 27,
