@@ -35,12 +35,12 @@ inline double median_ratio(const std::vector<double>& values, const std::vector<
   return median(ratios);
 }
 
-/// The least of up to 40 rounds of `ratio`, spread over ten seconds, or the first within `bound`. A neighbour on the
+/// The least of up to 240 rounds of `ratio`, spread over a minute, or the first within `bound`. A neighbour on the
 /// same core halves throughput, for seconds, and hardly touches the kernel's latency. What costs too much does so in
 /// every round; one good round proves that it does not.
 template <typename Ratio>
 double best_ratio(double bound, const Ratio& ratio) {
-  constexpr int kRounds = 40;
+  constexpr int kRounds = 240;
   constexpr std::chrono::milliseconds kBetweenRounds(250);
   double best = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds && best > bound; ++round) {
