@@ -44,7 +44,7 @@ class StepCost : public testing::Test {
     std::vector<double> steps;
     std::vector<double> kernels;
     for (int block = 0; block < kBlocks; ++block) {
-      kernels.push_back(bench::kernel_block(kCycles));
+      kernels.push_back(bench::reference_block(kCycles));
       DriveController controller({}, bench_.robot, bench_.period);
       controller.enter_run();
       const AllocationGuard guard;

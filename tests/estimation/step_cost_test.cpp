@@ -33,7 +33,7 @@ class EstimatorCost : public EstimatorFixture {
     std::vector<double> steps;
     std::vector<double> kernels;
     for (int block = 0; block < kBlocks; ++block) {
-      kernels.push_back(bench::kernel_block(kCycles));
+      kernels.push_back(bench::reference_block(kCycles));
       Estimator estimator = estimator_;
       const AllocationGuard guard;
       const std::int64_t start = monotonic_ns();
