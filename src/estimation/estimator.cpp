@@ -27,79 +27,48 @@ bool continuable(const StateFrame& last) noexcept {
   return good && std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6;
 }
 
-void calibrate(const WheelCalibration& known, PlanarCore& core) noexcept {
-  core.set_calibration(known.radius_ratio - 1, known.radius_ratio_deviation, known.wheel_base_factor - 1,
-                       known.wheel_base_deviation);
-}
-
 }  // namespace
 
+EstimatorState::EstimatorState(const EstimatorParameters& parameters, const RobotModel& robot, double period)
+    : wheels_(robot, parameters.speed_bandwidth, period),
+      core_(core_params(parameters, robot)),
+      tilt_(tilt_params(parameters)),
+      gyro_noise_(parameters.gyro_noise),
+      rate_(parameters.rate_bandwidth, period),
+      wheel_velocities_(robot, parameters.speed_bandwidth, period),
+      slip_(slip_params(parameters, robot)),
+      watch_(rest_params(parameters, robot)) {
+  slip_.restart();
+}
+
 Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period)
-    : parameters_(checked(parameters, robot, period)),
+    : EstimatorState(checked(parameters, robot, period), robot, period),
+      parameters_(parameters),
       period_(period),
       geometry_(robot),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       encoder_(encoder_deviation(parameters, robot)),
-      fresh_core_(core_params(parameters, robot)),
-      fresh_tilt_(tilt_params(parameters)),
-      fresh_slip_(slip_params(parameters, robot)),
-      rate_(parameters.rate_bandwidth, period),
       rate_noise_gain_(rate_.noise_gain()),
-      wheel_velocities_(robot, parameters.speed_bandwidth, period),
-      sides_{Side{SideEncoder(robot, robot_control::Side::kLeft), SpeedTracker(parameters.speed_bandwidth, period)},
-             Side{SideEncoder(robot, robot_control::Side::kRight), SpeedTracker(parameters.speed_bandwidth, period)}},
-      watch_(rest_params(parameters, robot)),
-      gyro_noise_(parameters.gyro_noise) {
+      fresh_(*this) {
   const Vector3 bias = in_base(parameters.gyro_bias);
-  fresh_core_.set_bias(bias[2], parameters.gyro_bias_initial);
-  calibrate(parameters.calibration, fresh_core_);
-  enter_run();
+  for (const std::size_t i : {0U, 1U}) gyro_bias_[i] = {bias[i], square(parameters.gyro_bias_initial)};
+  core_.set_bias(bias[2], parameters.gyro_bias_initial);
+  core_.set_calibration(parameters.calibration);
+  core_.hold_corrections(true);
+  place({0, 0, 0});
+  fresh_ = *this;
 }
 
 Vector3 Estimator::in_base(const Vector3& imu) const noexcept {
   return array(base_from_imu_ * Eigen::Vector3d(imu.data()));
 }
 
-void Estimator::enter_run() noexcept {
-  core_ = fresh_core_;
-  core_.hold_corrections(true);
-  tilt_ = fresh_tilt_;
-  slip_ = fresh_slip_;
-  slip_.restart();
-  slide_.reset();
-  watch_.reset();
-  gyro_noise_ = GyroNoise(parameters_.gyro_noise);
-  imu_.reset();
-  const Vector3 bias = in_base(parameters_.gyro_bias);
-  gyro_bias_ = {bias[0], bias[1]};
-  gyro_variance_.fill(square(parameters_.gyro_bias_initial));
-  gyro_learned_ = rested_once_ = moved_ = false;
-  for (Side& side : sides_) {
-    side.encoder.reset();
-    side.speed.reset(0);
-    side.turned = side.credited = 0;
-  }
-  rate_.reset(Eigen::Vector3d::Zero());
-  wheel_velocities_.reset();
-  height_ = own_yaw_ = 0;
-  block_ = {};
-  jitter_.reset();
-  recent_ = {};
-  usual_gap_ = last_sample_ = silence_ = silent_turn_ = turning_ = 0;
-  rate_follows_ = false;
-  resting_ = true;
-  held_ = kept_ = {};
-  distrusted_windows_ = 0;
-  wheels_ = {};
-  distance_ = shortened_ = 0;
-  nis_ = {};
-  rejected_ = {};
-  began_ = restart_pending_ = false;
-  pose_pending_.reset();
-  placed_.reset();
-  cycle_ = skipped_ = 0;
-  flags_ = lasting_flags_ = 0;
-  place({0, 0, 0});
+Eigen::Vector3d Estimator::gyro_bias() const noexcept {
+  return {gyro_bias_[0].value, gyro_bias_[1].value, core_.bias()};
+}
+
+Eigen::Vector3d Estimator::gyro_bias_variance() const noexcept {
+  return {gyro_bias_[0].variance, gyro_bias_[1].variance, core_.bias_variance()};
 }
 
 void Estimator::resume(const StateFrame& last) noexcept {
@@ -107,30 +76,25 @@ void Estimator::resume(const StateFrame& last) noexcept {
   if (!continuable(last)) return;
   const Vector3 bias = in_base(last.gyro_bias);
   const Vector3 force = in_base(last.accelerometer_bias);
-  const Eigen::Vector3d up = rotation_of(last.attitude).row(2);
   const Eigen::Vector3d deviation(last.gyro_bias_deviation.data());
   const Eigen::Vector3d variance = base_from_imu_.cwiseAbs2() * deviation.cwiseAbs2();
+  for (const std::size_t i : {0U, 1U}) gyro_bias_[i] = {bias[i], variance[static_cast<int>(i)]};
   core_.set_bias(bias[2], std::sqrt(variance[2]));
-  gyro_bias_ = {bias[0], bias[1]};
-  gyro_variance_ = {variance[0], variance[1]};
-  calibrate(last.calibration, core_);
-  tilt_.set(array(up), {force[0], force[1]});
+  core_.set_calibration(last.calibration);
+  tilt_.set(array(rotation_of(last.attitude).row(2)), {force[0], force[1]});
   height_ = last.pose_odom.position[2];
   place({last.pose_odom.position[0], last.pose_odom.position[1], yaw_of(last.pose_odom.orientation)});
-  core_.set_pose_covariance(of_middle(last));
-  const double turn = last.twist_base.angular[2] * geometry_.wheel_base / 2;
-  const double speed = last.twist_base.linear[0] - last.twist_base.angular[2] * geometry_.axle_y;
-  sides_[kLeft].speed.reset(speed - turn);
-  sides_[kRight].speed.reset(speed + turn);
-  turning_ = last.twist_base.angular[2];
-  wheels_ = last.wheels;
+  core_.set_pose_covariance(covariance_of_middle(last));
+  core_.replace_bias();
+  core_.hold_corrections(false);
+  yaw_rate_ = last.twist_base.angular[2];
+  wheels_.set_speed(last.twist_base.linear[0] - yaw_rate_ * geometry_.axle_y, yaw_rate_);
+  wheel_odometry_ = last.wheels;
   distance_ = last.distance;
   rejected_ = last.rejected;
   skipped_ = last.skipped;
   cycle_ = last.head.cycle;
-  rested_once_ = moved_ = true;
-  core_.replace_bias();
-  core_.hold_corrections(false);
+  rested_ = moved_ = true;
   began_ = restart_pending_ = true;
   resting_ = false;
   lasting_flags_ = kStateRestarted;
@@ -138,10 +102,10 @@ void Estimator::resume(const StateFrame& last) noexcept {
 
 void Estimator::place(const Vector3& pose) noexcept {
   const Planar lever = axle(pose[2]);
-  const Lead lead = ahead();
-  core_.place({pose[0] + lever.x - lead.distance * std::cos(pose[2]),
-               pose[1] + lever.y - lead.distance * std::sin(pose[2]), pose[2] - lead.turn});
-  block_ = {};
+  const Prediction ahead = prediction();
+  core_.place({pose[0] + lever.x - ahead.distance * std::cos(pose[2]),
+               pose[1] + lever.y - ahead.distance * std::sin(pose[2]), pose[2] - ahead.turn});
+  comparison_ = {};
 }
 
 void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
@@ -150,7 +114,7 @@ void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
   flags_ = lasting_flags_;
   std::uint64_t cycles = 0;
   if (!began_) {
-    skipped_ = cycle;  // the run began without us
+    skipped_ = cycle;  // the run began earlier
   } else if (cycle > cycle_) {
     cycles = cycle - cycle_;
     skipped_ += cycles - 1;
@@ -173,15 +137,11 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   read(sensors, dt);
   if (restart_pending_) {
     restart_pending_ = false;
-    core_.shift(0, 0, square(kRestartPosition) + square(wheel_speed() * dt));
-    core_.add_yaw_variance(square(kRestartYaw) + square(wheel_rate() * dt));
+    core_.shift(0, 0, square(Tuning::kRestart) + square(wheels_.speed() * dt));
+    core_.add_yaw_variance(square(Tuning::kRestart) + square(wheels_.rate() * dt));
   } else if (dt > 0) {
-    follow_wheels();
-    if (both_read()) {
-      const SideEncoder& left = sides_[kLeft].encoder;
-      recent_.add((left.travel() + sides_[kRight].encoder.travel()) / 2, left.time(),
-                  std::max(std::abs(core_.offset()), left.gap()));
-    }
+    integrate_wheels();
+    if (wheels_.both_received()) wheels_.average_speed(std::abs(core_.offset()));
     slide_.age(dt);
     if (resting_) {
       rest(dt);
@@ -191,125 +151,72 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   }
   follow_rate(dt);
   wheel_velocities_.step(sensors, dt);
-  placed_ = std::exchange(pose_pending_, std::nullopt);
-  if (placed_) {
-    place(*placed_);
-    held_ = kept_ = {};
-    shortened_ = 0;
+  pose_set_ = std::exchange(pose_request_, std::nullopt);
+  if (pose_set_) {
+    place(*pose_set_);
+    open_window_ = last_window_ = {};
+    slope_shortening_ = 0;
     slip_.begin_path();
     slide_.begin_path(slip_);
   }
 }
 
-/// rad/s, bias included: in the step that makes up for the time since the last sample, the sample alone.
-const Eigen::Vector3d& Estimator::gyro_now() const noexcept {
-  return imu_.gyro_catches_up() ? imu_.last_gyro() : *imu_.gyro();
-}
-
-/// At rest, in the first step of a motion and without a gyro there is nothing to smooth.
-void Estimator::follow_rate(double dt) noexcept {
-  const bool follows = !resting_ && imu_.gyro();
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  if (follows) {
-    rate = gyro_now() - Eigen::Vector3d(gyro_bias_[0], gyro_bias_[1], core_.bias());
-  } else if (!resting_) {
-    rate.z() = turning_;
-  }
-  if (follows && rate_follows_ && dt > 0) {
-    rate_.step(rate, dt);
-  } else if (!(follows && rate_follows_)) {
-    rate_.reset(rate);
-  }
-  rate_follows_ = follows;
-}
-
 void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   imu_.step(sensors, base_from_imu_, dt);
-  if (imu_.refused()) flags_ |= kStateBadSample;
+  const WheelSides::Readings readings = wheels_.step(sensors, dt);
+  if (imu_.refused() || readings.refused) flags_ |= kStateBadSample;
   if (!imu_.gyro()) flags_ |= kStateNoGyro;
   if (!imu_.accelerometer()) flags_ |= kStateNoAccelerometer;
-  constexpr std::uint64_t kLost[2] = {kStateNoLeftEncoder, kStateNoRightEncoder};
-  for (const std::size_t i : {kLeft, kRight}) {
-    Side& side = sides_[i];
-    const EncoderReading reading = side.encoder.step(sensors, dt);
-    if (reading == EncoderReading::kRejected) flags_ |= kStateBadSample;
-    if (!side.encoder.received()) flags_ |= kLost[i];
-    if (reading == EncoderReading::kTravel && side.encoder.time() > 0) {
-      side.speed.step(side.encoder.travel(), side.encoder.time());
-    }
-    if (reading == EncoderReading::kTravel && i == kLeft) jitter_.add(side.encoder.time());
-    if (reading == EncoderReading::kOffset || reading == EncoderReading::kLost) block_ = {};
-    if (reading == EncoderReading::kLost) {
-      side.credited = 0;
-      core_.shift(0, 0, square(kRestartPosition));
-      slip_.restart();
-      slide_.end();
-    }
-  }
-}
-
-double Estimator::wheel_speed() const noexcept {
-  return (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2;
-}
-
-double Estimator::wheel_rate() const noexcept {
-  return geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
-}
-
-/// What the wheels rolled since their readings, which are late by the clock offset, and what the robot turned since the
-/// gyro's where that is the late one.
-Estimator::Lead Estimator::ahead() const noexcept {
-  if (resting_) return {};
-  Lead lead;
-  if (core_.offset() > 0) {
-    lead.speed = lost(kLeft) || lost(kRight) ? forward_speed() : recent_.speed() - slide_.excess();
-  } else {
-    lead.rate = -turning_;
-  }
-  lead.turn = lead.rate * core_.offset();
-  lead.distance = lead.speed * core_.offset();
-  for (const std::size_t i : {kLeft, kRight}) {
-    const Side& side = sides_[i];
-    if (side.encoder.received() || (lost(i) && !lost(1 - i))) continue;  // the other side rolls for it
-    lead.distance +=
-        side.speed.speed() *
-        std::min(side.encoder.waiting(), std::max(side.encoder.gap(), static_cast<double>(kMaxHeld) * period_)) / 2;
-  }
-  return lead;
-}
-
-/// Of the middle of the wheels.
-double Estimator::forward_speed() const noexcept {
-  if (resting_) return 0;
-  if (lost(kLeft) != lost(kRight)) {
-    const std::size_t side = lost(kLeft) ? kRight : kLeft;
-    return sides_[side].speed.speed() + (side == kLeft ? 1 : -1) * rate_.rate().z() * geometry_.wheel_base / 2;
-  }
-  return wheel_speed() - slide_.excess();
-}
-
-bool Estimator::lost(std::size_t side) const noexcept {
-  const SideEncoder& encoder = sides_[side].encoder;
-  const double longest = static_cast<double>(kMaxHeld) * period_ * (1 + 1e-9);
-  return !encoder.known() || encoder.waiting() > std::max(longest, 2 * encoder.gap());
-}
-
-bool Estimator::both_read() const noexcept {
-  return sides_[kLeft].encoder.received() && sides_[kRight].encoder.received();
+  if (!wheels_.received(kLeft)) flags_ |= kStateNoLeftEncoder;
+  if (!wheels_.received(kRight)) flags_ |= kStateNoRightEncoder;
+  if (readings.restarted) comparison_ = {};
+  if (readings.lost_travels == 0) return;
+  core_.shift(0, 0, readings.lost_travels * square(Tuning::kRestart));
+  slip_.restart();
+  slide_.end();
 }
 
 /// Raw odometry: the travel of either side since its last reading.
-void Estimator::follow_wheels() noexcept {
-  const double left = sides_[kLeft].encoder.travel();
-  const double right = sides_[kRight].encoder.travel();
-  const Motion motion = geometry_.base_motion((left + right) / 2, geometry_.turn(left, right));
-  const Chord chord = chord_of(motion, wheels_.yaw);
-  wheels_.x += chord.x;
-  wheels_.y += chord.y;
-  wheels_.yaw = std::remainder(wheels_.yaw + motion.turn, 2 * std::numbers::pi);
-  const Motion velocity = geometry_.base_motion(wheel_speed(), wheel_rate());
-  wheels_.linear = velocity.forward;
-  wheels_.angular = velocity.turn;
+void Estimator::integrate_wheels() noexcept {
+  const Motion motion = geometry_.base_motion(wheels_.mean(), wheels_.turned());
+  const Chord chord = chord_of(motion, wheel_odometry_.yaw);
+  wheel_odometry_.x += chord.x;
+  wheel_odometry_.y += chord.y;
+  wheel_odometry_.yaw = std::remainder(wheel_odometry_.yaw + motion.turn, 2 * std::numbers::pi);
+  const Motion velocity = geometry_.base_motion(wheels_.speed(), wheels_.rate());
+  wheel_odometry_.linear = velocity.forward;
+  wheel_odometry_.angular = velocity.turn;
+}
+
+void Estimator::follow_rate(double dt) noexcept {
+  const bool smooth = !resting_ && imu_.gyro();
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  if (smooth) {
+    rate = imu_.gyro_rate() - gyro_bias();
+  } else if (!resting_) {
+    rate.z() = yaw_rate_;
+  }
+  rate_.follow(rate, smooth, dt);
+}
+
+/// What the wheels rolled since their readings, which are late by a positive clock offset, or what the robot turned
+/// since the gyro's, which are late by a negative one; and what a side without a reading in this step rolled.
+Estimator::Prediction Estimator::prediction() const noexcept {
+  if (resting_) return {};
+  Prediction ahead;
+  if (core_.offset() > 0) {
+    const double speed = wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slide_.excess();
+    ahead.distance = speed * core_.offset();
+  } else {
+    ahead.turn = -yaw_rate_ * core_.offset();
+  }
+  ahead.distance += wheels_.unread_distance(kLeft);
+  ahead.distance += wheels_.unread_distance(kRight);
+  return ahead;
+}
+
+double Estimator::forward_speed() const noexcept {
+  return resting_ ? 0 : wheels_.speed_at(rate_.rate().z()) - slide_.excess();
 }
 
 }  // namespace robot_control

@@ -8,15 +8,9 @@
 #include "estimation/values.h"
 
 namespace robot_control {
-namespace {
-
-constexpr double kQuietAcceleration = 0.1;  // m/s², mean at rest beside what is expected: sliding slower is no slide
-constexpr std::uint64_t kDistrustedWindows = 6;  // then the tilt was wrong, not the window
-
-}  // namespace
 
 RestWindow Estimator::watch_rest(double dt) noexcept {
-  RestWatch::Sample sample{.dt = dt, .left = sides_[kLeft].encoder.travel(), .right = sides_[kRight].encoder.travel()};
+  RestWatch::Sample sample{.dt = dt, .left = wheels_.left(), .right = wheels_.right()};
   Vector3 gyro;
   Vector3 force;
   if (imu_.gyro()) {
@@ -28,23 +22,12 @@ RestWindow Estimator::watch_rest(double dt) noexcept {
     sample.accelerometer = &force;
   }
   const double noise = square(gyro_noise_.density()) / parameters_.standstill_time;
-  const Vector3 bias{gyro_bias_[0], gyro_bias_[1], core_.bias()};
-  const Vector3 deviation{std::sqrt(gyro_variance_[0] + noise), std::sqrt(gyro_variance_[1] + noise),
-                          std::sqrt(core_.bias_variance() + noise)};
-  return watch_.step(sample, bias, deviation);
+  return watch_.step(sample, array(gyro_bias()), array((gyro_bias_variance().array() + noise).sqrt()));
 }
 
 void Estimator::rest(double dt) noexcept {
-  held_.time += dt;
-  held_.left += sides_[kLeft].encoder.travel();
-  held_.right += sides_[kRight].encoder.travel();
-  if (imu_.gyro()) {
-    for (int i = 0; i < 3; ++i) held_.turn[static_cast<std::size_t>(i)] += (*imu_.gyro())[i] * dt;
-  } else {
-    held_.gyro = false;
-  }
-  const auto silent = [&](std::size_t side) { return sides_[side].encoder.gap() > 0 && lost(side); };
-  if (silent(kLeft) && silent(kRight)) {  // no sensor confirms that it still rests
+  open_window_.step(dt, wheels_.left(), wheels_.right(), imu_.gyro());
+  if (wheels_.both_fell_silent()) {  // no sensor confirms that it still rests
     watch_.reset();
     lasting_flags_ &= ~std::uint64_t{kStateStandstill};
     return;
@@ -54,81 +37,78 @@ void Estimator::rest(double dt) noexcept {
   if (window != RestWindow::kQuiet) return end_rest();
   learn_at_rest();
   flags_ |= kStateStandstill;
-  kept_ = std::exchange(held_, {});
+  last_window_ = std::exchange(open_window_, {});
 }
 
 void Estimator::begin_rest() noexcept {
   resting_ = true;
   gyro_noise_.interrupt();
-  held_ = kept_ = {};
+  open_window_ = last_window_ = {};
   slide_.end();
-  block_ = {};
-  for (Side& side : sides_) side.turned = 0;
+  comparison_ = {};
+  wheels_.forget_turn();
   flags_ |= kStateStandstill;
   lasting_flags_ |= kStateStandstill;
-  distrusted_windows_ = 0;
-  if (watch_.reopened()) {
+  sliding_windows_ = 0;
+  if (watch_.bias_changed()) {
     learn_at_rest();
   } else {
     watch_.discard();
   }
 }
 
+/// The last two windows are integrated at once.
 void Estimator::end_rest() noexcept {
-  rested_once_ = rested_once_ || gyro_learned_;
+  rested_ = rested_ || bias_measured_;
   moved_ = true;
   resting_ = false;
   lasting_flags_ &= ~std::uint64_t{kStateStandstill};
   flags_ &= ~std::uint64_t{kStateStandstill};
+  const bool stood = last_window_.time > 0;
+  HeldMotion held = std::exchange(open_window_, {});
+  held.add(std::exchange(last_window_, {}));
   const double before = core_.pose().yaw;
-  const bool stood = kept_.time > 0;
-  held_.add(kept_);
-  if (held_.gyro) {
-    core_.turn_by_gyro(held_.turn[2], held_.time);
-    turn_tilt({held_.turn[0] / held_.time, held_.turn[1] / held_.time, held_.turn[2] / held_.time}, held_.time);
+  if (held.gyro) {
+    core_.turn_by_gyro(held.turn.z(), held.time);
+    turn_tilt(held.turn / held.time, held.time);
   } else {
-    core_.turn_by_wheels(held_.left, held_.right);
+    core_.turn_by_wheels(held.left, held.right);
   }
   const double turned = core_.pose().yaw - before;
-  own_yaw_ += turned;
-  go({.distance = (held_.left + held_.right) / 2, .before = turned / 2});
-  for (Side& side : sides_) side.turned = 0;
+  uncorrected_yaw_ += turned;
+  advance_path({.distance = (held.left + held.right) / 2, .turn_since = turned / 2});
+  wheels_.forget_turn();
   if (stood) {
-    slip_.stand(own_yaw_, tilt_.up());
+    slip_.stand(uncorrected_yaw_, tilt_.up());
   } else {
     slip_.restart();  // a run may begin in motion
   }
-  if (both_read()) {
-    core_.begin_block(rate_.rate().z());
-    block_ = {.open = true};
-  }
-  held_ = kept_ = {};
+  if (wheels_.both_received()) begin_comparison();
 }
 
 void Estimator::learn_at_rest() noexcept {
   const double window = watch_.time();
   lasting_flags_ |= kStateStandstill;
   core_.age(window);
-  if (watch_.gyro()) {
-    if (!rested_once_ && !moved_) core_.replace_bias();
-    core_.hold_corrections(false);
-    gyro_noise_.add((*watch_.gyro())[2], window);
-    core_.set_gyro_noise(gyro_noise_.density());
-    const double variance = square(parameters_.gyro_noise) / window;
-    if (watch_.reopened()) {
-      core_.open_bias(square((*watch_.gyro())[2] - core_.bias()));
-      for (const std::size_t i : {0U, 1U}) gyro_variance_[i] += square((*watch_.gyro())[i] - gyro_bias_[i]);
-    }
-    core_.rest((*watch_.gyro())[2], variance, rested_once_);
-    for (const std::size_t i : {0U, 1U}) {
-      gyro_variance_[i] += square(parameters_.gyro_bias_walk) * window;
-      const double gain = gyro_variance_[i] / (gyro_variance_[i] + variance);
-      gyro_bias_[i] += gain * ((*watch_.gyro())[i] - gyro_bias_[i]);
-      gyro_variance_[i] *= 1 - gain;
-    }
-    gyro_learned_ = true;
-  }
+  if (watch_.gyro()) learn_gyro_bias(*watch_.gyro(), window);
   if (watch_.force()) tilt_.rest(*watch_.force(), window);
+}
+
+/// `mean` rad/s over `window` s.
+void Estimator::learn_gyro_bias(const Vector3& mean, double window) noexcept {
+  if (!rested_ && !moved_) core_.replace_bias();
+  core_.hold_corrections(false);
+  gyro_noise_.add(mean[2], window);
+  core_.set_gyro_noise(gyro_noise_.density());
+  const double noise = square(parameters_.gyro_noise) / window;
+  if (watch_.bias_changed()) {
+    core_.open_bias(square(mean[2] - core_.bias()));
+    for (const std::size_t i : {0U, 1U}) gyro_bias_[i].variance += square(mean[i] - gyro_bias_[i].value);
+  }
+  core_.rest(mean[2], noise, rested_);
+  const double walk = square(parameters_.gyro_bias_walk) * window;
+  for (const std::size_t i : {0U, 1U}) gyro_bias_[i].measure(mean[i], noise, walk);
+  bias_measured_ = true;
 }
 
 /// Wheels stand, and the accelerometer reads another force than a robot at rest would.
@@ -137,11 +117,11 @@ bool Estimator::slides_at_rest() noexcept {
   const auto acceleration = tilt_.acceleration(*watch_.last_force());
   bool slides = false;
   for (const std::size_t axis : {0U, 1U}) {
-    const double doubt = std::sqrt(tilt_.acceleration_variance(axis));
-    slides = slides || std::abs(acceleration[axis]) > kQuietAcceleration + 3 * doubt;
+    const double deviation = std::sqrt(tilt_.acceleration_variance(axis));
+    slides = slides || std::abs(acceleration[axis]) > Tuning::kQuietAcceleration + Tuning::kSignificant * deviation;
   }
-  if (!slides) distrusted_windows_ = 0;
-  return slides && ++distrusted_windows_ < kDistrustedWindows;
+  if (!slides) sliding_windows_ = 0;
+  return slides && ++sliding_windows_ < Tuning::kSlidingWindows;
 }
 
 }  // namespace robot_control

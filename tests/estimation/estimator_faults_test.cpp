@@ -41,7 +41,7 @@ TEST_F(EstimatorFaultsTest, AMissingReadingOfOneEncoderDoesNotHoldThePoseBack) {
 
 TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
   const auto silence = [](SensorFrame& frame) { frame.valid &= ~std::uint64_t{kValidJoints}; };
-  for (std::uint64_t i = 0; i < Estimator::kMaxHeld; ++i) {
+  for (std::uint64_t i = 0; i < Tuning::kMaxHeld; ++i) {
     broken(silence);
     EXPECT_TRUE(has(kStateValid)) << i;
   }
@@ -79,12 +79,12 @@ TEST_F(EstimatorFaultsTest, NoEncoderEverIsNoValidState) {
 
 TEST_F(EstimatorFaultsTest, EncodersThatBeganAnewCostCovarianceNotAJump) {
   const double variance = state_.pose_covariance[0];
-  for (std::uint64_t i = 0; i <= SideEncoder::kMaxRejected; ++i) {
+  for (std::uint64_t i = 0; i <= Tuning::kMaxHeld; ++i) {
     broken([](SensorFrame& frame) {
       frame.joints[0].position -= 500;
       frame.joints[1].position -= 500;
     });
-    EXPECT_LT(position_error(), Estimator::kRestartPosition) << i;  // a jump would be 50 m
+    EXPECT_LT(position_error(), Tuning::kRestart) << i;  // a jump would be 50 m
   }
   EXPECT_GT(state_.pose_covariance[0], variance);
   for (int i = 0; i < 500; ++i) {
@@ -94,7 +94,7 @@ TEST_F(EstimatorFaultsTest, EncodersThatBeganAnewCostCovarianceNotAJump) {
     });
   }
   EXPECT_EQ(state_.flags, std::uint64_t{kStateValid});
-  EXPECT_LT(position_error(), Estimator::kRestartPosition);
+  EXPECT_LT(position_error(), Tuning::kRestart);
 }
 
 // The gyro alone turns it: the bias of a rest of one second is known to 2.44e-4 rad/s.
@@ -125,7 +125,7 @@ TEST_F(EstimatorFaultsTest, OneEncoderWithoutGyroIsNoValidState) {
 
 TEST_F(EstimatorFaultsTest, AMissingGyroSampleIsHeldNoLongerThanTheShortHold) {
   const auto silence = [](SensorFrame& frame) { frame.valid &= ~std::uint64_t{kValidGyro}; };
-  const int held = static_cast<int>(ImuSamples::kShortHold / kPeriod) - 1;
+  const int held = static_cast<int>(Tuning::kShortestHold / kPeriod) - 1;
   for (int i = 0; i < held; ++i) {
     broken(silence);
     ASSERT_FALSE(has(kStateNoGyro)) << i;
@@ -260,8 +260,8 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
     }
   }
   robot_.frame().head.cycle += 10;
-  // Should the gyro's bias be poisoned: RestWatch::kReopened, and as long again for what a stop and two windows take.
-  drive(0, 0, static_cast<int>(2 * RestWatch::kReopened / kPeriod));
+  // Should the gyro's bias be poisoned: Tuning::kConstantRate, and as long again for what a stop and two windows take.
+  drive(0, 0, static_cast<int>(2 * Tuning::kConstantRate / kPeriod));
   EXPECT_TRUE(has(kStateValid));
   EXPECT_TRUE(has(kStateStandstill));
   EXPECT_EQ(state_.slip, 0u);
@@ -269,7 +269,7 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
   estimator_.set_pose({0, 0, 0});  // the pose of before is worth nothing
   drive(0.5, 0, 2000);
   EXPECT_TRUE(has(kStateValid));
-  drive(0, 0, static_cast<int>(2 * RestWatch::kReopened / kPeriod));
+  drive(0, 0, static_cast<int>(2 * Tuning::kConstantRate / kPeriod));
   EXPECT_TRUE(has(kStateStandstill));
   EXPECT_EQ(speed(), 0);
 }

@@ -80,8 +80,8 @@ TEST_F(EstimatorLeverTest, ARestartKeepsTheCovariance) {
     restarted.resume(last);
     StateFrame state;
     restarted.step(robot_.frame(), state);
-    const double yaw = Estimator::kRestartYaw * Estimator::kRestartYaw;
-    const double position = Estimator::kRestartPosition * Estimator::kRestartPosition;
+    const double yaw = Tuning::kRestart * Tuning::kRestart;
+    const double position = Tuning::kRestart * Tuning::kRestart;
     const double late = 0.5 * 0.4 * PlanarCoreParams{}.clock_offset;
     const double reading = EstimatorParameters{}.encoder_noise * two_wheeler().wheels[0].radius;
     EXPECT_NEAR(state.pose_covariance[35], before.pose_covariance[35] + yaw, 1e-9) << axle;
@@ -136,7 +136,7 @@ TEST_P(EstimatorPlaneTest, ThePitchRateIsPublishedOutsideOfThePlaneAlone) {
   EXPECT_NEAR(2 * std::asin(state.attitude[1]), -0.05 * 1.5, 2e-3);
   if (GetParam()) {
     EXPECT_EQ(state.pose_odom.orientation[1], 0);
-    EXPECT_EQ(state.pose_covariance[28], kPlanarVariance);
+    EXPECT_EQ(state.pose_covariance[28], Tuning::kPlanarVariance);
   } else {
     EXPECT_EQ(state.pose_odom.orientation, state.attitude);
     EXPECT_NEAR(state.pose_covariance[28], state.attitude_covariance[4], 1e-15);

@@ -58,7 +58,7 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
     EXPECT_EQ(state_.pose_odom.orientation[0], 0);
     EXPECT_EQ(state_.pose_odom.orientation[1], 0);
     EXPECT_EQ(state_.twist_base.linear[2], 0);
-    EXPECT_EQ(state_.pose_covariance[14], kPlanarVariance);
+    EXPECT_EQ(state_.pose_covariance[14], Tuning::kPlanarVariance);
   } else {
     EXPECT_NEAR(state_.pose_odom.position[2] - z, way * std::sin(kSlope), 0.01 * way);
     EXPECT_EQ(state_.pose_odom.orientation, state_.attitude);

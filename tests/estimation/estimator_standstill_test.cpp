@@ -187,7 +187,7 @@ TEST_F(EstimatorStandstillTest, ARestLearnsTheBiasAnew) {
 TEST_F(EstimatorStandstillTest, ABiasThatChangedAtOnceIsLearnedAnew) {
   drive(0, 0, 1000);
   robot_.gyro_bias.z() = 0.1;
-  drive(0, 0, static_cast<int>((RestWatch::kReopened - 0.5) / kPeriod));
+  drive(0, 0, static_cast<int>((Tuning::kConstantRate - 0.5) / kPeriod));
   EXPECT_FALSE(standing());
   drive(0, 0, 5000);
   EXPECT_TRUE(standing());

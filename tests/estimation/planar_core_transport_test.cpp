@@ -31,7 +31,7 @@ class CoreTransportTest : public testing::Test {
   CoreTransportTest() : core_(core_without_noise()) {
     core_.place({1.0, -2.0, 0.7});
     practise(core_, 5);
-    core_.set_calibration(0, 0.004, 0, 0.01);
+    core_.set_calibration({.radius_ratio_deviation = 0.004, .wheel_base_deviation = 0.01});
     practise(core_, 5);
     // The corrections left a calibration of about 0 and a bias of about 0.
     core_.begin_block(0.5);
@@ -98,7 +98,7 @@ TEST_F(CoreTransportTest, TheWheelsTurnByTheirCalibration) {
   const CoreVector at = values_of(core_);
   const Step step = [&](CoreVector x) {
     PlanarCore other(params);
-    other.set_calibration(x[PlanarCore::kRatio], 0, x[PlanarCore::kBase], 0);
+    other.set_calibration({1 + x[PlanarCore::kRatio], 1 + x[PlanarCore::kBase]});
     x[PlanarCore::kYaw] += other.wheel_turn(left, right);
     return x;
   };

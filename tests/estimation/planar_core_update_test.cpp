@@ -105,10 +105,10 @@ TEST_F(CoreUpdateTest, WhatIsHeldIsNotLearned) {
   PlanarCoreParams params;
   params.ratio_deviation = params.wheel_base_deviation = 0;
   core_ = PlanarCore(params);
-  core_.set_calibration(0.01, 0, 0.02, 0);
+  core_.set_calibration({1.01, 1.02});
   practise(core_, 20);
-  EXPECT_EQ(core_.ratio(), 0.01);
-  EXPECT_EQ(core_.base(), 0.02);
+  EXPECT_EQ(core_.calibration().radius_ratio, 1.01);
+  EXPECT_EQ(core_.calibration().wheel_base_factor, 1.02);
 }
 
 // Gyro's mean at rest, of variance r: a Kalman update of the bias, and through it of the heading.

@@ -39,7 +39,7 @@ TEST_F(RestWatchTest, TheMeansOfAQuietWindowCountBehindTheNextOne) {
   EXPECT_NEAR(watch_.time(), params_.window, 1e-12);
   EXPECT_NEAR((*watch_.gyro())[2], 0.004, 1e-12);
   EXPECT_NEAR((*watch_.force())[2], 9.8, 1e-12);
-  EXPECT_FALSE(watch_.reopened());
+  EXPECT_FALSE(watch_.bias_changed());
 }
 
 TEST_F(RestWatchTest, EndsAtOnceWhereAWheelLeavesItsTolerance) {
@@ -96,10 +96,10 @@ TEST_F(RestWatchTest, ARateThatStaysForTenSecondsIsTheBias) {
   double time = 0;
   while (window(0.3) == RestWindow::kTurned) {
     time += params_.window;
-    ASSERT_LT(time, 2 * RestWatch::kReopened);
+    ASSERT_LT(time, 2 * Tuning::kConstantRate);
   }
-  EXPECT_NEAR(time + params_.window, RestWatch::kReopened, 1e-9);
-  EXPECT_TRUE(watch_.reopened());
+  EXPECT_NEAR(time + params_.window, Tuning::kConstantRate, 1e-9);
+  EXPECT_TRUE(watch_.bias_changed());
   EXPECT_NEAR((*watch_.gyro())[2], 0.3, 1e-12);
 }
 

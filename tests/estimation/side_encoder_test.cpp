@@ -83,7 +83,7 @@ TEST_F(SideEncoderOfFourWheels, OneWheelThatIsNotUsedRejectsTheReading) {
 
 // Without a limit a wheel is believed up to 1000 rad/s.
 TEST_F(SideEncoderOfFourWheels, NeedsNoVelocityLimit) {
-  const double possible = 1000 * kPeriod + SideEncoder::kSlack;
+  const double possible = 1000 * kPeriod + Tuning::kEncoderSlack;
   sensors_.joints[0].position = possible - 0.01;
   EXPECT_EQ(left_.step(sensors_, kPeriod), EncoderReading::kTravel);
   sensors_.joints[0].position += possible + 0.01;
@@ -103,8 +103,8 @@ TEST_F(SideEncoderTest, BringsTheTravelOfAGapWithTheNextGoodReading) {
 }
 
 TEST_F(SideEncoderTest, RemembersNoGapBeyondItsBound) {
-  EXPECT_EQ(read(12.52, 10 * SideEncoder::kLongGap), EncoderReading::kTravel);
-  EXPECT_EQ(encoder_.gap(), SideEncoder::kLongGap);
+  EXPECT_EQ(read(12.52, 10 * Tuning::kLongestGap), EncoderReading::kTravel);
+  EXPECT_EQ(encoder_.gap(), Tuning::kLongestGap);
 }
 
 TEST_F(SideEncoderTest, RejectsSamplesThatAreNotValid) {
@@ -119,13 +119,13 @@ TEST_F(SideEncoderTest, RejectsAFrameWithoutTheWheel) {
 
 // velocity_limit is 30 rad/s; twice that is possible.
 TEST_F(SideEncoderTest, BelievesExactlyWhatIsPossible) {
-  const double possible = 2 * 30 * kPeriod + SideEncoder::kSlack;
+  const double possible = 2 * 30 * kPeriod + Tuning::kEncoderSlack;
   EXPECT_EQ(read(12.5 + possible - 1e-3), EncoderReading::kTravel);
   EXPECT_EQ(read(12.5 + 2 * possible), EncoderReading::kRejected);
 }
 
 TEST_F(SideEncoderTest, TakesALastingJumpAsANewOffset) {
-  for (std::uint64_t i = 0; i < SideEncoder::kMaxRejected; ++i) EXPECT_EQ(read(1000), EncoderReading::kRejected);
+  for (std::uint64_t i = 0; i < Tuning::kMaxHeld; ++i) EXPECT_EQ(read(1000), EncoderReading::kRejected);
   EXPECT_EQ(read(1000), EncoderReading::kLost);
   EXPECT_EQ(encoder_.travel(), 0);
   EXPECT_EQ(read(1000.01), EncoderReading::kTravel);
@@ -133,7 +133,7 @@ TEST_F(SideEncoderTest, TakesALastingJumpAsANewOffset) {
 }
 
 TEST_F(SideEncoderTest, AJumpThatDoesNotLastCostsNothing) {
-  for (std::uint64_t i = 0; i < SideEncoder::kMaxRejected; ++i) read(1000);
+  for (std::uint64_t i = 0; i < Tuning::kMaxHeld; ++i) read(1000);
   EXPECT_EQ(read(12.53), EncoderReading::kTravel);
   EXPECT_NEAR(encoder_.travel(), 0.003, 1e-15);
 }

@@ -41,7 +41,7 @@ TEST(TiltTest, IsBoundedHoweverTheGyroTurns) {
   Tilt tilt;
   for (int i = 0; i < 10000; ++i) {
     tilt.turn({3.0, -2.0, 1.0}, kTiltStep, true);
-    ASSERT_LE(std::hypot(tilt.up()[0], tilt.up()[1]), Tilt::kSteepest + 1e-9);
+    ASSERT_LE(std::hypot(tilt.up()[0], tilt.up()[1]), Tuning::kSteepest + 1e-9);
     ASSERT_GT(tilt.up()[2], 0);
   }
 }
@@ -51,7 +51,7 @@ TEST(TiltTest, IsBoundedHoweverTheAccelerometerPulls) {
   for (int i = 0; i < 1000; ++i) {
     tilt.turn({}, kTiltStep, true);
     tilt.pull(8.0, -9.0, 1.0, 1e-3);
-    ASSERT_LE(std::hypot(tilt.up()[0], tilt.up()[1]), Tilt::kSteepest + 1e-9);
+    ASSERT_LE(std::hypot(tilt.up()[0], tilt.up()[1]), Tuning::kSteepest + 1e-9);
     ASSERT_GT(tilt.up()[2], 0);
   }
 }
@@ -62,7 +62,7 @@ TEST(TiltTest, ItsVarianceIsBoundedHoweverLongNothingCorrectsIt) {
     tilt.turn({}, 1.0, false);
     if (i % 100 == 0) tilt.pull(0, 0, 1.0, 1e6);
   }
-  for (const std::size_t axis : {0U, 1U}) EXPECT_LE(tilt.covariance(axis, axis), Tilt::kSteepest * Tilt::kSteepest);
+  for (const std::size_t axis : {0U, 1U}) EXPECT_LE(tilt.covariance(axis, axis), Tuning::kSteepest * Tuning::kSteepest);
 }
 
 // Of what a first rest shows, the bias has the share of its own variance: 0.0004 of 0.0104.
@@ -206,7 +206,7 @@ TEST(TiltTest, IsSetToThatOfAnEarlierProcess) {
 TEST(TiltTest, WhatIsSetBeyondTheSteepestIsBounded) {
   Tilt tilt;
   tilt.set({0.9, 0, std::sqrt(1 - 0.81)}, {0, 0});
-  EXPECT_NEAR(tilt.up()[0], Tilt::kSteepest, 1e-9);
+  EXPECT_NEAR(tilt.up()[0], Tuning::kSteepest, 1e-9);
 }
 
 }  // namespace

@@ -5,17 +5,6 @@
 
 namespace robot_control {
 
-void ImuSamples::reset() noexcept {
-  for (Channel* channel : {&gyro_, &accelerometer_}) {  // GCC 12 with a sanitizer takes `= {}` for uninitialised
-    channel->mean.reset();
-    channel->last.setZero();
-    channel->received = channel->known = channel->fresh = channel->catches_up = false;
-    channel->age = channel->last_gap = channel->gap = 0;
-    channel->hold = kShortHold;
-  }
-  refused_ = false;
-}
-
 void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
                       bool trapezoid) noexcept {
   channel.age += dt;
@@ -32,7 +21,7 @@ void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sa
     // ever.
     if (channel.received && channel.age > 0) {
       channel.gap = std::min(channel.age, std::exchange(channel.last_gap, channel.age));
-      channel.hold = std::clamp(3 * channel.age, kShortHold, kLongHold);
+      channel.hold = std::clamp(3 * channel.age, Tuning::kShortestHold, Tuning::kLongestHold);
     }
     channel.last = *sample;
     channel.received = channel.known = true;
@@ -56,8 +45,9 @@ void ImuSamples::step(const SensorFrame& sensors, const Eigen::Matrix3d& base_fr
     }
     return Eigen::Vector3d(base_from_imu * vector);
   };
-  take(gyro_, sample(kValidGyro, sensors.imu.angular_velocity, kGyroRange), dt, true);
-  take(accelerometer_, sample(kValidAccelerometer, sensors.imu.linear_acceleration, kAccelerometerRange), dt, false);
+  take(gyro_, sample(kValidGyro, sensors.imu.angular_velocity, Tuning::kGyroRange), dt, true);
+  take(accelerometer_, sample(kValidAccelerometer, sensors.imu.linear_acceleration, Tuning::kAccelerometerRange), dt,
+       false);
 }
 
 }  // namespace robot_control

@@ -4,41 +4,34 @@
 ///   gyro            (ω_k−1 + ω_k)/2 over the time between two samples. Steps without a sample take the last one; the
 ///                   step that brings the next one makes the trapezoid whole.
 ///   accelerometer   the last sample: it is a mean over the time before it (signals/sensor_frame.h)
-/// A sample holds for three times the gap between the last two good ones, within kShortHold … kLongHold; then the
+/// A sample holds for three times the gap between the last two good ones, within kShortestHold … kLongestHold; then the
 /// sensor is lost. Not finite, or beyond kGyroRange or kAccelerometerRange, is no sample.
 
 #include <Eigen/Core>
 #include <optional>
 
+#include "estimation/tuning.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {
 
 class ImuSamples {
  public:
-  static constexpr double kShortHold = 0.02;           ///< s
-  static constexpr double kLongHold = 0.2;             ///< s
-  static constexpr double kSlow = 0.03;                ///< s
-  static constexpr double kGyroRange = 100;            ///< rad/s; beyond what any MEMS gyro measures
-  static constexpr double kAccelerometerRange = 1000;  ///< m/s²; likewise
-
-  void reset() noexcept;
-
   /// `base_from_imu`: rotation. `dt`: s since the last call, 0 at the first.
   void step(const SensorFrame& sensors, const Eigen::Matrix3d& base_from_imu, double dt) noexcept;
 
   /// Mean over the last step; empty: lost.
   const std::optional<Eigen::Vector3d>& gyro() const noexcept { return gyro_.mean; }
-  /// Empty, too, where its samples keep coming more than kSlow apart: what happened between them is not known.
+  /// Empty, too, where its samples keep coming more than kSlowAccelerometer apart: what happened between them is not
+  /// known.
   std::optional<Eigen::Vector3d> accelerometer() const noexcept {
-    return accelerometer_.gap > kSlow ? std::nullopt : accelerometer_.mean;
+    return accelerometer_.gap > Tuning::kSlowAccelerometer ? std::nullopt : accelerometer_.mean;
   }
-  bool new_gyro() const noexcept { return gyro_.fresh; }                    ///< the last step brought a sample
-  bool new_accelerometer() const noexcept { return accelerometer_.fresh; }  ///< likewise
-  /// The gyro's mean also makes good for steps before the last one: as a rate it means nothing, `last_gyro` does.
-  bool gyro_catches_up() const noexcept { return gyro_.catches_up; }
+  bool new_gyro() const noexcept { return gyro_.fresh; }  ///< the last step brought a sample
   const Eigen::Vector3d& last_gyro() const noexcept { return gyro_.last; }
-  const Eigen::Vector3d& last_accelerometer() const noexcept { return accelerometer_.last; }
+  /// rad/s, bias included; where the gyro is not lost. In the step that makes the trapezoid whole its mean is no rate,
+  /// and the sample alone is.
+  const Eigen::Vector3d& gyro_rate() const noexcept { return gyro_.catches_up ? gyro_.last : *gyro_.mean; }
   double gyro_gap() const noexcept { return gyro_.gap; }  ///< s, between two samples
   bool refused() const noexcept { return refused_; }      ///< the last step brought a sample that is none
 
@@ -53,7 +46,7 @@ class ImuSamples {
     double age = 0;       ///< s since the last sample
     double last_gap = 0;  ///< s between the last two
     double gap = 0;       ///< s, the shorter of the last two gaps: one lost sample makes no slow sensor
-    double hold = kShortHold;
+    double hold = Tuning::kShortestHold;
   };
 
   static void take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt, bool trapezoid) noexcept;

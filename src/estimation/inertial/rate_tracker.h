@@ -37,6 +37,17 @@ class RateTracker {
     acceleration_ += (1 - b) * (1 - b) / dt * error;
   }
 
+  /// The rate is `measured`, smoothed from the second such step in a row on where `smooth` holds: at rest, in the first
+  /// step of a motion and without a gyro there is nothing to smooth.
+  void follow(const Eigen::Vector3d& measured, bool smooth, double dt) noexcept {
+    if (!smooth || !following_) {
+      reset(measured);
+    } else if (dt > 0) {
+      step(measured, dt);
+    }
+    following_ = smooth;
+  }
+
   const Eigen::Vector3d& rate() const noexcept { return rate_; }  ///< rad/s
 
   /// Variance of `rate` over that of the samples of a white gyro, of which each `measured` is the mean of two
@@ -50,6 +61,7 @@ class RateTracker {
   double bandwidth_;
   double period_;
   double period_beta_;
+  bool following_ = false;
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration_ = Eigen::Vector3d::Zero();  ///< rad/s²
 };

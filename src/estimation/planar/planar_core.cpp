@@ -3,29 +3,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimation/tuning.h"
+
 namespace robot_control {
-namespace {
-
-constexpr double kFirstSlip = 5e-3;  // m/√m
-constexpr double kLargestSlip = 0.05;
-constexpr double kSlipStep = 0.2;   // of the logarithm
-constexpr double kMedian = 0.6745;  // deviations, of |normal|
-constexpr double kHuber = 2;
-constexpr double kGate = 6;
-constexpr double kSignificant = 10;
-constexpr double kTurnSlip = 5e-4;      // rad/√rad, of a hard tyre on a hard floor
-constexpr double kProvenBias = 5;       // deviations
-constexpr double kLargestOffset = 0.4;  // s
-constexpr double kOffsetWalk = 2e-3;    // s/√s
-constexpr double kFirstTwist = 0.05;    // rad/√rad
-
-}  // namespace
 
 PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
     : params_(params),
       gyro_noise_(params.gyro_noise),
-      slip_(std::max(kFirstSlip, params.slip_least)),
-      twist_(kFirstTwist) {
+      slip_(std::max(Tuning::kFirstSlip, params.slip_least)),
+      twist_(Tuning::kFirstTwist) {
   covariance_[kBias][kBias] = square(params.gyro_bias_initial);
   covariance_[kScale][kScale] = square(params.gyro_scale);
   covariance_[kRatio][kRatio] = square(params.ratio_deviation);
@@ -52,14 +38,14 @@ void PlanarCore::set_bias(double bias, double deviation) noexcept {
   covariance_[kBias][kBias] = square(deviation);
 }
 
-void PlanarCore::set_calibration(double ratio, double ratio_deviation, double base, double base_deviation) noexcept {
-  ratio_ = ratio;
-  base_ = base;
+void PlanarCore::set_calibration(const WheelCalibration& known) noexcept {
+  ratio_ = known.radius_ratio - 1;
+  base_ = known.wheel_base_factor - 1;
   for (const std::size_t i : {kRatio, kBase}) {
     for (std::size_t k = 0; k < kSize; ++k) covariance_[i][k] = covariance_[k][i] = 0;
   }
-  covariance_[kRatio][kRatio] = params_.ratio_deviation == 0 ? 0 : square(ratio_deviation);
-  covariance_[kBase][kBase] = params_.wheel_base_deviation == 0 ? 0 : square(base_deviation);
+  covariance_[kRatio][kRatio] = params_.ratio_deviation == 0 ? 0 : square(known.radius_ratio_deviation);
+  covariance_[kBase][kBase] = params_.wheel_base_deviation == 0 ? 0 : square(known.wheel_base_deviation);
 }
 
 /// P ← T P Tᵀ, T = I + factor e_to e_fromᵀ.
@@ -135,6 +121,15 @@ void PlanarCore::set_pose_covariance(const Eigen::Matrix3d& known) noexcept {
   }
 }
 
+Eigen::Matrix4d PlanarCore::pose_and_offset_covariance() const noexcept {
+  constexpr std::size_t kStates[4] = {kX, kY, kYaw, kOffset};
+  Eigen::Matrix4d states;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) states(i, k) = covariance(kStates[i], kStates[k]);
+  }
+  return states;
+}
+
 void PlanarCore::begin_block(double rate) noexcept {
   anchor_ = pose_.yaw;
   held_[kAnchor] = held_[kYaw];
@@ -156,7 +151,7 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   h[kYaw] = b;
   h[kAnchor] = -b;
   h[kOffset] = -b * later;
-  if (square(angle) > square(kSignificant) * doubt) h[kBase] = params_.wheel_base * angle;
+  if (square(angle) > square(Tuning::kSignificantTurn) * doubt) h[kBase] = params_.wheel_base * angle;
   h[kRatio] = -way;
   Row ph{};
   double s = 0;
@@ -166,25 +161,25 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   }
   for (std::size_t i = 0; i < kSize; ++i) s += h[i] * ph[i];
   const double rolled = std::abs(left) + std::abs(right);
-  const double repeated = std::clamp(correlation_ / power_, 0.0, 0.9);
+  const double repeated = std::clamp(correlation_ / power_, 0.0, Tuning::kLargestCorrelation);
   const double again = (1 + repeated) / (1 - repeated);
   const double slips = square(slip_) * rolled * again;
   const double twists = square(b * twist_) * std::abs(angle) * again;
   s += 4 * square(params_.encoder) + twists + slips + b * b * jitter * (square(rate) + square(anchor_rate_));
   const double normalised = innovation / std::sqrt(s);
-  const bool used = std::abs(normalised) <= kGate;
+  const bool used = std::abs(normalised) <= Tuning::kGate;
   if (used) {
     Row gain{};
     for (std::size_t i = 0; i < kSize; ++i) gain[i] = ph[i] / s;
     gain[kScale] = gain[kRestBias] = gain[kIcr] = 0;
     if (params_.ratio_deviation == 0) gain[kRatio] = 0;
-    correct(gain, ph, s, std::clamp(normalised, -kHuber, kHuber) * std::sqrt(s));
-    if (!holds_ || square(held_[kBias]) > square(kProvenBias) * covariance_[kBias][kBias]) release();
+    correct(gain, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
+    if (!holds_ || square(held_[kBias]) > square(Tuning::kProvenBias) * covariance_[kBias][kBias]) release();
   }
   learn(normalised, slips / s, twists / s);
-  if (params_.clock_offset > 0) covariance_[kOffset][kOffset] += square(kOffsetWalk) * dt;
-  covariance_[kRatio][kRatio] += params_.ratio_deviation == 0 ? 0 : square(kRatioWalk * slip_) * std::abs(way);
-  covariance_[kBase][kBase] += params_.wheel_base_deviation == 0 ? 0 : square(kBaseWalk * slip_) * rolled / 2;
+  if (params_.clock_offset > 0) covariance_[kOffset][kOffset] += square(Tuning::kOffsetWalk) * dt;
+  covariance_[kRatio][kRatio] += params_.ratio_deviation == 0 ? 0 : square(Tuning::kRatioWalk * slip_) * std::abs(way);
+  covariance_[kBase][kBase] += params_.wheel_base_deviation == 0 ? 0 : square(Tuning::kBaseWalk * slip_) * rolled / 2;
   return {square(normalised), used};
 }
 
@@ -217,20 +212,21 @@ void PlanarCore::release() noexcept {
   }
   ratio_ += held_[kRatio];
   base_ += held_[kBase];
-  offset_ = std::clamp(offset_ + held_[kOffset], -kLargestOffset, kLargestOffset);
+  offset_ = std::clamp(offset_ + held_[kOffset], -Tuning::kLargestOffset, Tuning::kLargestOffset);
   held_ = {};
   if (all) return;
   for (const std::size_t i : {kX, kY, kYaw, kAnchor, kBias}) held_[i] = kept[i];
 }
 
 void PlanarCore::learn(double normalised, double slips, double twists) noexcept {
-  const double bounded = std::clamp(normalised, -3.0, 3.0);
-  correlation_ += 0.05 * (bounded * last_ - correlation_);
-  power_ = std::max(0.1, power_ + 0.05 * (bounded * bounded - power_));
+  const double bounded = std::clamp(normalised, -Tuning::kSignificant, Tuning::kSignificant);
+  correlation_ += Tuning::kLevelMemory * (bounded * last_ - correlation_);
+  power_ = std::max(0.1, power_ + Tuning::kLevelMemory * (bounded * bounded - power_));
   last_ = bounded;
-  const double step = std::abs(normalised) > kMedian ? kSlipStep : -kSlipStep;
-  twist_ = std::clamp(twist_ * std::exp(step * twists), kTurnSlip, 1.0);
-  slip_ = std::clamp(slip_ * std::exp(step * slips), params_.slip_least, kLargestSlip);
+  constexpr double kNormalMedian = 0.6745;  // deviations, of |normal|
+  const double step = std::abs(normalised) > kNormalMedian ? Tuning::kLevelStep : -Tuning::kLevelStep;
+  twist_ = std::clamp(twist_ * std::exp(step * twists), Tuning::kLeastTwist, Tuning::kLargestTwist);
+  slip_ = std::clamp(slip_ * std::exp(step * slips), params_.slip_least, Tuning::kLargestSlip);
 }
 
 void PlanarCore::rest(double mean, double variance, bool holds) noexcept {

@@ -26,7 +26,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimation/tuning.h"
 #include "estimation/values.h"
+#include "signals/state_frame.h"
 
 namespace robot_control {
 
@@ -36,17 +38,17 @@ struct PlanarPose {
 };
 
 struct PlanarCoreParams {
-  double wheel_base = 0.5;             ///< m, effective
-  double gyro_noise = 2.44e-4;         ///< rad/s/√Hz
-  double gyro_bias_walk = 8.7e-6;      ///< rad/s/√s
-  double gyro_bias_initial = 0.05;     ///< rad/s
-  double gyro_scale = 5.8e-4;          ///< standard deviation
-  double encoder = 4.4e-5;             ///< m, of one reading
-  double slip_least = 8e-5;            ///< m/√m, of the best floor
-  double ratio_deviation = 0.01;       ///< 0: held
-  double wheel_base_deviation = 0.03;  ///< 0: held
-  double icr_deviation = 0;            ///< m, of the instantaneous centre of rotation along x; 0: between two wheels
-  double clock_offset = 0.08;          ///< s, standard deviation: recordings show 0.03 … 0.17
+  double wheel_base = 0.5;                ///< m, effective
+  double gyro_noise = 2.44e-4;            ///< rad/s/√Hz
+  double gyro_bias_walk = 8.7e-6;         ///< rad/s/√s
+  double gyro_bias_initial = 0.05;        ///< rad/s
+  double gyro_scale = 5.8e-4;             ///< standard deviation
+  double encoder = 4.4e-5;                ///< m, of one reading
+  double slip_least = 8e-5;               ///< m/√m, of the best floor
+  double ratio_deviation = 0.01;          ///< 0: held
+  double wheel_base_deviation = 0.03;     ///< 0: held
+  double icr_deviation = 0;               ///< m, of the instantaneous centre of rotation along x; 0: between two wheels
+  double clock_offset = Tuning::kOffset;  ///< s, standard deviation; 0: held
 };
 
 class PlanarCore {
@@ -66,7 +68,7 @@ class PlanarCore {
   void place(const PlanarPose& pose) noexcept;  ///< known exactly; all else stays
   void set_bias(double bias, double deviation) noexcept;
   /// What is held stays without deviation.
-  void set_calibration(double ratio, double ratio_deviation, double base, double base_deviation) noexcept;
+  void set_calibration(const WheelCalibration& known) noexcept;
 
   void turn_by_gyro(double angle, double dt) noexcept;          ///< rad, bias included
   void turn_by_wheels(double left, double right) noexcept;      ///< m
@@ -99,6 +101,9 @@ class PlanarCore {
   void age(double dt) noexcept { covariance_[kBias][kBias] += square(params_.gyro_bias_walk) * dt; }
   void open_bias(double variance) noexcept { covariance_[kBias][kBias] += variance; }
 
+  /// Of x, y, yaw and clock offset.
+  Eigen::Matrix4d pose_and_offset_covariance() const noexcept;
+  WheelCalibration calibration() const noexcept { return {1 + ratio_, 1 + base_, deviation(kRatio), deviation(kBase)}; }
   const PlanarPose& pose() const noexcept { return pose_; }
   /// Of the pose and what is learned as they are given out, corrections that are held back included.
   double covariance(std::size_t i, std::size_t k) const noexcept { return covariance_[i][k] + held_[i] * held_[k]; }
@@ -114,8 +119,6 @@ class PlanarCore {
   double turned() const noexcept { return pose_.yaw - anchor_; }  ///< rad, in this block
 
  private:
-  static constexpr double kRatioWalk = 0.04;  // 1/m, of the slip noise
-  static constexpr double kBaseWalk = 0.25;   // 1/m
   void add(std::size_t to, double factor, std::size_t from) noexcept;
   void slide(double turned) noexcept;
   void correct(const Row& gain, const Row& ph, double s, double innovation) noexcept;

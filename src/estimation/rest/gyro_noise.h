@@ -2,31 +2,29 @@
 /// White noise density of the gyro about z, learned from rests: the Allan variance of its means over one window of the
 /// rest watch, m₁, m₂, … of T s each (IEEE Std 952-1997, annex C):
 ///
-///   n² = max(n₀², (kPrior (kMounted n₀)² + Σ T (m_k+1 − m_k)²/2) / (kPrior + count))      n₀: of the data sheet
+///   n² = max(n₀², (N (kMountedGyro n₀)² + Σ T (m_k+1 − m_k)²/2) / (N + count))      n₀: of the data sheet, N:
+///   kNoisePrior
 ///
 /// No gyro on a robot is quieter than its data sheet, and most are louder: recordings show 3.5 … 4.5e-4 where it says
-/// 2.4e-4. Beyond kMemory windows older ones are forgotten exponentially.
+/// 2.4e-4. Beyond kNoiseMemory windows older ones are forgotten exponentially.
 
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/tuning.h"
 #include "estimation/values.h"
 
 namespace robot_control {
 
 class GyroNoise {
  public:
-  static constexpr double kPrior = 4;     ///< windows that the level at the beginning is worth: 1 s
-  static constexpr double kMounted = 2;   ///< that level over the data sheet's
-  static constexpr double kMemory = 400;  ///< windows: 100 s
-
   /// rad/s/√Hz
   explicit GyroNoise(double data_sheet = 0) noexcept : data_sheet_(data_sheet) {}
 
   /// The mean of the next window, rad/s over s.
   void add(double mean, double window) noexcept {
     if (known_) {
-      const double keep = count_ < kMemory ? 1 : 1 - 1 / kMemory;
+      const double keep = count_ < Tuning::kNoiseMemory ? 1 : 1 - 1 / Tuning::kNoiseMemory;
       sum_ = keep * sum_ + window * square(mean - last_) / 2;
       count_ = keep * count_ + 1;
     }
@@ -37,8 +35,8 @@ class GyroNoise {
   void interrupt() noexcept { known_ = false; }
 
   double density() const noexcept {  ///< rad/s/√Hz
-    return std::sqrt(
-        std::max(square(data_sheet_), (kPrior * square(kMounted * data_sheet_) + sum_) / (kPrior + count_)));
+    const double prior = Tuning::kNoisePrior * square(Tuning::kMountedGyro * data_sheet_);
+    return std::sqrt(std::max(square(data_sheet_), (prior + sum_) / (Tuning::kNoisePrior + count_)));
   }
 
  private:

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "estimation/tuning.h"
+
 namespace robot_control {
 
 void RestWatch::begin() noexcept {
@@ -15,11 +17,11 @@ void RestWatch::reset() noexcept {
   begin();
   pending_ = done_ = {};
   steady_time_ = 0;
-  reopened_ = false;
+  bias_changed_ = false;
 }
 
 RestWindow RestWatch::step(const Sample& sample, const Vector3& bias, const Vector3& deviation) noexcept {
-  reopened_ = false;
+  bias_changed_ = false;
   left_ += sample.left;
   right_ += sample.right;
   if (std::abs(left_) > params_.tolerance || std::abs(right_) > params_.tolerance) {
@@ -44,7 +46,7 @@ RestWindow RestWatch::close(const Vector3& bias, const Vector3& deviation) noexc
     bool same = true;
     bool goes_on = steady_time_ > 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      same = same && std::abs(mean[i] - bias[i]) <= params_.steady + 3 * deviation[i];
+      same = same && std::abs(mean[i] - bias[i]) <= params_.steady + Tuning::kSignificant * deviation[i];
       goes_on = goes_on && std::abs(mean[i] - steady_gyro_[i]) <= params_.steady;
     }
     if (!goes_on) {
@@ -52,8 +54,8 @@ RestWindow RestWatch::close(const Vector3& bias, const Vector3& deviation) noexc
       steady_gyro_ = mean;
     }
     steady_time_ += time_;
-    reopened_ = !same && steady_time_ >= kReopened;
-    if (!same && !reopened_) verdict = RestWindow::kTurned;
+    bias_changed_ = !same && steady_time_ >= Tuning::kConstantRate;
+    if (!same && !bias_changed_) verdict = RestWindow::kTurned;
     if (same) steady_time_ = 0;
     now.gyro = mean;
   }

@@ -3,9 +3,9 @@
 /// accelerometer of a robot that stands.
 ///
 /// A window is quiet where no side travelled further than `tolerance` from where it was at its beginning (it ends at
-/// once otherwise). Its gyro mean is that of a robot at rest where it is the known bias within `steady` and three
-/// deviations; or, whatever it is, where it has been the same within `steady` for kReopened: nothing turns a robot so
-/// evenly on wheels that stand.
+/// once otherwise). Its gyro mean is that of a robot at rest where it is the known bias within `steady` and
+/// kSignificant deviations; or, whatever it is, where it has been the same within `steady` for kConstantRate: nothing
+/// turns a robot so evenly on wheels that stand.
 ///
 /// The readings of wheels may be late, and a robot may begin to move before they say so: the means of a window count
 /// when the next one is quiet, too.
@@ -49,8 +49,6 @@ enum class RestWindow : std::uint8_t {
 
 class RestWatch {
  public:
-  static constexpr double kReopened = 10.0;  ///< s
-
   RestWatch() = default;
   explicit RestWatch(const RestWatchParams& params) noexcept : params_(params) {}
 
@@ -73,7 +71,7 @@ class RestWatch {
   }  ///< rad/s, its mean, less what the wheels turned
   const std::optional<Vector3>& force() const noexcept { return done_.force; }          ///< m/s²
   const std::optional<Vector3>& last_force() const noexcept { return pending_.force; }  ///< of the last window
-  bool reopened() const noexcept { return reopened_; }  ///< the bias is another one than was known
+  bool bias_changed() const noexcept { return bias_changed_; }  ///< the bias is another one than was known
 
  private:
   struct Window {
@@ -90,7 +88,7 @@ class RestWatch {
   Window done_;
   Vector3 steady_gyro_{};
   double steady_time_ = 0;
-  bool reopened_ = false;
+  bool bias_changed_ = false;
 };
 
 }  // namespace robot_control

@@ -32,18 +32,6 @@ struct TiltParams {
 
 class Tilt {
  public:
-  static constexpr double kSteepest = 0.6;      ///< sine of the tilt: 37°, where rubber on dry ground begins to slide
-  static constexpr double kInitial = 0.1;       ///< rad, standard deviation at switch-on
-  static constexpr double kAtRest = 0.03;       ///< m/s², what a body that rocks and a motor's hum leave in a mean
-  static constexpr double kWalk = 2e-3;         ///< rad/√s: rough ground, and 0.02 m/s² that change within a second
-  static constexpr double kUnknownWalk = 0.02;  ///< rad/√s, while the gyro's x and y do not count
-  static constexpr double kFloor = 0.01;        ///< rad, between two places: twice what DIN 18202 grants a finished one
-  static constexpr double kDoubts = 3;          ///< deviations
-  static constexpr double kTipping = 0.5;       ///< rad/s
-  static constexpr double kDoubtful = 0.005;    ///< rad
-  static constexpr double kStuck = 0.1;         ///< s
-  static constexpr double kTime = 3.0;          ///< s, in which the accelerometer's slow errors while driving change
-
   explicit Tilt(const TiltParams& params = {}) noexcept;
 
   /// rad/s, bias removed. `known`: x and y count.
@@ -75,7 +63,7 @@ class Tilt {
 
  private:
   using Plane = std::array<double, 2>;  ///< along and across
-  struct Belief {
+  struct Estimate {
     Vector3 up{0, 0, 1};
     Plane bias{};                              ///< β
     std::array<std::array<double, 4>, 4> p{};  ///< covariance of u_x, u_y, β_x, β_y
@@ -89,12 +77,12 @@ class Tilt {
   };
 
   void age() noexcept;
-  Belief on_the_floor() const noexcept;
+  Estimate on_the_floor() const noexcept;
 
   TiltParams params_;
-  Belief now_;
+  Estimate now_;
   double vertical_ = 0;
-  Belief rested_;                              ///< at the end of the last rest
+  Estimate rested_;                            ///< at the end of the last rest
   bool known_ = false;                         ///< there was one
   double rolled_ = 0;                          ///< rad, since then
   double doubt_ = 0;                           ///< rad, likewise

@@ -6,19 +6,11 @@
 ///
 ///   (x, y) = sinc(h) · R(yaw + h) · (forward, left)       sinc(h) = sin(h) / h
 ///
-/// the chord of the arc. At h → 0 this is the straight line. Near zero sinc is its series, so value and slope
-/// are exact to rounding there too. REP 103: x forward, y left, turn positive to the left.
+/// the chord of the arc. REP 103: x forward, y left, turn positive to the left.
 
-#include "signals/geometry.h"
+#include <cmath>
 
 namespace robot_control {
-
-/// sinc(h) and d sinc / dh.
-struct Sinc {
-  double value = 1;
-  double slope = 0;
-};
-Sinc sinc(double h) noexcept;
 
 struct Motion {
   double forward = 0;  ///< m
@@ -26,14 +18,22 @@ struct Motion {
   double turn = 0;     ///< rad
 };
 
-/// The chord in the axes that `yaw` is measured in, and its derivatives by the motion.
+/// m, in the axes that `yaw` is measured in.
 struct Chord {
-  double x = 0;  ///< m
-  double y = 0;  ///< m
-  double x_by_forward = 1, y_by_forward = 0;
-  double x_by_left = 0, y_by_left = 1;
-  double x_by_turn = 0, y_by_turn = 0;  ///< m/rad
+  double x = 0, y = 0;
 };
-Chord chord_of(const Motion& motion, double yaw) noexcept;
+
+inline double sinc(double h) noexcept {
+  constexpr double kSeries = 0.008;  // below, the first term left out, h⁶/5040, is under 2⁻⁵³
+  return std::abs(h) < kSeries ? 1 - h * h / 6 * (1 - h * h / 20) : std::sin(h) / h;
+}
+
+inline Chord chord_of(const Motion& motion, double yaw) noexcept {
+  const double shrink = sinc(motion.turn / 2);
+  const double cosine = std::cos(yaw + motion.turn / 2);
+  const double sine = std::sin(yaw + motion.turn / 2);
+  return {shrink * (cosine * motion.forward - sine * motion.left),
+          shrink * (sine * motion.forward + cosine * motion.left)};
+}
 
 }  // namespace robot_control

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/tuning.h"
+
 namespace robot_control {
 
 SideEncoder::Wheel::Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept
-    : joint(wheel.joint), metres_per_radian(wheel.sign * wheel.radius), velocity_bound(1000) {
+    : joint(wheel.joint), metres_per_radian(wheel.sign * wheel.radius), velocity_bound(Tuning::kFastestWheel) {
   const double limit = joint < robot.joints.size() ? robot.joints[joint].velocity_limit : 0;
   if (limit > 0 && std::isfinite(limit)) velocity_bound = 2 * limit;
 }
@@ -17,7 +19,7 @@ bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
 }
 
 bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) const noexcept {
-  return std::abs(sensors.joints[joint].position - angle) <= velocity_bound * time + kSlack;
+  return std::abs(sensors.joints[joint].position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
 }
 
 double SideEncoder::Wheel::take(const SensorFrame& sensors) noexcept {
@@ -49,14 +51,14 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   if (!known_) {
     reading = EncoderReading::kOffset;
   } else if (!std::ranges::all_of(wheels_, plausible)) {
-    if (++rejected_ <= kMaxRejected) return EncoderReading::kRejected;
+    if (++rejected_ <= Tuning::kMaxHeld) return EncoderReading::kRejected;
     reading = EncoderReading::kLost;
   }
   double sum = 0;
   for (Wheel& wheel : wheels_) sum += wheel.take(sensors);
   if (reading == EncoderReading::kTravel) travel_ = sum / static_cast<double>(wheels_.size());
   time_ = waiting_;
-  gap_ = std::min(std::max(waiting_, kShrink * gap_), kLongGap);
+  gap_ = std::min(std::max(waiting_, Tuning::kGapFading * gap_), Tuning::kLongestGap);
   waiting_ = 0;
   known_ = true;
   rejected_ = 0;

@@ -6,8 +6,8 @@
 /// The side's wheels are read together: one whose sample is not used rejects the reading. The first reading, and the
 /// first after `reset`, is the offset: no travel. A sample that is missing, not finite or impossible is not used; the
 /// next good one brings the travel of the whole gap. Impossible is a difference above 2 · velocity_limit (1000 rad/s
-/// where the robot names none) times the time passed, plus kSlack. An encoder that stays impossible for more than
-/// kMaxRejected readings was reset: then the present angles become the offset, and the travel in between is lost.
+/// where the robot names none) times the time passed, plus kEncoderSlack. An encoder that stays impossible for more
+/// than kMaxHeld readings was reset: then the present angles become the offset, and the travel in between is lost.
 
 #include <cstdint>
 
@@ -26,11 +26,6 @@ enum class EncoderReading : std::uint8_t {
 
 class SideEncoder {
  public:
-  static constexpr std::uint64_t kMaxRejected = 4;
-  static constexpr double kLongGap = 0.5;  ///< s
-  static constexpr double kShrink = 0.9;   ///< stamps jitter: readings that come in a batch are no new rate
-  static constexpr double kSlack = 0.1;    ///< rad; some counts of a coarse encoder, and backlash
-
   /// At least one wheel on that side.
   SideEncoder(const RobotModel& robot, Side side);
 
@@ -47,9 +42,9 @@ class SideEncoder {
   bool received() const noexcept { return waiting_ == 0 && known_; }
   bool known() const noexcept { return known_; }        ///< a reading was accepted in this run
   double waiting() const noexcept { return waiting_; }  ///< s since a reading was accepted
-  double gap() const noexcept {
-    return gap_;
-  }  ///< s between readings, the largest, shrinking by kShrink; at most kLongGap
+  /// s, usual gap between readings: the largest, fading by kGapFading per reading, as stamps jitter and readings come
+  /// in batches; at most kLongestGap.
+  double gap() const noexcept { return gap_; }
 
  private:
   struct Wheel {

@@ -6,24 +6,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/tuning.h"
 #include "estimation/values.h"
 
 namespace robot_control {
 
 class StampJitter {
  public:
-  static constexpr double kMemory = 50;  ///< readings
-
   /// s, between this reading and the one before; > 0.
   void add(double gap) noexcept {
     const double difference = std::min(std::abs(gap - last_), std::min(gap, last_));
     if (last_ > 0) {
-      count_ = std::min(count_ + 1, kMemory);
+      count_ = std::min(count_ + 1, Tuning::kStampMemory);
       variance_ += (square(difference) / 6 - variance_) / count_;
     }
     last_ = gap;
   }
-  void reset() noexcept { *this = {}; }
 
   double variance() const noexcept { return variance_; }  ///< s²
 

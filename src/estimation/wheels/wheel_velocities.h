@@ -3,14 +3,15 @@
 /// on every wheel's own angle, without a torque that explains its acceleration.
 ///
 /// The speed that an encoder reports is differenced over one period and jumps by a count per period: 1.5 rad/s with
-/// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastest are left out; after
-/// kForgotten without one, the next restarts.
+/// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastestWheel are left out;
+/// after kForgotten without one, the next restarts.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "estimation/tuning.h"
 #include "robot/encoders/tracking_loop.h"
 #include "robot/robot_model.h"
 #include "signals/fixed_vector.h"
@@ -21,9 +22,6 @@ namespace robot_control {
 
 class WheelVelocities {
  public:
-  static constexpr double kFastest = 1000;   ///< rad/s, 10⁴ rpm
-  static constexpr double kForgotten = 0.1;  ///< s
-
   /// `bandwidth` Hz, `period` s.
   WheelVelocities(const RobotModel& robot, double bandwidth, double period)
       : period_(period),
@@ -61,10 +59,10 @@ class WheelVelocities {
       since += dt;
       if (!valid || !std::isfinite(sample.position)) return;
       const double travel = sample.position - angle;
-      if (!known || since > kForgotten) {
+      if (!known || since > Tuning::kForgotten) {
         tracking.restart_from(sample.position, 0);
         known = true;
-      } else if (since > 0 && std::abs(travel) <= kFastest * since) {
+      } else if (since > 0 && std::abs(travel) <= Tuning::kFastestWheel * since) {
         tracking.step(sample.position, 0, since / period);
       } else {
         return;

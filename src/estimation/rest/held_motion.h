@@ -1,0 +1,32 @@
+#pragma once
+/// What wheels and gyro measure of a robot that is taken to rest. It is not integrated, but kept until the next window
+/// is quiet, too: where one is not, it was motion.
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace robot_control {
+
+struct HeldMotion {
+  double time = 0;                                 ///< s
+  double left = 0, right = 0;                      ///< m
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< rad, base axes, gyro bias included
+  bool gyro = true;                                ///< there was a gyro all the time
+
+  void step(double dt, double left_travel, double right_travel, const std::optional<Eigen::Vector3d>& rate) noexcept {
+    time += dt;
+    left += left_travel;
+    right += right_travel;
+    gyro = gyro && rate;
+    if (rate) turn += *rate * dt;
+  }
+  void add(const HeldMotion& other) noexcept {
+    time += other.time;
+    left += other.left;
+    right += other.right;
+    turn += other.turn;
+    gyro = gyro && other.gyro;
+  }
+};
+
+}  // namespace robot_control

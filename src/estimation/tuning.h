@@ -1,0 +1,87 @@
+#pragma once
+/// Every constant of the estimator that is neither a parameter (estimator_parameters.h) nor derived from the robot or
+/// from parameters: value, unit, meaning; origin. Deviations are standard deviations. Those of slip/ are in slip/.
+///
+/// Origin "recordings": chosen on drives of real robots and on drives with their errors (lab/odometry/recordings.py,
+/// field_bench.py); "faults": on drives in which a sensor fails for a short time (lab/odometry/short_faults.py).
+
+#include <cstdint>
+
+namespace robot_control {
+
+struct Tuning {
+  // Measured or chosen on drives.
+
+  static constexpr double kFirstSlip = 5e-3;   ///< m/√m, slip noise of a side at the start; skid steers, recordings
+  static constexpr double kFirstTwist = 0.05;  ///< rad/√rad, noise of a turn at the start; skid steers, recordings
+  static constexpr double kLevelStep = 0.2;    ///< of the logarithm of these levels per block; recordings
+  static constexpr double kRatioWalk = 0.04;   ///< 1/m, walk of the radius ratio, of the slip noise; recordings
+  static constexpr double kBaseWalk = 0.25;    ///< 1/m, walk of the wheel base, likewise; recordings
+  static constexpr double kOffset = 0.08;  ///< s, deviation of the clock offset at the start; recordings: 0.03 … 0.17
+  static constexpr double kOffsetWalk = 2e-3;  ///< s/√s, walk of the clock offset; recordings
+  static constexpr double kAccelerometerAtRest =
+      0.03;                                  ///< m/s², what rocking and a motor's hum leave in a mean; recordings
+  static constexpr double kTiltWalk = 2e-3;  ///< rad/√s: rough ground, and 0.02 m/s² that change within 1 s; recordings
+  static constexpr double kTiltWalkWithoutGyro = 0.02;  ///< rad/√s, while the gyro's x and y do not count; faults
+  static constexpr double kSlowTime = 3.0;  ///< s, in which slow errors of the accelerometer change; recordings
+  static constexpr double kMountedGyro =
+      2;  ///< noise of a gyro on a robot over its data sheet's; recordings: 1.5 … 1.9
+  static constexpr double kTipping = 0.5;  ///< rad/s about x and y, beyond which a gyro is taken to fail; faults
+  static constexpr double kUnreliableTurn =
+      0.005;  ///< rad by that in all, from which the gyro does not carry the tilt; faults
+  static constexpr double kStuckGyro = 0.1;          ///< s of one and the same sample, for a gyro that fails; faults
+  static constexpr double kQuietAcceleration = 0.1;  ///< m/s², mean of a window of a robot that does not slide; faults
+  static constexpr std::uint64_t kSlidingWindows =
+      6;  ///< in a row; then the tilt is wrong, and the robot rests; faults
+  static constexpr double kConstantRate =
+      10.0;                                  ///< s of one rate while the wheels stand: it is the gyro's bias; faults
+  static constexpr double kCalm = 0.5;       ///< s after a slide in which nothing is learned; recordings
+  static constexpr double kBatch = 0.3;      ///< of the usual gap between readings, below which they came in a batch;
+                                             ///< recordings
+  static constexpr double kGapFading = 0.9;  ///< of the largest gap per reading; recordings, of stamps with jitter
+
+  // Conventions of statistics.
+
+  static constexpr double kSignificant = 3;  ///< deviations; the three-sigma rule
+  static constexpr double kHuber = 2;        ///< deviations, by which an innovation pulls at most; P. J. Huber, 1964
+  static constexpr double kGate = 6;         ///< deviations, beyond which an innovation is not used
+  static constexpr double kProvenBias = 5;   ///< deviations, beyond which a bias that no rest has shown is learned
+  static constexpr double kSignificantTurn = 10;  ///< deviations, from which on a block's turn shows the wheel base:
+                                                  ///< below, the noise that rate and innovation share would drive it
+  static constexpr double kLevelMemory = 0.05;    ///< 1/blocks, of the correlation of innovations: 20 blocks
+  static constexpr double kStampMemory = 50;      ///< readings, of the stamps' jitter: its deviation is known to 10 %
+  static constexpr double kNoisePrior = 4;        ///< windows that kMountedGyro is worth: 1 s
+  static constexpr double kNoiseMemory = 400;     ///< windows of the gyro's noise: 100 s
+
+  // Time scales.
+
+  static constexpr double kBlock = 1.0;          ///< s, between two comparisons of wheels and gyro; of the confidences
+  static constexpr std::uint64_t kMaxHeld = 4;   ///< cycles or readings: as long as a command lives (hal/gate.h)
+  static constexpr double kShortestHold = 0.02;  ///< s, for which a sample of an IMU holds at least: 50 Hz
+  static constexpr double kLongestHold = 0.2;    ///< s, at most; a gyro's gap is bridged by a line up to that
+  static constexpr double kSlowAccelerometer = 0.03;  ///< s between samples, beyond which motion is not resolved
+  static constexpr double kLongestGap = 0.5;          ///< s, usual gap between readings of a wheel at most
+  static constexpr double kForgotten = 0.1;           ///< s, after which a wheel's published speed begins again
+
+  // Limits of what is possible or stated. None was tuned.
+
+  static constexpr double kGyroRange = 100;            ///< rad/s, beyond the range of MEMS gyros
+  static constexpr double kAccelerometerRange = 1000;  ///< m/s², likewise
+  static constexpr double kFastestWheel = 1000;        ///< rad/s, 10⁴ rpm; where the robot names no limit
+  static constexpr double kEncoderSlack = 0.1;         ///< rad, some counts of a coarse encoder, and backlash
+  static constexpr double kSteepest = 0.6;             ///< sine of a tilt, 37°: rubber on dry ground begins to slide
+  static constexpr double kInitialTilt = 0.1;          ///< rad, deviation at switch-on: the steepest road
+  static constexpr double kFloor = 0.01;               ///< rad, of the tilt of two places; twice what DIN 18202 allows
+  static constexpr double kLargestOffset = 0.4;        ///< s, twice the largest clock offset of the recordings
+  static constexpr double kLeastTwist = 5e-4;          ///< rad/√rad, a hard tyre on a hard floor
+  static constexpr double kLargestSlip = 0.05;         ///< m/√m, ten times that of skid steers
+  static constexpr double kLargestTwist = 1.0;         ///< rad/√rad, nothing is known of a turn
+  static constexpr double kLargestCorrelation = 0.9;   ///< of two innovations in a row
+  static constexpr double kLargestNis = 1e6;           ///< that enters a confidence
+  static constexpr double kRestart = 0.05;             ///< m and rad, deviation added by a restart or a lost travel
+  static constexpr double kPlanarVariance = 1e-4;  ///< m², rad²: 1 cm, 0.6°, of z, roll and pitch on an even floor
+  static constexpr double kSpeedShare = 0.02;      ///< of an encoder's quantum, what the tracking loop leaves of it
+  static constexpr double kUnknownBias = 2e-3;     ///< rad/s, 7° in a minute: a heading that is called degraded
+};
+
+}  // namespace robot_control
