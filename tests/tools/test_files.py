@@ -145,6 +145,28 @@ def test_nothing_is_replaced_when_the_block_fails(tmp_path):
     assert len(list(tmp_path.iterdir())) == 1
 
 
+def test_a_pipe_is_written_to_by_its_name_in_dev():
+    reader, writer = os.pipe()
+    write_text(Path(f"/dev/fd/{writer}"), "text")
+    assert os.read(reader, 10) == b"text"
+    os.close(reader)
+    os.close(writer)
+
+
+def test_an_error_names_the_file_that_the_user_named(tmp_path):
+    with pytest.raises(OSError, match="full") as full, NewFiles() as files:
+        files.name(tmp_path / "file")
+        raise OSError(28, "the disk is full")  # as a write does, without a name
+    assert full.value.filename == str(tmp_path / "file")
+    with pytest.raises(FileNotFoundError) as absent:
+        write_text(tmp_path / "none" / "file", "text")
+    assert absent.value.filename == str(tmp_path / "none" / "file"), "not the temporary file's"
+    with pytest.raises(FileNotFoundError) as other, NewFiles() as files:
+        files.name(tmp_path / "file")
+        (tmp_path / "input").read_text()
+    assert other.value.filename == str(tmp_path / "input")
+
+
 def test_the_limit_on_file_sizes_is_a_full_disk(tmp_path):
     (tmp_path / "file").write_text("old")
     program = "import pathlib, robot_control.common.files as files; files.write_text(pathlib.Path('file'), 'x' * 9999)"

@@ -74,7 +74,7 @@ def test_the_log_is_not_overwritten_by_its_picture(log, capsys):
     before = log.read_bytes()
     code, _, message = replay(capsys, log, "--set", "diff_drive_controller.max_linear_speed=0.2", "--plot", log)
     assert code == 2
-    assert "is the log itself" in message
+    assert "is an input of this program" in message
     assert log.read_bytes() == before
 
 

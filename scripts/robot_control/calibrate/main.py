@@ -38,6 +38,7 @@ from robot_control.calibrate.moves import Move, Pilot, square, straight
 from robot_control.calibrate.robot import CalibratedRobot
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, printable, write_text
+from robot_control.common.output_files import check_outputs
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
 from robot_control.common.terminal_dialog import NoAnswerError, Questions
@@ -236,6 +237,7 @@ def main() -> None:
     """Entry point of scripts/calibrate.py: exit code 0 with a YAML written, else 1 with one message."""
     options = parse_options(rospy.myargv(sys.argv)[1:])
     try:
+        check_outputs([options.out])
         with running_settings("calibrate", ESTIMATOR, *OTHERWISE) as settings:
             with ended_by_signals() as signals:
                 robot, straights, squares = _measured(settings, options, signals)

@@ -115,7 +115,8 @@ class NewFiles:
         Raises:
             OSError: nothing can be written there.
         """
-        target = Path(os.path.realpath(final))
+        # The resolved name of a pipe, as /dev/stdout may be, opens nothing.
+        target = final if final.exists() and not final.is_file() else Path(os.path.realpath(final))
         if target.exists() and not target.is_file():
             descriptor, name = tempfile.mkstemp(prefix=f".{final.stem}.", suffix=final.suffix)
             os.close(descriptor)
@@ -135,10 +136,26 @@ class NewFiles:
             if kind is None:
                 for partial, target in self._names:
                     _put(partial, target)
+        except OSError as failure:
+            if (named := self._named(failure)) is not failure:
+                raise named from failure
+            raise
         finally:
             for partial, _ in self._names:
                 with contextlib.suppress(OSError):
                     partial.unlink()
+        if isinstance(error, OSError) and (named := self._named(error)) is not error:
+            raise named from error
+
+    def _named(self, error: OSError) -> OSError:
+        """The same error with the names that the user gave: that of a temporary file means nothing to him, and that of
+        a full disk has none.
+        """
+        given = {str(partial): str(target) for partial, target in self._names}
+        if error.errno is None or (error.filename is not None and error.filename not in given):
+            return error
+        name = ", ".join(given.values()) if error.filename is None else given[error.filename]
+        return OSError(error.errno, error.strerror, name)
 
 
 def write_text(path: Path, text: str) -> None:

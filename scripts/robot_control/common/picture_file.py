@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
+from robot_control.common.output_files import check_outputs
 
-def check_picture(path: Path) -> None:
+
+def check_picture(path: Path, inputs: Sequence[Path | None] = ()) -> None:
     """Before the work that is drawn.
 
     Raises:
-        ValueError: no picture can be written there.
+        ValueError: no picture can be written there, or it is one of the inputs.
     """
-    if not path.parent.is_dir():
-        raise ValueError(f"{path} cannot be written: there is no folder {path.parent}")
-    if path.is_dir():
-        raise ValueError(f"{path} cannot be written: it is a folder")
+    check_outputs([path], inputs)
     from matplotlib.backend_bases import FigureCanvasBase  # noqa: PLC0415 (matplotlib takes a second)
 
     formats = sorted(FigureCanvasBase.get_supported_filetypes())
-    if path.suffix and path.suffix.removeprefix(".").lower() not in formats:
+    if path.suffix.removeprefix(".").lower() not in formats:
         raise ValueError(f"{path} is no picture: its suffix is none of {', '.join(formats)}")

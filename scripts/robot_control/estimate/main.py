@@ -15,6 +15,8 @@ import yaml  # type: ignore[import-untyped]
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import NewFiles, fit_for_message
+from robot_control.common.output_files import check_outputs
+from robot_control.common.picture_file import check_picture
 from robot_control.common.run_log import is_run_log
 from robot_control.estimate.bag_input import BagTopics, read_bag
 from robot_control.estimate.csv_input import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
@@ -244,16 +246,9 @@ def _check_options(options: argparse.Namespace) -> None:
 
 def _check_paths(options: argparse.Namespace) -> None:
     """Before minutes of work."""
-    outputs = _outputs(options)
-    for path in outputs:
-        if not path.parent.is_dir():
-            raise InputError(f"{path} cannot be written: there is no folder {path.parent}")
-        if path.is_dir():
-            raise InputError(f"{path} cannot be written: it is a folder")
-        if path.is_file() and options.input.exists() and path.samefile(options.input):
-            raise InputError(f"{path} is the recording itself; give the estimate another name")
-    if len({path.resolve() for path in outputs}) < len(outputs):
-        raise InputError("two outputs have one name")
+    check_outputs(_outputs(options), [options.input, options.urdf, options.params])
+    if options.plot is not None:
+        check_picture(options.plot)
     if options.input.suffix in {".db3", ".mcap"}:
         raise InputError(f"{options.input} is a ROS 2 bag; make a ROS 1 bag of it (rosbags-convert), or a CSV")
 

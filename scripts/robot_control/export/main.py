@@ -9,6 +9,7 @@ from pathlib import Path
 from robot_control._robot_control import BagError, BagReader, TraceError, write_run_csv
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import NewFiles, fit_for_message, utf8
+from robot_control.common.output_files import check_outputs
 from robot_control.common.run_log import LogError, is_bag
 from robot_control.export.mcap_file import McapError, write_mcap
 
@@ -31,6 +32,7 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         if not is_bag(options.input):
             raise LogError(f"{options.input} is no ROS bag")
+        check_outputs([options.csv, options.mcap, options.topics], [options.input])
         cut = BagReader(utf8(options.input)).cut
         with NewFiles() as files:
             if options.csv is not None:

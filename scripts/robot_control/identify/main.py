@@ -10,6 +10,7 @@ import rospy
 from robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.output_files import check_outputs
 from robot_control.common.run_log import FloatArray, LogError, read_log
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
@@ -49,6 +50,7 @@ def main() -> None:
     """Entry point of scripts/identify.py: exit code 0 with a YAML written, else 1 with one message."""
     options = parse_options(rospy.myargv(sys.argv)[1:])
     try:
+        check_outputs([options.output], [options.log, options.params, options.urdf])
         if options.log is not None:
             _fit(dict(read_log(options.log)), _settings_of_files(options), options, f"log {options.log.name}")
         else:

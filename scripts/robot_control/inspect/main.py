@@ -10,6 +10,7 @@ from pathlib import Path
 from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
 from robot_control.inspect.description import Description, describe, mjcf, stand
 from robot_control.inspect.report import report
@@ -21,6 +22,7 @@ def main(arguments: list[str] | None = None) -> None:
 
     fallen = None
     try:
+        check_outputs([options.mjcf, options.picture], [options.file, options.params])
         if options.picture is not None:
             check_picture(options.picture)
         robot = describe(options.file, options.params)

@@ -28,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parse(arguments)
     try:
         if options.set or options.params:
-            check_plot(options.plot, options.log)
+            check_picture(options.plot, [options.log, options.params])
         with tempfile.TemporaryDirectory() as folder:
             setup = recorded_setup(options.log, Path(folder))
             varied = setup.varied(options.params, options.set) if options.set or options.params else None
@@ -66,17 +66,6 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     what_if.add_argument("--params", type=Path, metavar="FILE", help="YAML, laid over the parameters of the log")
     what_if.add_argument("--plot", type=Path, default=Path("replay.png"), help="picture of both; default: %(default)s")
     return parser.parse_args(arguments)
-
-
-def check_plot(path: Path, log: Path) -> None:
-    """Before minutes of work.
-
-    Raises:
-        ValueError: no picture can be written there.
-    """
-    if path.exists() and log.exists() and path.samefile(log):
-        raise ValueError(f"{path} is the log itself; give the picture another name")
-    check_picture(path)
 
 
 def _assignment(text: str) -> tuple[str, str]:

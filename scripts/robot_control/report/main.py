@@ -9,6 +9,7 @@ from pathlib import Path
 
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.output_files import check_outputs
 from robot_control.common.pypi import use_packages
 from robot_control.common.run_log import read_run
 from robot_control.installed_files import share_file
@@ -41,6 +42,8 @@ def report(options: argparse.Namespace) -> list[list[Judged]]:
         ValueError, OSError: one message.
     """
     paths = options.compare or [options.log]
+    out = None if options.ci and options.out is None else options.out or paths[0].with_suffix(".html")
+    check_outputs([out], [*paths, options.budgets])
     drives = [drive_of(path, read_run(path)) for path in paths]
     found = [figures(drive) for drive in drives]
     budgets = read_budgets(options.budgets or Path(share_file(BUDGETS)), found[0])
@@ -49,8 +52,7 @@ def report(options: argparse.Namespace) -> list[list[Judged]]:
         if drive.part:
             print(f"report.py: {drive.name}: {fit_for_message(drive.part)}", file=sys.stderr)
         print("\n".join(_table(drive, of)))
-    if not (options.ci and options.out is None):
-        out = options.out or paths[0].with_suffix(".html")
+    if out is not None:
         _write(out, drives, judged)
         print(f"wrote {out}", file=sys.stderr)
     return judged
