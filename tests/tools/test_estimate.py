@@ -253,6 +253,8 @@ def spoil(line, old, new):
         ((4, "0.01,0.0", "0.01,fast"), "line 4, column left: 'fast' is no number; leave the cell of an absent sample"),
         ((4, "0.01,", "0.01,1,"), "line 4: 10 cells, the header has 9"),
         ((4, "0.01,", "0.01 "), "line 4: 8 cells, the header has 9"),
+        ((4, "0.01,", '"0.01,'), "line 4: a quotation mark is opened and not closed in this line"),
+        ((2300, ",", ',"'), "line 2300: a quotation mark is opened and not closed in this line"),
     ],
 )
 def test_a_csv_that_is_wrong_is_refused_by_its_line_and_nothing_is_written(run, columns, tmp_path, change, said):
@@ -275,6 +277,13 @@ def test_a_last_line_that_was_cut_short_is_left_out_and_reported(run, columns):
     assert "line 2401, the last one, was cut short and is left out" in report
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_wheel_without_any_angle_is_refused(run, columns, side):
+    write_csv("in.csv", columns | {side: np.full_like(columns[side], np.nan)})
+    _, message = run("in.csv", *ROBOT)
+    assert f"the {side} wheel has not one angle in this recording" in message
+
+
 def test_a_gap_is_reported(run, columns):
     write_csv("in.csv", {name: np.delete(values, slice(1000, 1300)) for name, values in columns.items()})
     report, message = run("in.csv", *ROBOT)
@@ -294,9 +303,9 @@ def test_a_gap_is_reported(run, columns):
         (["in.csv", *ROBOT, "--columns=left=L"], "no column L; its header is time"),
         (["in.csv", *ROBOT, "--imu=/imu"], "--imu is for a bag; in.csv is read as a CSV"),
         (["in.bag", *ROBOT, "--time-unit=ms"], "--time-unit is for a CSV; in.bag is read as a bag"),
-        (["in.csv", *ROBOT, "--csv=in.csv"], "in.csv is the recording itself"),
+        (["in.csv", *ROBOT, "--csv=in.csv"], "in.csv is an input of this program"),
         (["in.csv", *ROBOT, "--csv=no/out.csv"], "there is no folder no"),
-        (["in.csv", *ROBOT, "--csv=a.png", "--plot=a.png"], "two outputs have one name"),
+        (["in.csv", *ROBOT, "--csv=a.png", "--plot=a.png"], "is named for two outputs"),
         (["in.csv", *ROBOT, "--plot=a.docx"], "docx"),
         (["in.mcap", *ROBOT], "is a ROS 2 bag"),
         (

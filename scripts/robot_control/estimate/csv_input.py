@@ -161,21 +161,36 @@ class _Table:
     def _rows(self) -> Iterator[tuple[int, list[str]]]:
         """Number and cells of each line that is not empty. A last line that was cut short is left out."""
         width = len(self.header)
-        reader = csv.reader(self._file, delimiter=self._delimiter)
         short: tuple[int, int] | None = None
-        for row in reader:
+        for line, row in self._cells():
             if short is not None:
                 raise InputError(f"{self.path}, line {short[0]}: {short[1]} cells, the header has {width}")
             if not any(cell.strip() for cell in row):
                 continue
             if len(row) > width:
-                raise InputError(f"{self.path}, line {reader.line_num + 1}: {len(row)} cells, the header has {width}")
+                raise InputError(f"{self.path}, line {line}: {len(row)} cells, the header has {width}")
             if len(row) < width:
-                short = (reader.line_num + 1, len(row))
+                short = (line, len(row))
                 continue
-            yield reader.line_num + 1, row
+            yield line, row
         if short is not None:
             self.notes.append(f"line {short[0]}, the last one, was cut short and is left out")
+
+    def _cells(self) -> Iterator[tuple[int, list[str]]]:
+        """Number and cells of each line. A quotation mark that is not closed would make one cell of all lines below."""
+        reader = csv.reader(self._file, delimiter=self._delimiter)
+        line = 2
+        try:
+            for row in reader:
+                if reader.line_num >= line:
+                    break
+                yield line, row
+                line += 1
+            else:
+                return
+        except csv.Error:
+            pass
+        raise InputError(f"{self.path}, line {line}: a quotation mark is opened and not closed in this line")
 
     def _stamp(self, line: int, cell: str, unit_ns: int) -> int:
         try:

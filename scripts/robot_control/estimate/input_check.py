@@ -57,8 +57,11 @@ def check(samples: Samples, robot: Robot) -> Findings:
     """Of a recording whose wheel angles are in rad.
 
     Raises:
-        InputError: the accelerometer is in g, the gyro in °/s.
+        InputError: a wheel has no angles, the accelerometer is in g, the gyro in °/s.
     """
+    for side, angles in (("left", samples.left), ("right", samples.right)):
+        if not samples.own_log and not np.isfinite(angles).any():
+            raise InputError(f"the {side} wheel has not one angle in this recording: look at its column or its joint")
     streams = streams_of(samples, robot)
     findings = Findings()
     gravity = gravity_of(streams)
