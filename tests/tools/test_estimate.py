@@ -277,6 +277,13 @@ def test_a_last_line_that_was_cut_short_is_left_out_and_reported(run, columns):
     assert "line 2401, the last one, was cut short and is left out" in report
 
 
+@pytest.mark.parametrize("unit", [1e-6, 1e-3, 1e3, 1e6])
+def test_times_of_another_unit_are_refused(run, columns, unit):
+    write_csv("in.csv", columns | {"time": columns["time"] * unit})
+    _, message = run("in.csv", *ROBOT)
+    assert "--time-unit" in message
+
+
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_a_wheel_without_any_angle_is_refused(run, columns, side):
     write_csv("in.csv", columns | {side: np.full_like(columns[side], np.nan)})

@@ -43,15 +43,25 @@ def test_of_several_runs_the_last_is_read(tmp_path):
         ("", "no columns"),
         ("a,b\n1,2\n", "no columns"),
         ("run,cycle\n", "no rows"),
+        ("run,cycle,truth_x\n0,0,1\n0,1\n0,2,1\n", "line 3: it has not the 3 cells of the header"),
+        ("run,cycle\n0,0\n,1\n", "a row has no finite number in its column run"),
+        ("run,cycle\n0,0\n0,inf\n", "a row has no finite number in its column cycle"),
         ("\0" * (1 << 21), "no columns"),
         ("a" * (1 << 21), "it has a line of 1048576 characters"),
         ("RCBLACK2", "is a black box: blackbox.py makes a run.bag of it"),
     ],
-    ids=["nothing", "other", "header", "zeros", "endless", "black box"],
+    ids=["nothing", "other", "header", "short", "no run", "no cycle", "zeros", "endless", "black box"],
 )
 def test_what_is_no_log_is_refused(tmp_path, text, message):
     with pytest.raises(LogError, match=message):
         read_log(write(tmp_path, text))
+
+
+def test_a_column_that_is_not_there_is_named_with_the_file(tmp_path):
+    log = read_log(write(tmp_path, "run,cycle\n0,0\n"))
+    assert "truth_x" not in log
+    with pytest.raises(LogError, match=r"run\.csv: no column truth_x, which is needed here"):
+        log["truth_x"]
 
 
 def test_joints_are_found_by_their_effort():

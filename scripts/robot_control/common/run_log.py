@@ -31,6 +31,17 @@ class LogError(ValueError):
     """The file is not a log, or holds no rows."""
 
 
+class Columns(dict[str, FloatArray]):
+    """`Log` of a file: a column that is asked for and is not there is an error of the file."""
+
+    def __init__(self, path: Path, columns: Mapping[str, FloatArray]) -> None:
+        super().__init__(columns)
+        self._path = path
+
+    def __missing__(self, name: str) -> FloatArray:
+        raise LogError(f"{self._path}: no column {name}, which is needed here")
+
+
 @dataclass(frozen=True)
 class RunLog:
     """A log with what stands around its rows."""
@@ -103,7 +114,7 @@ def _read_bag(path: Path, columns: Sequence[str]) -> RunLog:
     except (BagError, TraceError, RuntimeError) as error:
         named = str(error).startswith(str(path))
         raise LogError(str(error) if named else f"{path}: {error}") from None
-    table = read["columns"]
+    table = Columns(path, read["columns"])
     if not read["runs"]:
         raise LogError(f"{path}: no rows" + (f"; {read['cut']}" if read["cut"] else ""))
     return RunLog(table, read["ros_time"], read["header"], read["runs"], read["lost"], read["cut"])
@@ -114,7 +125,15 @@ def _read_csv(path: Path, columns: Sequence[str]) -> RunLog:
         try:
             lines = csv.reader(_lines_of(file))
             header = next(lines, [])
-            rows = [row for row in lines if len(row) == len(header)]
+            rows = []
+            short = 0
+            for row in lines:
+                if short:
+                    raise LogError(f"{path}, line {short}: it has not the {len(header)} cells of the header")
+                if len(row) == len(header):
+                    rows.append(row)
+                elif row:
+                    short = lines.line_num  # the last line may be cut short
         except csv.Error as error:
             raise LogError(f"{path}: is no CSV: {error}") from None
     if "run" not in header or "cycle" not in header:
@@ -125,10 +144,13 @@ def _read_csv(path: Path, columns: Sequence[str]) -> RunLog:
         table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
     except ValueError as error:
         raise LogError(f"{path}: {error}") from None
+    for name in ("run", "cycle"):
+        if not np.isfinite(table[:, header.index(name)]).all():
+            raise LogError(f"{path}: a row has no finite number in its column {name}")
     run = table[:, header.index("run")]
     table = table[run == run.max()]
     wanted = {name: table[:, i] for i, name in enumerate(header) if not columns or name in columns}
-    return RunLog(wanted, None, {}, len(np.unique(run)), 0, "")
+    return RunLog(Columns(path, wanted), None, {}, len(np.unique(run)), 0, "")
 
 
 def _lines_of(file: TextIO) -> Iterator[str]:

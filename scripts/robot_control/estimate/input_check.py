@@ -27,6 +27,10 @@ CLEAR = 0.8
 """share of the wheels' turning that the gyro must explain before anything is concluded"""
 OFFSET, OFFSET_DEVIATION = 0.005, 0.02
 """s: an offset of the clocks that is worth taking out, and how well it must be known"""
+FEWEST = 10
+"""samples that say how far apart they are"""
+LEAST_APART, MOST_APART = 2e-5, 2.0
+"""s between samples: a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
 COUNTS = 20
 """different whole numbers that are no angles"""
 
@@ -57,8 +61,9 @@ def check(samples: Samples, robot: Robot) -> Findings:
     """Of a recording whose wheel angles are in rad.
 
     Raises:
-        InputError: a wheel has no angles, the accelerometer is in g, the gyro in °/s.
+        InputError: a wheel has no angles, the times are in another unit, the accelerometer is in g, the gyro in °/s.
     """
+    _check_time(samples)
     for side, angles in (("left", samples.left), ("right", samples.right)):
         if not samples.own_log and not np.isfinite(angles).any():
             raise InputError(f"the {side} wheel has not one angle in this recording: look at its column or its joint")
@@ -74,6 +79,17 @@ def check(samples: Samples, robot: Robot) -> Findings:
         if turning is not None:
             _check_turning(streams, turning, findings)
     return findings
+
+
+def _check_time(samples: Samples) -> None:
+    if samples.own_log or samples.time_ns.size < FEWEST:
+        return
+    apart = 1e-9 * float(np.median(np.diff(samples.time_ns)))
+    if not LEAST_APART <= apart <= MOST_APART:
+        raise InputError(
+            f"half of the samples are less than {apart:.3g} s apart; expected is {LEAST_APART:g} to {MOST_APART:g} s: "
+            "look at the unit of the times (of a CSV: --time-unit, s unless given)"
+        )
 
 
 def _check_gravity(streams: Streams, gravity: FloatArray, findings: Findings) -> bool:
