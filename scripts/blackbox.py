@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Turns the black box of a robot, the last minute before a crash, into a run.bag; see --help."""
 
+from robot_control.common.program import run
 from robot_control.blackbox.main import main
 
 if __name__ == "__main__":
-    main()
+    run(main)

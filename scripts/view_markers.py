@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """What RViz shows beside model and odometry: wheel forces, safety state, reasons, the path driven; see --help."""
 
+from robot_control.common.program import run
 from robot_control.view.main import main
 
 if __name__ == "__main__":
-    main()
+    run(main)

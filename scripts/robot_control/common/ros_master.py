@@ -29,6 +29,19 @@ def require_master() -> None:
         )
 
 
+def living(node: str) -> bool:
+    """A node of this name (absolute) is known to the master and answers."""
+    try:
+        master: Any = xmlrpc.client.ServerProxy(rosgraph.get_master_uri(), transport=_Transport())
+        known, _, uri = master.lookupNode(node, node)
+        if known != 1:
+            return False
+        itself: Any = xmlrpc.client.ServerProxy(uri, transport=_Transport())
+        return bool(itself.getPid(node)[0] == 1)
+    except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):
+        return False
+
+
 class Master:
     """The ROS master, asked with a time limit."""
 

@@ -87,6 +87,9 @@ class Services:
             if answer.service == "e_stop_trigger":
                 self._e_stop_at = None
                 answer = answer if answer.accepted else self._e_stop_on_topic(answer.text)
+            elif not answer.accepted and not self._topic_said_true:
+                # A restarted safety_monitor does not know it, and holds the topic true for a publisher that is silent.
+                self._topic.publish(Bool(data=False))
             answers.append(answer)
         if self._e_stop_at is not None and time.monotonic() - self._e_stop_at > PATIENCE:
             answers.append(self._e_stop_on_topic("e_stop_trigger does not answer"))

@@ -1,0 +1,85 @@
+"""What a shell does to the output of a program, and a name that is taken: one message, no traceback."""
+
+import os
+import subprocess
+import sys
+import threading
+import xmlrpc.server
+from pathlib import Path
+
+import pytest
+from robot_control.common import ros_node
+from robot_control.common.ros_master import living
+
+SCRIPTS = Path(__file__).parents[2] / "scripts"
+PROGRAMS = sorted({path.name for path in SCRIPTS.glob("*.py")} - {"state_publisher.py"})  # that takes no options
+
+
+def helped(program, output):
+    command = [sys.executable, "-P", str(SCRIPTS / program), "--help"]
+    return subprocess.run(
+        command, stdout=output, stderr=subprocess.PIPE, text=True, check=False, env=os.environ, timeout=120
+    )
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_a_reader_that_has_left_ends_a_program_without_a_word(program):
+    reader, writer = os.pipe()
+    os.close(reader)
+    ended = helped(program, writer)
+    os.close(writer)
+    assert (ended.returncode, ended.stderr) == (141, "")
+
+
+def test_an_output_that_cannot_be_written_is_one_message():
+    with Path("/dev/full").open("w") as full:
+        ended = helped("estimate.py", full)
+    assert ended.returncode == 1
+    assert ended.stderr.rstrip() == "estimate.py: No space left on device"
+
+
+class Answering:
+    """A master that knows one node, and this node: one server for both."""
+
+    def __init__(self, name):
+        self.server = xmlrpc.server.SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
+        self.uri = f"http://127.0.0.1:{self.server.server_address[1]}"
+        self.node = self.uri
+        self.server.register_function(
+            lambda _, node: [1, "", self.node] if node == name else [-1, "unknown", ""], "lookupNode"
+        )
+        self.server.register_function(lambda _: [1, "", 4711], "getPid")
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+
+@pytest.fixture
+def master(monkeypatch):
+    answering = Answering("/robot2/follow_path")
+    monkeypatch.setenv("ROS_MASTER_URI", answering.uri)
+    yield answering
+    answering.server.shutdown()
+    answering.server.server_close()
+
+
+def test_a_node_that_lives_is_not_replaced(master, monkeypatch):
+    monkeypatch.setattr(ros_node.rospy, "init_node", None)  # it is not reached
+    monkeypatch.setattr(sys, "argv", ["follow_path.py", "__ns:=/robot2"])
+    with pytest.raises(SystemExit, match=r"a node /robot2/follow_path runs already.*rosnode kill"):
+        ros_node.begin_node("follow_path")
+
+
+def test_another_name_begins_and_so_does_one_whose_node_has_died(master, monkeypatch):
+    begun = []
+    monkeypatch.setattr(ros_node.rospy, "init_node", lambda name, anonymous: begun.append(name))
+    monkeypatch.setattr(sys, "argv", ["follow_path.py"])
+    ros_node.begin_node("follow_path")
+    master.node = "http://127.0.0.1:1"  # nothing listens there
+    monkeypatch.setattr(sys, "argv", ["follow_path.py", "__ns:=/robot2"])
+    ros_node.begin_node("follow_path")
+    assert begun == ["follow_path", "follow_path"]
+    assert not living("/robot2/follow_path")
+
+
+def test_without_a_master_nothing_lives(monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")
+    assert not living("/follow_path")
