@@ -3,6 +3,7 @@
 
 #include <urdf_world/types.h>
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct UrdfDocument {
   std::set<std::string> sideways_plugins;  ///< their files (urdf_markup.h)
   std::set<std::string> steering_plugins;  ///< likewise
   std::set<std::string> unsaid_axes;       ///< joints (urdf_markup.h)
+  std::map<std::string, std::string> turned_origins;  ///< (urdf_markup.h)
 };
 
 /// Throws RobotError: what parse_markup refuses, or whatever urdfdom objects to, in its own words. What urdfdom would

@@ -1,6 +1,7 @@
 #include "description/urdf_markup.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -221,6 +222,17 @@ bool three_numbers(const std::string& text) {
   return stream >> x >> y >> z && !(stream >> rest);
 }
 
+constexpr double kRoundedTurn = 0.01;  // rad; 6.29 is a whole turn
+
+/// Of the amounts of the numbers in a text; 0: there is none.
+double largest_of(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double largest = 0;
+  for (double x = 0; stream >> x;) largest = std::max(largest, std::abs(x));
+  return largest;
+}
+
 void repair_shape(TiXmlElement& visual_or_collision) {
   TiXmlElement* geometry = visual_or_collision.FirstChildElement("geometry");
   TiXmlElement* mesh = geometry == nullptr ? nullptr : geometry->FirstChildElement("mesh");
@@ -324,6 +336,24 @@ std::set<std::string> unsaid_axes(const TiXmlElement& robot) {
     if (axis == nullptr ? !fixed : axis->Attribute("xyz") == nullptr) joints.insert(attribute(*joint, "name"));
   }
   return joints;
+}
+
+std::map<std::string, std::string> turned_origins(const TiXmlElement& robot) {
+  std::map<std::string, std::string> origins;
+  const auto look = [&](const TiXmlElement& owner, const std::string& words) {
+    const TiXmlElement* origin = owner.FirstChildElement("origin");
+    const std::string rpy = origin == nullptr ? "" : attribute(*origin, "rpy");
+    if (largest_of(rpy) > 2 * M_PI + kRoundedTurn) origins.emplace(words, rpy);
+  };
+  for (const TiXmlElement* element = robot.FirstChildElement(); element != nullptr;
+       element = element->NextSiblingElement()) {
+    if (element->ValueStr() == "joint") look(*element, joint_element(attribute(*element, "name")));
+    if (element->ValueStr() != "link") continue;
+    for (const TiXmlElement* part = element->FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
+      look(*part, link_element(attribute(*element, "name")) + "<" + part->ValueStr() + ">");
+    }
+  }
+  return origins;
 }
 
 void repair_markup(TiXmlElement& robot) {

@@ -11,6 +11,7 @@
 #include <tinyxml.h>
 
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -46,6 +47,10 @@ inline const std::vector<std::string> kSteeringWords{"ackermann", "steer", "tric
 /// The joints with an <axis> that has no `xyz`, as in <axis xzy="0 1 0">, and moving ones without an <axis>: theirs is
 /// 1 0 0.
 std::set<std::string> unsaid_axes(const TiXmlElement& robot);
+
+/// The <joint>s, and the inertias and shapes of links, whose <origin rpy="…"> has an angle of more than a whole
+/// turn, in words, and this text.
+std::map<std::string, std::string> turned_origins(const TiXmlElement& robot);
 
 /// As above.
 void repair_markup(TiXmlElement& robot);

@@ -118,6 +118,33 @@ void note_weak_wheels(RobotModel& robot) {
            " m/s². A URDF's efforts are those of the joint, behind its gear");
 }
 
+std::string limits_of(const JointModel& joint) {
+  return number(joint.effort_limit) + " N·m and " +
+         (joint.velocity_limit > 0 ? number(joint.velocity_limit) + " rad/s" : "no known speed");
+}
+
+bool differ(double a, double b) {
+  return std::abs(a - b) > kSameLimit * std::max(a, b);
+}
+
+void note_limits(RobotModel& robot) {
+  const JointModel& first = robot.joints[robot.wheels.front().joint];
+  for (const WheelModel& wheel : robot.wheels) {
+    const JointModel& joint = robot.joints[wheel.joint];
+    const double rim = joint.velocity_limit * wheel.radius;
+    if (rim >= kFastRim) {
+      note(robot, joint_element(joint.name),
+           "a velocity limit of " + number(joint.velocity_limit) + " rad/s is " + number(rim) +
+               " m/s at its rim: is it in degrees per second or turns per minute? A URDF's are rad/s");
+    }
+    if (differ(joint.effort_limit, first.effort_limit) || differ(joint.velocity_limit, first.velocity_limit)) {
+      note(robot, joint_element(joint.name),
+           "its limits are " + limits_of(joint) + ", those of " + first.name + " " + limits_of(first) +
+               ": is that meant? The weaker side limits both");
+    }
+  }
+}
+
 void note_far_root(RobotModel& robot) {
   double nearest = std::numeric_limits<double>::infinity();
   Eigen::AlignedBox3d box;
@@ -154,6 +181,7 @@ void note_suspicions(RobotModel& robot) {
   note_masses(robot);
   note_tipping(robot);
   note_weak_wheels(robot);
+  note_limits(robot);
   note_far_root(robot);
   note_mecanum(robot);
 }

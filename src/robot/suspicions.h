@@ -8,6 +8,8 @@
 ///             limits brake it by, at most g; where none is given, kUsualRamp. Or nothing carries it before or behind
 ///             its centre of gravity, and it has no springs
 ///   wheels    their torque limits, less their joints' friction, accelerate the robot by less than kWeak
+///   limits    wheels of kFastRim or more at their velocity limit: degrees or turns; or wheels of one robot with other
+///             limits
 ///   root      farther than kFar diagonals of the robot from its wheels: a world that the robot is fixed to
 ///   mecanum   the file speaks of such wheels, and more than two drive
 
@@ -25,6 +27,8 @@ inline constexpr double kUsualRamp = 2;  ///< m/s², default of max_linear_emerg
 
 inline constexpr double kWeak = 0.05;  ///< m/s²; an incline of 0.3° holds it
 inline constexpr double kFar = 2;
+inline constexpr double kFastRim = 15;  ///< m/s
+inline constexpr double kSameLimit = 0.01;
 
 /// Of a robot that is complete.
 void note_suspicions(RobotModel& robot);

@@ -62,6 +62,54 @@ std::string suspicion(const std::string& text) {
   return notes_of(read_robot(robot_of(text), {}), RobotNote::Kind::kSuspicious);
 }
 
+std::string driven_by(const std::string& left, const std::string& right) {
+  const auto limit = [](const std::string& text) { return text.empty() ? "" : "<limit " + text + "/>"; };
+  return suspicion(base() + wheel("left", "0 0.25 0", "0.1", limit(left)) +
+                   wheel("right", "0 -0.25 0", "0.1", limit(right)));
+}
+
+TEST(Suspicious, AVelocityLimitThatNoWheelReachesMayBeInDegrees) {
+  const std::string speed = "effort=\"5\" velocity=\"573\"";
+  EXPECT_THAT(driven_by(speed, speed), HasSubstr("573 rad/s is 57.3 m/s at its rim: is it in degrees per second"));
+  const std::string slow = "effort=\"5\" velocity=\"30\"";
+  EXPECT_THAT(driven_by(slow, slow), Not(HasSubstr("at its rim")));
+}
+
+TEST(Suspicious, LimitsOfTheSidesThatDiffer) {
+  const std::string slow = "effort=\"5\" velocity=\"10\"";
+  EXPECT_THAT(driven_by(slow, "effort=\"5\" velocity=\"20\""), HasSubstr("those of left 5 N·m and 10 rad/s"));
+  EXPECT_THAT(driven_by(slow, "effort=\"4\" velocity=\"10\""), HasSubstr("its limits are 4 N·m and 10 rad/s"));
+  EXPECT_THAT(driven_by(slow, ""), HasSubstr("no known speed"));
+  EXPECT_THAT(driven_by(slow, slow), Not(HasSubstr("its limits are")));
+}
+
+TEST(Suspicious, AnOriginOfMoreThanAWholeTurnMayBeInDegrees) {
+  const std::string text = base() + wheel("left", "0 0.25 0") + wheel("right", "0 -0.25 0");
+  const auto with = [&](const std::string& rpy) {
+    return suspicion(text + link("mast", inertial("0.1")) +
+                     joint({.name = "mast_joint", .child = "mast", .type = "fixed", .axis = "", .rpy = rpy}));
+  };
+  EXPECT_THAT(with("0 0 -90"), HasSubstr("<joint name=\"mast_joint\">: <origin rpy=\"0 0 -90\"> is more than a whole"));
+  EXPECT_THAT(with("0 0 6.2831853"), Not(HasSubstr("rpy")));
+}
+
+TEST(Suspicious, OuterWheelsOfADeepMiddlePairThatDoNotDrive) {
+  const auto six = [](double deep) {
+    std::string text = base();
+    for (const double y : {0.25, -0.25}) {
+      for (const double x : {0.3, 0.0, -0.3}) {
+        text += wheel((y > 0 ? "left_" : "right_") + std::to_string(static_cast<int>(10 * x + 5)),
+                      xyz(x, y, x == 0 ? -deep : 0));
+      }
+    }
+    return suspicion(text);
+  };
+  EXPECT_THAT(six(0.01), AllOf(HasSubstr("ends 10 mm above them: taken as passive, only 2 wheels drive"),
+                               HasSubstr("robot/left_wheel_joints")));
+  EXPECT_THAT(six(-0.01), HasSubstr("only 4 wheels drive"));
+  EXPECT_THAT(six(0), Not(HasSubstr("taken as passive")));
+}
+
 std::string base_of(double radius, double wheel_base) {
   Made m;
   m.radius = radius;

@@ -39,6 +39,7 @@ class Lumper {
     result_.link_order = document.link_order;
     result_.driven_joints = document.driven;
     result_.unsaid_axes = document.unsaid_axes;
+    note_turned_origins();
     result_.sideways_plugins = document.sideways_plugins;
     result_.steering_plugins = document.steering_plugins;
     const auto& links = document.model->links_;
@@ -148,6 +149,16 @@ class Lumper {
       note(RobotNote::Kind::kAssumed, link_element(body.name), "no <collision>: the wheel has its <visual> shape");
     } else {
       body.shapes.clear();
+    }
+  }
+
+  void note_turned_origins() {
+    for (const auto& [element, rpy] : document_.turned_origins) {
+      note(RobotNote::Kind::kSuspicious, element,
+           "<origin rpy=\"" + rpy + "\"> is more than a whole turn: is it in degrees? A URDF's angles are radians");
+    }
+    for (const std::string& name : document_.joint_order) {
+      if (document_.turned_origins.contains(joint_element(name))) result_.turned_joints.insert(name);
     }
   }
 

@@ -84,6 +84,7 @@ struct RigidBodies {
   std::set<std::string> sideways_plugins;   ///< UrdfDocument
   std::set<std::string> steering_plugins;   ///< likewise
   std::set<std::string> unsaid_axes;        ///< joints whose axis is 1 0 0 for want of another
+  std::set<std::string> turned_joints;      ///< joints whose origin is turned by more than a whole turn
   std::vector<std::string> missing_meshes;  ///< messages of <collision> shapes that are left out, see link_shapes.h
   std::vector<RobotNote> notes;             ///< what was assumed, repaired, ignored
 

@@ -51,6 +51,22 @@ class Search {
     drop_those_on_the_middle_line();
   }
 
+  /// What has the size of the drive wheels and does not reach as low is not driven, which hardly is meant.
+  void note_hanging(const std::vector<RollingBody>& wheels, std::vector<RobotNote>& notes) const {
+    const WheelModel& wheel = wheels.front().wheel;
+    for (const RollingBody& hanging : hanging_) {
+      if (std::abs(hanging.wheel.radius - wheel.radius) > kPairTolerance * wheel.radius) continue;
+      const BodyJoint& joint = robot_.bodies[hanging.body].joint;
+      if (joint.driven) continue;  // other_drives.h
+      notes.push_back({RobotNote::Kind::kSuspicious, joint_element(joint.name),
+                       "a wheel as large as the drive wheels that ends " +
+                           number(1000 * (lowest_point(hanging.wheel) - lowest_point(wheel))) +
+                           " mm above them: taken as passive, only " + std::to_string(wheels.size()) +
+                           " wheels drive. If it drives, too, name all that do by robot/left_wheel_joints: […] and "
+                           "robot/right_wheel_joints: […]"});
+    }
+  }
+
   std::vector<RollingBody> drive_wheels() const {
     if (candidates_.empty()) {
       refuse_unclear("no drive wheels found: " + (rejected_.empty() ? "no joint turns" : rejected_));
@@ -112,6 +128,7 @@ class Search {
   void reject(const std::string& joint, const std::string& reason) {
     rejected_ += (rejected_.empty() ? "" : "; ") + joint + ": " + reason;
     if (robot_.unsaid_axes.contains(joint)) rejected_ += " (and no <axis xyz=\"…\"> is given)";
+    if (robot_.turned_joints.contains(joint)) rejected_ += " (and its <origin rpy=\"…\"> looks like degrees)";
   }
 
   void consider(std::size_t index) {
@@ -260,7 +277,13 @@ DriveTrain find_drive_train(const RigidBodies& robot, const RobotParameters& par
                             std::vector<RobotNote>& notes) {
   DriveTrain train;
   const bool named = !parameters.left_wheel_joints.empty() || !parameters.right_wheel_joints.empty();
-  train.wheels = named ? named_wheels(robot, parameters) : Search(robot).drive_wheels();
+  if (named) {
+    train.wheels = named_wheels(robot, parameters);
+  } else {
+    const Search search(robot);
+    train.wheels = search.drive_wheels();
+    search.note_hanging(train.wheels, notes);
+  }
   if (train.wheels.size() > kMaxWheels) {
     refuse(robot.source, "<robot>", std::to_string(train.wheels.size()) + " drive wheels",
            "At most " + std::to_string(kMaxWheels) + " are supported; tracks are not");
