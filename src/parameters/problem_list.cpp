@@ -33,7 +33,12 @@ void ProblemList::throw_if_any(std::string_view subject) const {
 std::string listing(std::string_view subject, const std::vector<std::string>& lines) {
   std::string message = fit_for_message(subject);
   message.append(": ").append(std::to_string(lines.size())).append(lines.size() == 1 ? " problem" : " problems");
-  for (const std::string& line : lines) message.append("\n  ").append(line);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i > 0 && message.size() + lines[i].size() > kLongestListing) {
+      return message.append("\n  … and ").append(std::to_string(lines.size() - i)).append(" more");
+    }
+    message.append("\n  ").append(lines[i]);
+  }
   return message;
 }
 

@@ -7,6 +7,7 @@
 
 #include "parameters/parameter_file.h"
 #include "parameters/parameters.h"
+#include "parameters/problem_list.h"
 #include "parameters/schema/schema.h"
 #include "parameters/suggestion.h"
 
@@ -507,6 +508,13 @@ TEST_F(ReadParameters, EscapesWhatATerminalWouldInterpret) {
   file.set("rate", "  rate: \"\\e[31m\"");
   EXPECT_THAT(file.refusal(), HasSubstr("\\x1b[31m"));
   EXPECT_THAT(file.refusal(), Not(HasSubstr("\x1b")));
+}
+
+TEST(Listing, OfThousandsOfProblemsFitsAMessageAndCountsTheRest) {
+  const std::string text = listing("my.yaml", std::vector<std::string>(3000, "robot.ratee = 500: unknown key"));
+  EXPECT_LT(text.size(), 2000u);
+  EXPECT_THAT(text, testing::AllOf(testing::StartsWith("my.yaml: 3000 problems"),
+                                   testing::ContainsRegex("and 29[0-9]+ more$")));
 }
 
 TEST(Schema, PathsAreUnique) {
