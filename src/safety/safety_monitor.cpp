@@ -73,6 +73,8 @@ void SafetyMonitor::restore(const Permit& last) noexcept {
 
 void SafetyMonitor::restore(std::uint64_t causes, std::uint64_t first_cause) noexcept {
   supervisor_.restore(causes, first_cause);
+  const bool no_permit = !earlier_driver_instance_;
+  if (no_permit && (causes & kCauseEmergencyStopTopic) != 0) operator_conditions_.hold_e_stop();
 }
 
 void SafetyMonitor::driver_lost() noexcept {
@@ -201,6 +203,7 @@ void SafetyMonitor::step(const MonitorInput& input, Permit& out) noexcept {
 
 void SafetyMonitor::step_without_sensors(const OperatorInput& operator_input, Permit& out) noexcept {
   active_.clear();
+  pending_ |= operator_conditions_.emergency_stops(operator_input);
   add_pending();
   supervisor_.step({.brake = active_.with(Reaction::kBrake), .missing = presence_.missing()});
   evidence_.latch(active_, 0);

@@ -87,7 +87,8 @@ class SafetyMonitor {
   /// gate has already used a permit of this run.
   void restore(const Permit& last) noexcept;
 
-  /// Latches `causes` at once, as read from another record of an earlier stop (latch_file).
+  /// Latches `causes` at once, as read from another record of an earlier stop (latch_file). Without a permit in the
+  /// channel, an `e_stop` topic that was a cause counts as true until it sends false: whether it still was is unknown.
   void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept;
 
   /// This monitor was started in this cycle of a run that was already going on. Before the first step of that run.
@@ -119,6 +120,9 @@ class SafetyMonitor {
 
   /// The same before the first sensor frame: latches pending causes, evaluates no condition.
   void step_without_sensors(const OperatorInput& operator_input, Permit& out) noexcept;
+
+  /// After `restore`: the topic `e_stop` counts as true until its next message.
+  bool e_stop_held() const noexcept { return operator_conditions_.e_stop_held(); }
 
   /// Latched causes.
   std::uint64_t causes() const noexcept { return supervisor_.causes(); }

@@ -38,7 +38,6 @@ TEST_F(EStopLevelsTest, StayWhenTheirPublisherHasLeft) {
   levels_.receive("/gate", kFalse);
   levels_.receive("/panel", kTrue);
   levels_.receive("/gate", kFalse);
-  EXPECT_FALSE(levels_.unsettled());
   levels_.settle({"/gate"});
   EXPECT_THAT(levels_.publishers(), ElementsAre("/panel")) << "/gate sent false before, too";
 }
@@ -46,7 +45,7 @@ TEST_F(EStopLevelsTest, StayWhenTheirPublisherHasLeft) {
 TEST_F(EStopLevelsTest, OfOneThatHasLeftEndAtTheResetAfterTheFirstFalseOfAnother) {
   levels_.receive("/panel", kTrue);
   levels_.receive("/rostopic_1", kFalse);
-  EXPECT_TRUE(levels_.stopped() && levels_.unsettled());
+  EXPECT_TRUE(levels_.stopped());
   levels_.settle({"/panel", "/rostopic_1"});
   EXPECT_TRUE(levels_.stopped()) << "/panel is still there";
   levels_.settle({"/rostopic_1"});
@@ -59,6 +58,40 @@ TEST_F(EStopLevelsTest, AreNotEndedByAFalseFromBeforeTheirLastTrue) {
   levels_.receive("/panel", kTrue);
   levels_.settle({});
   EXPECT_TRUE(levels_.stopped());
+}
+
+TEST_F(EStopLevelsTest, AreNotEndedByAPublisherThatWasThereAtAnEarlierReset) {
+  levels_.receive("/panel", kTrue);
+  levels_.settle({"/teleop"});
+  levels_.receive("/teleop", kFalse);
+  levels_.settle({"/teleop"});
+  EXPECT_THAT(levels_.publishers(), ElementsAre("/panel"));
+}
+
+TEST_F(EStopLevelsTest, FromBeforeARestartStayUntilEveryPublisherThatIsThereHasSentFalse) {
+  levels_.hold();
+  EXPECT_TRUE(levels_.stopped());
+  levels_.receive("/gate", kFalse);
+  EXPECT_TRUE(levels_.stopped()) << "it ends with a reset request alone";
+  levels_.settle({"/gate", "/panel"});
+  EXPECT_TRUE(levels_.stopped()) << "/panel may have said true before";
+  EXPECT_THAT(levels_.publishers(), ElementsAre(testing::StartsWith("/panel (has sent nothing")));
+  levels_.receive("/panel", kTrue);
+  levels_.settle({"/gate", "/panel"});
+  EXPECT_THAT(levels_.publishers(), ElementsAre("/panel"));
+  levels_.receive("/panel", kFalse);
+  levels_.settle({"/gate", "/panel"});
+  EXPECT_FALSE(levels_.stopped());
+}
+
+TEST_F(EStopLevelsTest, FromBeforeARestartAreNotEndedBySilence) {
+  levels_.hold();
+  levels_.settle({});
+  EXPECT_TRUE(levels_.stopped()) << "the publisher has left, its button may still be pressed";
+  EXPECT_THAT(levels_.publishers(), ElementsAre(testing::HasSubstr("unknown publisher")));
+  levels_.receive("/rostopic_1", kFalse);
+  levels_.settle({});
+  EXPECT_FALSE(levels_.stopped());
 }
 
 TEST_F(EStopLevelsTest, UnderEverNewNamesTakeBoundedMemoryAndNoneIsLost) {

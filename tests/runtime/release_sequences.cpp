@@ -117,7 +117,9 @@ class Sequence {
             nullptr);
         operator_input_ = {};
         levels_ = {};
-        for (Button& button : buttons_) button.level = false;  // a restarted monitor does not know of it
+        if (monitor_->e_stop_held()) levels_.hold();
+        operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
+        for (Button& button : buttons_) button.withdrawn = false;
         buttons_heard_.clear();
         last_permit_ = {};
         break;
@@ -220,7 +222,7 @@ class Sequence {
     for (const Button& button : buttons_) {
       if (button.present) present.push_back(button.name);
     }
-    if (levels_.unsettled()) levels_.settle(present);
+    levels_.settle(present);
     operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
     ++operator_input_.resets;
     // What ends with this request is decided now, whatever becomes of the publishers until the answer.

@@ -11,8 +11,9 @@
 ///               the run), a zero velocity was sent while no other sender requested motion, or nothing was sent for T
 ///   stop        … and only if no emergency stop was requested since the last accepted reset
 ///   reset       is accepted only if no sender's newest message of the last T, to this controller, requested motion
-///               or was refused, and if no publisher's last word on e_stop was true, as far as this monitor received
-///               it; that of one that has left counts until the first message of another publisher says false
+///               or was refused, and if no publisher's last word on e_stop was true, as far as this monitor or an
+///               earlier one received it; that of one that has left counts until the first message of another
+///               publisher says false
 
 #include <cstdint>
 #include <optional>

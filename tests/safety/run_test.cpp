@@ -313,6 +313,29 @@ TEST_F(RestartTest, ATopicThatSaidTrueIsTrueUntilItsNextMessage) {
   EXPECT_EQ(reset(), 0u);
 }
 
+TEST_F(RestartTest, ATopicThatStoppedIsTrueUntilItsNextMessageWhereNoPermitSaysOtherwise) {
+  for (const std::uint64_t cause : {kCauseEmergencyStopTopic, kCauseStall}) {
+    monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
+    monitor_.restore(cause, cause);
+    EXPECT_EQ(monitor_.e_stop_held(), cause != kCauseStall);
+  }
+  input_.operator_input.e_stop_level = input_.operator_input.e_stop_messages = 1;
+  stand();
+  input_.operator_input.e_stop_level = 0;
+  stand();
+  restart();
+  monitor_.restore(permit_.causes, permit_.first_cause);
+  EXPECT_FALSE(monitor_.e_stop_held()) << "the last permit says that it was false again";
+}
+
+TEST_F(RestartTest, ATopicThatIsTrueStaysActiveWithoutSensors) {
+  input_.operator_input.e_stop_level = input_.operator_input.e_stop_messages = 1;
+  for (int i = 0; i < 3; ++i) {
+    monitor_.step_without_sensors(input_.operator_input, permit_);
+    EXPECT_EQ(permit_.active, std::uint64_t{kCauseEmergencyStopTopic}) << "step " << i;
+  }
+}
+
 TEST_F(RestartTest, ANewDriverBesideARunningMonitorClearsNothing) {
   e_stop();
   sensors_.driver_instance = 78;

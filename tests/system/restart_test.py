@@ -3,6 +3,7 @@
 
 import itertools
 import signal
+import subprocess
 import time
 
 import rospy
@@ -109,6 +110,22 @@ class RestartTest(RobotTestCase):
             robot.start(*order)
             wait_for("safety_status", lambda: robot.status is not None and robot.status.run > 1)
             self.expect_latched("e_stop_service")
+
+    def test_a_level_of_e_stop_outlives_the_monitor_until_its_publisher_says_false(self) -> None:
+        robot = self.robot
+        robot.send_e_stop(True)
+        wait_for("the stop", lambda: "e_stop_topic" in robot.causes)
+        robot.nodes[MONITOR].kill()
+        robot.status = None
+        robot.start(MONITOR)
+        wait_for("safety_status", lambda: robot.status is not None and robot.status.run > 1)
+        another = ["rostopic", "pub", "-1", "e_stop", "std_msgs/Bool", "false"]
+        subprocess.run(another, check=True, capture_output=True)
+        refused = robot.call("e_stop_reset")
+        self.assertFalse(refused.success)
+        self.assertIn(f"{rospy.get_name()} (has sent nothing since safety_monitor was restarted)", refused.message)
+        robot.send_e_stop(False)
+        self.expect_latched("e_stop_topic")
 
     def test_a_start_beside_a_living_sender_waits_for_a_zero_request(self) -> None:
         robot = self.robot

@@ -79,6 +79,14 @@ def test_an_e_stop_that_the_service_could_not_take_is_sent_on_the_topic_and_not_
     assert robot.levels == [True]
 
 
+def test_after_a_reset_that_is_refused_it_says_on_the_topic_that_it_stops_nothing(robot):
+    robot.refuses = True
+    services = Services()
+    services.reset()
+    wait_for(services.look)
+    assert robot.levels == [False]
+
+
 def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, monkeypatch):
     monkeypatch.setattr(module, "LATEST", 0.05)
     robot.answers = False

@@ -9,14 +9,22 @@ namespace {
 // it.
 constexpr std::size_t kMostPublishers = 1000;
 const char* const kFurther = "(further publishers)";
+const char* const kSilent = " (has sent nothing since safety_monitor was restarted)";
+const char* const kUnknown = "an unknown publisher, from before safety_monitor was restarted";
 
 }  // namespace
 
+/// False: it was known, or there are too many.
+bool EStopLevels::remember(const std::string& publisher) {
+  return known_.size() < kMostPublishers && known_.insert(publisher).second;
+}
+
 void EStopLevels::receive(const std::string& publisher, bool stop) {
-  const bool full = known_.size() >= kMostPublishers && !known_.contains(publisher);
-  const bool first = !full && known_.insert(publisher).second;
+  const bool first = remember(publisher);
+  const bool further = !known_.contains(publisher);
+  if (!further) heard_.insert(publisher);
   if (stop) {
-    levels_.insert_or_assign(full ? kFurther : publisher, false);
+    levels_.insert_or_assign(further ? kFurther : publisher, false);
     return;
   }
   levels_.erase(publisher);
@@ -24,19 +32,24 @@ void EStopLevels::receive(const std::string& publisher, bool stop) {
   for (auto& [other, withdrawn] : levels_) withdrawn = true;
 }
 
-bool EStopLevels::unsettled() const noexcept {
-  return std::ranges::any_of(levels_, [](const auto& level) { return level.second; });
-}
-
 void EStopLevels::settle(const std::vector<std::string>& present) {
   std::erase_if(levels_, [&](const auto& level) {
     return level.second && std::ranges::find(present, level.first) == present.end();
   });
+  silent_.clear();
+  for (const std::string& publisher : present) {
+    remember(publisher);
+    if (!heard_.contains(publisher)) silent_.push_back(publisher);
+  }
+  if (silent_.empty() && !heard_.empty() && levels_.empty()) held_ = false;
 }
 
 std::vector<std::string> EStopLevels::publishers() const {
   std::vector<std::string> names;
   for (const auto& [name, withdrawn] : levels_) names.push_back(name);
+  if (!held_) return names;
+  for (const std::string& name : silent_) names.push_back(name + kSilent);
+  if (names.empty()) names.emplace_back(kUnknown);
   return names;
 }
 

@@ -9,6 +9,10 @@
 ///
 /// A publisher that always sends false therefore never ends the level of another one, and the end of a process releases
 /// nothing. A level is no latch: what it stopped is released by e_stop_reset alone.
+///
+/// After a restart of safety_monitor it is not known whose level was true (`hold`). The topic then stays true until the
+/// next reset request at which every publisher that is there has sent a message since the restart, at least one did, and
+/// no level is true.
 
 #include <map>
 #include <set>
@@ -23,20 +27,26 @@ class EStopLevels {
   void receive(const std::string& publisher, bool stop);
 
   /// The last message of a publisher was true.
-  bool stopped() const noexcept { return !levels_.empty(); }
+  bool stopped() const noexcept { return held_ || !levels_.empty(); }
 
-  /// There are levels that end if their publishers have left.
-  bool unsettled() const noexcept;
+  /// The topic was true when an earlier safety_monitor ended. Before the first message.
+  void hold() { held_ = true; }
 
-  /// Ends these levels where the publisher is not in `present`.
+  /// At a reset request, with the publishers that are there: ends the levels that end now. A publisher in `present` from
+  /// which no message was received is no new one any more.
   void settle(const std::vector<std::string>& present);
 
-  /// Whose last message was true, sorted.
+  /// Whose last message was true, sorted; then, of a topic that is held, who has sent nothing since.
   std::vector<std::string> publishers() const;
 
  private:
+  bool remember(const std::string& publisher);
+
   std::map<std::string, bool> levels_;  ///< that are true; the value: a first message of another said false since
-  std::set<std::string> known_;         ///< publishers of which a message was received
+  std::set<std::string> known_;         ///< publishers that were seen, by a message or by `settle`
+  std::set<std::string> heard_;         ///< publishers of which a message was received
+  bool held_ = false;
+  std::vector<std::string> silent_;  ///< of those that were there at the last `settle`, not in heard_
 };
 
 }  // namespace robot_control

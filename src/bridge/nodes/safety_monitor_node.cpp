@@ -36,6 +36,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     for (const std::string& topic : command_topics()) command_topics_.push_back(handle.resolveName(topic));
     status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
     e_stop_topic_ = handle.resolveName("e_stop");
+    if (process().e_stop_restored()) hold_e_stop();
     // A malformed message stops the robot, too: its sender may have meant a stop.
     e_stop_.connect_with_sender(
         handle,
@@ -120,12 +121,19 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     process().cycle().inbox().store(input_);
   }
 
-  /// Ends the levels of publishers that have left, where that is known. The master is not asked while the inputs are
-  /// locked: it may take its time.
+  void hold_e_stop() {
+    const std::lock_guard lock(input_mutex_);
+    levels_.hold();
+    input_.e_stop_level = 1;
+    process().cycle().inbox().store(input_);
+  }
+
+  /// Ends the levels that end with a reset request, where the publishers are known. The master is not asked while the
+  /// inputs are locked: it may take its time.
   void settle_e_stop() {
     {
       const std::lock_guard lock(input_mutex_);
-      if (!levels_.unsettled()) return;
+      if (!levels_.stopped()) return;
     }
     const auto present = publishers_known_to_reach(e_stop_topic_);
     if (!present) return;

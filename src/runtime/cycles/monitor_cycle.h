@@ -55,6 +55,9 @@ class MonitorCycle {
   /// What an earlier monitor had latched beyond what the channel still holds; before the first step.
   void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept { monitor_.restore(causes, first_cause); }
 
+  /// Before the first step: the topic `e_stop` was true when an earlier monitor ended, or may have been.
+  bool e_stop_held() const noexcept { return monitor_.e_stop_held(); }
+
   /// What was latched when this monitor started.
   std::uint64_t causes() const noexcept { return monitor_.causes(); }
 

@@ -22,6 +22,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
   cycle_.set_process(mint_number());
   const LatchRecord& found = latch_file_.found();
   if (found.causes != 0) cycle_.restore(found.causes, found.first_cause);
+  e_stop_restored_ = cycle_.e_stop_held();
   if (cycle_.causes() == 0) return;
   restored_ = "latched since " + (found.since.empty() ? "before this start" : found.since) + ": " +
               names_of(kStopCauseNames, cycle_.causes(), ", ") +

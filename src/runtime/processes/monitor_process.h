@@ -23,6 +23,9 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
   /// What was latched when this process started, since when and how to release it, in one line; empty: nothing.
   const std::string& restored() const noexcept { return restored_; }
 
+  /// When this process started, the topic `e_stop` counted as true.
+  bool e_stop_restored() const noexcept { return e_stop_restored_; }
+
   /// Why latch_file does not hold what is latched; empty: it does, or there is none. Only for the thread that polls.
   const std::string& latch_file_problem() const noexcept { return latch_file_.problem(); }
 
@@ -38,6 +41,7 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
   LatchFile latch_file_;
   MonitorCycle cycle_;
   std::string restored_;
+  bool e_stop_restored_ = false;
   std::int64_t loss_ns_;
 };
 

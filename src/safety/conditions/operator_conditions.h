@@ -27,6 +27,7 @@ class OperatorConditions {
 
   /// After a restart of the monitor: the topic e_stop counts as true until its next message.
   void hold_e_stop() noexcept { e_stop_held_ = true; }
+  bool e_stop_held() const noexcept { return e_stop_held_; }
 
   /// `driving`: the state before this cycle is DRIVE.
   void step(const MonitorInput& input, bool driving, ActiveCauses& out) noexcept;
