@@ -14,8 +14,10 @@ from robot_control.common.files import fit_for_message
 
 
 def run(main: Callable[[], object]) -> None:
-    """Calls `main`. Where the reader of the output has left, as after `| head`, the program ends as SIGPIPE ends others:
-    without a word, with 141. An output that cannot be written, and any other OSError, is one message and exit code 1.
+    """Calls `main`.
+
+    Where the reader of the output has left, as after `| head`, the program ends as SIGPIPE ends others: without a word,
+    with 141. An output that cannot be written, and any other OSError, is one message and exit code 1.
     """
     try:
         try:

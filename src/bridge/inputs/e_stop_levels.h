@@ -11,8 +11,8 @@
 /// nothing. A level is no latch: what it stopped is released by e_stop_reset alone.
 ///
 /// After a restart of safety_monitor it is not known whose level was true (`hold`). The topic then stays true until the
-/// next reset request at which every publisher that is there has sent a message since the restart, at least one did, and
-/// no level is true.
+/// next reset request at which every publisher that is there has sent a message since the restart, at least one did,
+/// and no level is true.
 
 #include <map>
 #include <set>
@@ -32,8 +32,8 @@ class EStopLevels {
   /// The topic was true when an earlier safety_monitor ended. Before the first message.
   void hold() { held_ = true; }
 
-  /// At a reset request, with the publishers that are there: ends the levels that end now. A publisher in `present` from
-  /// which no message was received is no new one any more.
+  /// At a reset request, with the publishers that are there: ends the levels that end now. A publisher in `present`
+  /// from which no message was received is no new one any more.
   void settle(const std::vector<std::string>& present);
 
   /// Whose last message was true, sorted; then, of a topic that is held, who has sent nothing since.
