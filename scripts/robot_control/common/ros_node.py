@@ -1,12 +1,15 @@
-"""The beginning of a rospy program."""
+"""The beginning of a rospy program, and its end."""
 
+import contextlib
 import sys
+from collections.abc import Iterator
 
 import rosgraph.names
 import rospy
 
 from robot_control.common.files import printable
-from robot_control.common.ros_master import living
+from robot_control.common.ros_master import living, require_master
+from robot_control.common.topic_sender import Signals, ended_by_signals
 
 
 def begin_node(name: str, *, anonymous: bool = False) -> None:
@@ -28,6 +31,15 @@ def begin_node(name: str, *, anonymous: bool = False) -> None:
         if not rospy.is_shutdown():
             raise
         sys.exit(0)
+
+
+@contextlib.contextmanager
+def running_node(name: str) -> Iterator[Signals]:
+    """A node that lives as long as the block; ends the program with a message where no ROS master answers."""
+    require_master()
+    begin_node(name)
+    with ended_by_signals() as signals:
+        yield signals
 
 
 def _resolved(name: str) -> str:

@@ -13,9 +13,8 @@ from sensor_msgs.msg import Joy
 
 from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
-from robot_control.common.ros_master import require_master
-from robot_control.common.ros_node import begin_node
-from robot_control.common.topic_sender import Signals, ended_by_signals
+from robot_control.common.ros_node import running_node
+from robot_control.common.topic_sender import Signals
 from robot_control.pad.device import PACKAGE, Device, open_device
 from robot_control.pad.law import Pad, PadParameters
 
@@ -129,10 +128,8 @@ def arguments(given: list[str]) -> argparse.Namespace:
 def main() -> None:
     """Entry point of scripts/pad.py."""
     given = arguments(rospy.myargv(sys.argv)[1:])
-    require_master()
-    begin_node("pad")
     try:
-        with ended_by_signals() as signals:
+        with running_node("pad") as signals:
             drive(given, signals)
     except ModuleNotFoundError:
         sys.exit(f"pad.py: needs the package {PACKAGE} (apt install {PACKAGE}); or --joy and a pad on another machine")

@@ -13,9 +13,8 @@ from nav_msgs.msg import Path
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message
-from robot_control.common.ros_master import require_master
-from robot_control.common.ros_node import begin_node
-from robot_control.common.topic_sender import Signals, ended_by_signals
+from robot_control.common.ros_node import running_node
+from robot_control.common.topic_sender import Signals
 from robot_control.drive.send_plan import positive
 from robot_control.path.follower import Follower, FollowParameters, State
 from robot_control.path.frames import PathFrame, Tf, located
@@ -115,10 +114,8 @@ def main() -> None:
         sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}; the shapes are {', '.join(SHAPES)}")
     except (PathError, OSError) as error:
         sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}")
-    require_master()
-    begin_node("drive_path")
     try:
-        with ended_by_signals() as signals:
+        with running_node("drive_path") as signals:
             reason = drive(points, given, signals)
     except PathError as error:
         sys.exit(f"drive_path.py: {error}")

@@ -13,9 +13,8 @@ import rospy
 from nav_msgs.msg import Path
 
 from robot_control.common.command_topic import CommandTopic
-from robot_control.common.ros_master import require_master
-from robot_control.common.ros_node import begin_node
-from robot_control.common.topic_sender import Signals, ended_by_signals
+from robot_control.common.ros_node import running_node
+from robot_control.common.topic_sender import Signals
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, FollowPathResult
 from robot_control.path.follower import Follower, FollowParameters, State
 from robot_control.path.frames import Tf, located
@@ -135,9 +134,7 @@ def main() -> None:
         "of a goal. Commands go to path_vel where the robot has a list of command sources, else to cmd_vel_stamped. "
         "Services: follow_path/pause, follow_path/resume.",
     ).parse_args(rospy.myargv(sys.argv)[1:])
-    require_master()
-    begin_node(NAME)
-    with ended_by_signals() as signals:
+    with running_node(NAME) as signals:
         server = Server(signals)
         while signals.going_on():
             time.sleep(0.05)

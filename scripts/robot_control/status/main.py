@@ -11,9 +11,7 @@ import xml.etree.ElementTree as ET
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from robot_control.common.ros_master import require_master
-from robot_control.common.ros_node import begin_node
-from robot_control.common.topic_sender import ended_by_signals
+from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
 from robot_control.msg import DriveState, RobotStatus, SafetyStatus
 from robot_control.status.report import Heard, changed, status_of
@@ -87,9 +85,7 @@ def main() -> None:
         description="Publishes the robot's state for a host on robot_status (robot_control/RobotStatus): latched, once "
         "per second and on every change. sim.launch and backend.launch start it.",
     ).parse_args(rospy.myargv(sys.argv)[1:])
-    require_master()
-    begin_node("robot_status")
-    with ended_by_signals() as signals:
+    with running_node("robot_status") as signals:
         status = Status()
         while signals.going_on():
             status.look(time.monotonic())

@@ -10,9 +10,7 @@ from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from visualization_msgs.msg import Marker, MarkerArray
 
-from robot_control.common.ros_master import require_master
-from robot_control.common.ros_node import begin_node
-from robot_control.common.topic_sender import ended_by_signals
+from robot_control.common.ros_node import running_node
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.view.scene import Trail, Wheel, force_arrows, limits_of, status_text
 from robot_control.view.wheels import running_wheels
@@ -109,9 +107,7 @@ def main() -> None:
         description="Publishes for RViz, as view.launch starts it: wheel forces, safety state and reasons as markers "
         "on view/markers, the path driven on view/path_driven.",
     ).parse_args(rospy.myargv(sys.argv)[1:])
-    require_master()
-    begin_node("view_markers")
-    with ended_by_signals() as signals:
+    with running_node("view_markers") as signals:
         view = View()
         while signals.going_on():
             view.draw()
