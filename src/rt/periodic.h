@@ -33,14 +33,14 @@ class Periodic {
 
   /// The tick begins. Returns how many periods were missed before it: 0 whenever time slips.
   std::int64_t begin(std::int64_t now_ns) noexcept {
-    late_ns_ = now_ns > deadline_ns_ ? now_ns - deadline_ns_ : 0;
-    if (late_ns_ < period_ns_) return 0;
+    const std::int64_t late_ns = now_ns > deadline_ns_ ? now_ns - deadline_ns_ : 0;
+    if (late_ns < period_ns_) return 0;
     if (when_late_ == WhenLate::kSlip) {
-      slipped_ns_ += late_ns_;
+      slipped_ns_ += late_ns;
       deadline_ns_ = now_ns;
       return 0;
     }
-    const std::int64_t periods = late_ns_ / period_ns_;
+    const std::int64_t periods = late_ns / period_ns_;
     missed_ += periods;
     deadline_ns_ += periods * period_ns_;
     return periods;
@@ -54,7 +54,6 @@ class Periodic {
     return false;
   }
 
-  std::int64_t late_ns() const noexcept { return late_ns_; }        ///< of the last `begin`
   std::int64_t slipped_ns() const noexcept { return slipped_ns_; }  ///< in all
   std::int64_t missed() const noexcept { return missed_; }          ///< periods, in all
   std::uint64_t overruns() const noexcept { return overruns_; }
@@ -63,7 +62,6 @@ class Periodic {
   std::int64_t deadline_ns_;
   std::int64_t period_ns_;
   WhenLate when_late_;
-  std::int64_t late_ns_ = 0;
   std::int64_t slipped_ns_ = 0;
   std::int64_t missed_ = 0;
   std::uint64_t overruns_ = 0;

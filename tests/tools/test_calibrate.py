@@ -13,7 +13,8 @@ from robot_control.calibrate.evaluation import (
     space,
     wheels_of,
 )
-from robot_control.calibrate.law import NotCalibratedError, Square, Straight, Truth, replay, square_path
+from robot_control.calibrate.law import NotCalibratedError, Square, Straight, Truth, replay
+from square_path import square_path
 
 TRUE = Truth(scale=1.008, ratio=1.004 / 1.012, base=1.02)
 

@@ -16,10 +16,10 @@ from robot_control.calibrate.law import (
     replay,
     return_errors,
     sides,
-    square_path,
     steps,
     umbmark,
 )
+from square_path import square_path
 
 WHEELS = Wheels(0.5)
 TRUE = Truth(scale=1.008, ratio=1.004 / 1.012, base=1.02)  # left +1.2 %, right +0.4 %, base +2 %

@@ -219,17 +219,3 @@ def umbmark(clockwise: FloatArray, counter_clockwise: FloatArray, side: float, w
     radius = math.inf if beta == 0 else side / 2 / math.sin(beta / 2)
     ratio = 1.0 if math.isinf(radius) else (radius + wheel_base / 2) / (radius - wheel_base / 2)
     return Umbmark(alpha, beta, ratio, (math.pi / 2) / (math.pi / 2 - alpha))
-
-
-def square_path(side: float, *, clockwise: bool, per_metre: int = 100) -> FloatArray:
-    """(n, 3): the ideal path, corners turned on the spot, first side along x."""
-    sign = -1 if clockwise else 1
-    poses = [(0.0, 0.0, 0.0)]
-    for leg in range(4):
-        heading = sign * leg * math.pi / 2
-        x, y, _ = poses[-1]
-        parts = np.linspace(0, side, max(2, round(side * per_metre)))[1:]
-        poses += [(x + part * math.cos(heading), y + part * math.sin(heading), heading) for part in parts]
-        x, y, _ = poses[-1]
-        poses += [(x, y, heading + part) for part in np.linspace(0, sign * math.pi / 2, 50)[1:]]
-    return np.array(poses)

@@ -76,7 +76,6 @@ class Release:
 
     def __init__(self, now: float) -> None:
         self._start = now
-        self._received_at = now
         self._phase = Phase.WAITING
         self._provisional = False
         self._silence_logged = False

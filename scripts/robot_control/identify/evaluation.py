@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,9 +20,6 @@ from robot_control.identify.tuning_proposal import base_of, feed_forward, propos
 
 RIM_RESERVE = 0.9
 """Of a joint's velocity limit: near it the gate takes torque away"""
-
-Values = Sequence[tuple[str, str]]
-"""What lies over a parameter file: dotted path and YAML text"""
 
 
 @dataclass(frozen=True)
