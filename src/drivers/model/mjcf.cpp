@@ -1,6 +1,7 @@
 #include "drivers/model/mjcf.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "drivers/model/mjcf_shapes.h"
 #include "robot/bodies/ground_points.h"
@@ -43,6 +44,16 @@ std::string attribute(const std::string& name, double value) {
 
 Eigen::Vector3d eigen(const Vector3& v) {
   return {v[0], v[1], v[2]};
+}
+
+// Turns the z axis to `axis`, of any length. Eigen's FromTwoVectors has a singular value decomposition in it,
+// which is most of the time that this file is compiled.
+Eigen::Quaterniond from_z(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d to = axis.normalized();
+  const double s = std::sqrt(2 * (1 + to.z()));  // twice the cosine of half the angle
+  if (s < 1e-6) return {0, 1, 0, 0};
+  const Eigen::Vector3d turn = Eigen::Vector3d::UnitZ().cross(to) * (1 / s);
+  return {s / 2, turn.x(), turn.y(), turn.z()};
 }
 
 class Writer {
@@ -150,7 +161,7 @@ class Writer {
     if (const WheelModel* wheel = rolling_body(model_, body)) {
       Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
       frame.translation() = body.in_root.inverse() * eigen(wheel->centre_base);
-      frame.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), body.joint.axis).toRotationMatrix();
+      frame.linear() = from_z(body.joint.axis).toRotationMatrix();
       bodies_ += mjcf_rolling_shape(mjcf_wheel_name(number_of(*wheel)), frame, *wheel, parameters_);
       return;
     }
