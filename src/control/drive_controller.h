@@ -15,12 +15,12 @@
 ///
 /// While this controller is not in control of the wheels (it brakes, or the gate reports that tick k−1 was braked),
 /// limiter and wheel loops are set to the measured speed in every cycle, so that nothing jumps at release: the first
-/// torque is that of an unaccelerated motion, and the ramp starts once the gate has passed it; of a robot whose treads
-/// scrub, and whose wheels stand, from rest. While the wheels stand, the integrators are preloaded with the load that
-/// the brake holds: the mean of the measured effort since the wheels stand and this controller is not in control, of
-/// the last kStandstillTime about. A robot that was braked hard rocks on its brakes, and then one sample of effort is
-/// no load: released with it, the robot moves by itself. While the wheels turn, the effort of the brake is not a load,
-/// and the integrators keep their values.
+/// torque is that of an unaccelerated motion, and the ramp starts once the gate has passed it. A robot whose treads
+/// scrub and whose wheels stand starts from rest. While the wheels stand, the integrators are preloaded with the load
+/// that the brake holds: the mean of the measured effort over about the last kStandstillTime in which the wheels stood
+/// and this controller was not in control. One sample would not do: a robot that was braked hard rocks on its brakes,
+/// and with a wrong preload it moves by itself at release. While the wheels turn, the effort of the brake is not a
+/// load, and the integrators keep their values.
 ///
 /// Saturation keeps the curvature.
 /// Speed: the requested twist is scaled until no wheel exceeds the part of its velocity limit that kinematics.h allows.

@@ -8,13 +8,13 @@
 /// counted and not latched.
 ///
 /// Conditions in tick k. `cycle`, `expiry` … are fields of the frame; frames of another run than the driver's count as
-/// missing. Lives are 4 cycles each (kPermitLife in permit.h, kCommandLife in command_frame.h).
+/// missing. Permits and commands are valid for 4 cycles (kPermitLife in permit.h, kCommandLife in command_frame.h).
 ///   permit   cycle < k  ∧  k ≤ min(expiry, cycle + kPermitLife), and no newer permit was found in an earlier tick: a
 ///            revoked permit does not become valid again
 ///   action   kDrive; or kRamp while k ≤ ramp_until, and for at most GateParameters::longest_ramp cycles in a row
 ///   command  k − kCommandLife ≤ cycle ≤ k − 1; one of cycle k − 1 is on time, an older one is *held*
-///   numbers  every field of every joint finite, every mode a JointMode, joint_count that of the robot. Of a joint that
-///            is to move and has a speed limit or end stops, the position sample, too
+///   numbers  every field of every joint is finite, every mode is a JointMode, joint_count is that of the robot. The
+///            position sample of a joint that is to move and has a speed limit or end stops is finite, too
 ///   clamps   joint_clamp.h, in this order: |effort| ≤ limit; gains ≥ 0; |Δeffort| ≤ effort_rate·Δt; speed limit; end
 ///            stops
 ///

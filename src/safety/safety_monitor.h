@@ -72,8 +72,7 @@ namespace robot_control {
 class SafetyMonitor {
  public:
   /// `period` s. A condition without a limit is not evaluated: call derived_limits (derived_limits.h) first.
-  /// Throws std::invalid_argument: what
-  /// parameter_check.h refuses.
+  /// Throws std::invalid_argument for parameters that parameter_check.h refuses.
   SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
   /// A new run: counters and "was received" flags restart; latched causes stay. `operator_input` is the current inbox:

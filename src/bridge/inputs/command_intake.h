@@ -1,5 +1,5 @@
 #pragma once
-/// What becomes of the commands that arrive: the newest one (CommandInput), or that of the winner among several sources
+/// Selects the command for the controller: the newest one (CommandInput), or that of the winner among several sources
 /// (CommandMux). Pure; time is that of the loop's frames.
 
 #include <cstdint>
