@@ -19,8 +19,8 @@ class CommandDesk:
         self._stamped = rospy.Publisher(robot.name("cmd_vel_stamped"), TwistStamped, queue_size=1, tcp_nodelay=True)
         self._last_send = 0.0
         self._subscribers = [
-            rospy.Subscriber(robot.name("drive_state"), DriveState, self._hear_drive),
-            rospy.Subscriber("/diagnostics", DiagnosticArray, self._hear_diagnostics),
+            rospy.Subscriber(robot.name("drive_state"), DriveState, self._receive_drive),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
         ]
 
     def send(self, linear: float, angular: float, stamp: rospy.Time) -> None:
@@ -45,10 +45,10 @@ class CommandDesk:
         """Of drive_state."""
         return set() if self.drive is None else set(self.drive.reasons)
 
-    def _hear_drive(self, message: DriveState) -> None:
+    def _receive_drive(self, message: DriveState) -> None:
         self.drive = message
 
-    def _hear_diagnostics(self, message: DiagnosticArray) -> None:
+    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
             if status.name == CONTROLLER:
                 self.message = status.message

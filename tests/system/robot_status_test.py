@@ -13,16 +13,16 @@ from system_support import ESTIMATOR, STALL_CAUSES, Program, Robot, init_test_no
 class RobotStatusTest(unittest.TestCase):
     def setUp(self) -> None:
         init_test_node("robot_status_test")
-        self.heard: list[RobotStatus] = []
+        self.reports: list[RobotStatus] = []
         self.robot = Robot()
         self.addCleanup(self.robot.end)
         self.status = Program("robot_status.py")
         self.addCleanup(self.status.end)
-        rospy.Subscriber("robot_status", RobotStatus, self.heard.append)
+        rospy.Subscriber("robot_status", RobotStatus, self.reports.append)
 
     def await_mode(self, mode: str) -> RobotStatus:
-        wait_for(f"mode {mode}; {self.status.output}", lambda: bool(self.heard) and self.heard[-1].mode == mode)
-        return self.heard[-1]
+        wait_for(f"mode {mode}; {self.status.output}", lambda: bool(self.reports) and self.reports[-1].mode == mode)
+        return self.reports[-1]
 
     def test_from_offline_to_driving_to_stopped_to_a_lost_node(self) -> None:
         offline = self.await_mode("offline")
@@ -32,15 +32,15 @@ class RobotStatusTest(unittest.TestCase):
 
         self.robot.start()
         self.robot.await_ready()
-        wait_for("health", lambda: self.heard[-1].mode == "idle" and self.heard[-1].health == RobotStatus.OK)
-        self.assertGreater(self.heard[-1].odometry_confidence, 0.5)
-        began, count = time.monotonic(), len(self.heard)
-        wait_for("five messages of an unchanged robot", lambda: len(self.heard) >= count + 5)
+        wait_for("health", lambda: self.reports[-1].mode == "idle" and self.reports[-1].health == RobotStatus.OK)
+        self.assertGreater(self.reports[-1].odometry_confidence, 0.5)
+        began, count = time.monotonic(), len(self.reports)
+        wait_for("five messages of an unchanged robot", lambda: len(self.reports) >= count + 5)
         self.assertGreater(time.monotonic() - began, 3.0)
 
         self.robot.drive_until("0.5 m/s", self.robot.driving)
-        self.robot.drive_until("who commands", lambda: self.heard[-1].mode == "automatic")
-        self.assertEqual(self.heard[-1].senders, [rospy.get_name()])
+        self.robot.drive_until("who commands", lambda: self.reports[-1].mode == "automatic")
+        self.assertEqual(self.reports[-1].senders, [rospy.get_name()])
 
         self.robot.call("e_stop_trigger")
         wait_for("the stop", lambda: self.robot.state == SafetyStatus.STOPPED)
@@ -53,7 +53,7 @@ class RobotStatusTest(unittest.TestCase):
         wait_for("the latched message", lambda: bool(late))
 
         self.robot.nodes[ESTIMATOR].kill()
-        wait_for("the loss", lambda: "state_estimator is silent" in self.heard[-1].problems)
+        wait_for("the loss", lambda: "state_estimator is silent" in self.reports[-1].problems)
         self.assertTrue(self.status.running)
 
 

@@ -187,10 +187,10 @@ class Robot:
         self.odom_count = 0
         self.joints_count = 0
         self._subscribers = [
-            rospy.Subscriber(self.name("odom"), Odometry, self._hear_odom),
-            rospy.Subscriber(self.name("joint_states"), JointState, self._hear_joints),
-            rospy.Subscriber(self.name("joint_commands"), Float64MultiArray, self._hear_wheels),
-            rospy.Subscriber(self.name("safety_status"), SafetyStatus, self._hear_status),
+            rospy.Subscriber(self.name("odom"), Odometry, self._receive_odom),
+            rospy.Subscriber(self.name("joint_states"), JointState, self._receive_joints),
+            rospy.Subscriber(self.name("joint_commands"), Float64MultiArray, self._receive_wheels),
+            rospy.Subscriber(self.name("safety_status"), SafetyStatus, self._receive_status),
         ]
         self._cmd_vel = rospy.Publisher(self.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
         self._e_stop = rospy.Publisher(self.name("e_stop"), Bool, queue_size=1, tcp_nodelay=True)
@@ -302,18 +302,18 @@ class Robot:
     def driving(self) -> bool:
         return self.speed > 0.4
 
-    def _hear_odom(self, message: Odometry) -> None:
+    def _receive_odom(self, message: Odometry) -> None:
         self.odom = message
         self.odom_count += 1
 
-    def _hear_joints(self, message: JointState) -> None:
+    def _receive_joints(self, message: JointState) -> None:
         self.joints = message
         self.joints_count += 1
 
-    def _hear_wheels(self, message: Float64MultiArray) -> None:
+    def _receive_wheels(self, message: Float64MultiArray) -> None:
         self.wheels = tuple(message.data)
 
-    def _hear_status(self, message: SafetyStatus) -> None:
+    def _receive_status(self, message: SafetyStatus) -> None:
         self.status = message
 
 

@@ -1,4 +1,4 @@
-"""robot_status and state_publisher.py: from what was heard to what is said, without ROS."""
+"""robot_status and state_publisher.py: from the nodes' reports to one status, without ROS."""
 
 import math
 import xml.etree.ElementTree as ET
@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from robot_control.msg import RobotStatus, SafetyStatus
-from robot_control.status.report import REQUIRED, Heard, changed, status_of
+from robot_control.status.report import REQUIRED, Reports, changed, status_of
 from robot_control.view.state_publisher import without_root_inertia
 
 
@@ -18,24 +18,24 @@ ESTIMATOR = {"flags": "valid standstill", "degraded": ""}
 ESTIMATOR |= {f"confidence_{name}": "1" for name in ("left_encoder", "right_encoder", "gyro", "lateral_contact")}
 
 
-def heard(state="READY", commander="", senders="", **changes):
-    """A healthy robot; `changes`: reports of nodes, None: silent."""
-    reports = {name: report() for name in (*REQUIRED, "mujoco_plant")}
-    reports["state_estimator"] = report(**ESTIMATOR)
-    reports["diff_drive_controller"] = report(senders=senders)
-    reports = {name: value for name, value in (reports | changes).items() if value is not None}
+def reports(state="READY", commander="", senders="", **changes):
+    """A healthy robot; `changes`: diagnostics of nodes, None: silent."""
+    diagnostics = {name: report() for name in (*REQUIRED, "mujoco_plant")}
+    diagnostics["state_estimator"] = report(**ESTIMATOR)
+    diagnostics["diff_drive_controller"] = report(senders=senders)
+    diagnostics = {name: value for name, value in (diagnostics | changes).items() if value is not None}
     safety = SafetyStatus(state_name=state) if state else None
-    return Heard(safety, reports, commander)
+    return Reports(safety, diagnostics, commander)
 
 
 def test_a_healthy_robot_without_commands_is_idle_and_ok():
-    status = status_of(heard())
+    status = status_of(reports())
     assert (status.mode, status.health, status.problems) == ("idle", RobotStatus.OK, [])
     assert (status.safety_state, status.odometry_confidence, status.odometry_degraded) == ("READY", 1.0, False)
 
 
-def test_nothing_heard_is_offline_with_the_names_of_who_is_silent():
-    status = status_of(Heard())
+def test_no_report_is_offline_with_the_names_of_the_silent_nodes():
+    status = status_of(Reports())
     assert (status.mode, status.health) == ("offline", RobotStatus.ERROR)
     assert status.problems == [f"{name} is silent" for name in REQUIRED]
     assert math.isnan(status.odometry_confidence)
@@ -45,7 +45,7 @@ def test_nothing_heard_is_offline_with_the_names_of_who_is_silent():
     ("state", "mode"), [("INIT", "starting"), ("STOPPING", "stopped"), ("STOPPED", "stopped"), ("FAULT", "stopped")]
 )
 def test_who_may_not_drive_is_starting_or_stopped_whoever_commands(state, mode):
-    assert status_of(heard(state, commander="key_vel", senders="/teleop")).mode == mode
+    assert status_of(reports(state, commander="key_vel", senders="/teleop")).mode == mode
 
 
 @pytest.mark.parametrize(
@@ -60,31 +60,33 @@ def test_who_may_not_drive_is_starting_or_stopped_whoever_commands(state, mode):
     ],
 )
 def test_who_commands_decides_between_manual_and_automatic(commander, senders, mode):
-    status = status_of(heard("DRIVE", commander, senders))
+    status = status_of(reports("DRIVE", commander, senders))
     assert (status.mode, status.commander, status.senders) == (mode, commander, senders.split(", "))
 
 
 def test_health_is_the_worst_report_and_every_bad_one_is_named():
     status = status_of(
-        heard(
+        reports(
             state_estimator=report(DiagnosticStatus.WARN, "slip", **ESTIMATOR),
             mujoco_plant=report(DiagnosticStatus.ERROR, "no torque"),
         )
     )
     assert status.health == RobotStatus.ERROR
     assert status.problems == ["mujoco_plant: no torque", "state_estimator: slip"]
-    assert status_of(heard(mujoco_plant=report(DiagnosticStatus.WARN, "hot"))).health == RobotStatus.WARN
-    assert status_of(heard(state_estimator=None)).health == RobotStatus.ERROR
+    assert status_of(reports(mujoco_plant=report(DiagnosticStatus.WARN, "hot"))).health == RobotStatus.WARN
+    assert status_of(reports(state_estimator=None)).health == RobotStatus.ERROR
 
 
 def test_the_confidence_is_that_of_the_worst_sensor_and_zero_without_a_valid_pose():
-    assert status_of(heard(state_estimator=report(**ESTIMATOR | {"confidence_gyro": "0.4"}))).odometry_confidence == 0.4
-    assert status_of(heard(state_estimator=report(**ESTIMATOR | {"flags": ""}))).odometry_confidence == 0.0
-    assert status_of(heard(state_estimator=report(**ESTIMATOR | {"degraded": "slip"}))).odometry_degraded
+    assert (
+        status_of(reports(state_estimator=report(**ESTIMATOR | {"confidence_gyro": "0.4"}))).odometry_confidence == 0.4
+    )
+    assert status_of(reports(state_estimator=report(**ESTIMATOR | {"flags": ""}))).odometry_confidence == 0.0
+    assert status_of(reports(state_estimator=report(**ESTIMATOR | {"degraded": "slip"}))).odometry_degraded
 
 
 def test_numbers_that_always_change_are_no_change_and_a_cause_is_one():
-    before, after = status_of(heard()), status_of(heard())
+    before, after = status_of(reports()), status_of(reports())
     after.uptime, after.odometry_confidence = 3.0, 0.9
     assert not changed(after, before)
     after.causes = ["e_stop"]

@@ -1,4 +1,4 @@
-"""calibrate.py's ROS side: asks, drives, listens to the wheels, and stops whenever something is not as planned."""
+"""calibrate.py's ROS side: asks, drives, follows the wheels, and stops whenever something is not as planned."""
 
 from __future__ import annotations
 
@@ -259,18 +259,18 @@ def _measured(
     settings: Settings, options: Options, signals: Signals
 ) -> tuple[dict[str, object], list[Straight], list[Square]]:
     described = describe_robot(settings.path, settings.values)
-    robot = CalibratedRobot(speaks=not options.manual)
+    robot = CalibratedRobot(sends=not options.manual)
     all_running: Callable[[], bool] = lambda: (  # noqa: E731
         robot.received > 0
         and robot.look().pose is not None
         and bool(robot.look().state)
-        and (options.manual or robot.listened_to())
+        and (options.manual or robot.has_receiver())
     )
     await_all(all_running, signals)
     senders = () if options.manual else other_senders(master_state())
     if robot.received == 0:
         raise RefusedError(f"no wheel_odom: does {ESTIMATOR} run? Start the robot first")
-    if not options.manual and not robot.listened_to():
+    if not options.manual and not robot.has_receiver():
         raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does diff_drive_controller run?")
     questions = Questions(signals.going_on)
     wizard = Wizard(robot, options, wheels_of(described), signals, questions, senders)

@@ -13,16 +13,16 @@ from robot_control.identify.robot import RunningRobot
 
 
 class CalibratedRobot(RunningRobot):
-    """Listens on wheel_odom, too."""
+    """Receives wheel_odom, too."""
 
-    def __init__(self, *, speaks: bool = True) -> None:
-        super().__init__(speaks=speaks)
+    def __init__(self, *, sends: bool = True) -> None:
+        super().__init__(sends=sends)
         self.received = 0  # messages on wheel_odom
         self._path: list[tuple[float, float, float]] = []
         self._truth: Pose | None = None
         self._subscribers += [
-            rospy.Subscriber("wheel_odom", Odometry, self._hear_wheels, queue_size=100, tcp_nodelay=True),
-            rospy.Subscriber("ground_truth/odom", Odometry, self._hear_truth, queue_size=1, tcp_nodelay=True),
+            rospy.Subscriber("wheel_odom", Odometry, self._receive_wheels, queue_size=100, tcp_nodelay=True),
+            rospy.Subscriber("ground_truth/odom", Odometry, self._receive_truth, queue_size=1, tcp_nodelay=True),
         ]
 
     def begin(self) -> None:
@@ -43,12 +43,12 @@ class CalibratedRobot(RunningRobot):
         """Of the simulation; None: it is not published."""
         return self._truth
 
-    def _hear_wheels(self, message: Odometry) -> None:
+    def _receive_wheels(self, message: Odometry) -> None:
         pose = _pose(message)
         self._path.append((pose.x, pose.y, pose.yaw))
         self.received += 1
 
-    def _hear_truth(self, message: Odometry) -> None:
+    def _receive_truth(self, message: Odometry) -> None:
         self._truth = _pose(message)
 
 

@@ -105,9 +105,9 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
 
 def _others(robot: RunningRobot, signals: Signals) -> tuple[tuple[str, ...], list[str]]:
     """Other nodes that may send commands, and the telemetry that runs; waits for the first report of the robot."""
-    await_all(lambda: robot.listened_to() and robot.look().pose is not None and bool(robot.look().state), signals)
+    await_all(lambda: robot.has_receiver() and robot.look().pose is not None and bool(robot.look().state), signals)
     state = master_state()
-    if not robot.listened_to():
+    if not robot.has_receiver():
         raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
     return other_senders(state), sorted(nodes_of(state) & {rospy.resolve_name("telemetry")})
 

@@ -19,21 +19,21 @@ NEVER = -math.inf
 
 
 class RunningRobot:
-    """Listens to one robot; speaks to it on cmd_vel, a zero when the node is shut down."""
+    """Receives the reports of one robot; sends commands on cmd_vel, a zero when the node is shut down."""
 
-    def __init__(self, *, speaks: bool = True) -> None:
-        """False: it only listens, and is no sender on cmd_vel."""
+    def __init__(self, *, sends: bool = True) -> None:
+        """`sends` False: it only receives, and is no sender on cmd_vel."""
         self.logs: dict[str, RunningTelemetry] = {}
         self._odometry: Odometry | None = None
         self._odometry_at = NEVER
         self._status: SafetyStatus | None = None
         self._status_at = NEVER
-        self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if speaks else None
+        self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if sends else None
         self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
         self._subscribers = [
-            rospy.Subscriber("odom", Odometry, self._hear_odometry, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber("safety_status", SafetyStatus, self._hear_status),
-            rospy.Subscriber("/diagnostics", DiagnosticArray, self._hear_diagnostics),
+            rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True),
+            rospy.Subscriber("safety_status", SafetyStatus, self._receive_status),
+            rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
         ]
 
     def send(self, linear: float, angular: float) -> None:
@@ -44,8 +44,8 @@ class RunningRobot:
         message.linear.x, message.angular.z = linear, angular
         self._sender.send(message)
 
-    def listened_to(self) -> bool:
-        """A controller is there for what is sent."""
+    def has_receiver(self) -> bool:
+        """A controller receives what is sent."""
         return self._publisher is not None and int(self._publisher.get_num_connections()) > 0
 
     def look(self, senders: tuple[str, ...] = ()) -> Look:
@@ -71,13 +71,13 @@ class RunningRobot:
             senders=senders,
         )
 
-    def _hear_odometry(self, message: Odometry) -> None:
+    def _receive_odometry(self, message: Odometry) -> None:
         self._odometry, self._odometry_at = message, time.monotonic()
 
-    def _hear_status(self, message: SafetyStatus) -> None:
+    def _receive_status(self, message: SafetyStatus) -> None:
         self._status, self._status_at = message, time.monotonic()
 
-    def _hear_diagnostics(self, message: DiagnosticArray) -> None:
+    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
             values = {pair.key: pair.value for pair in status.values}
             path = values.get("log") or values.get("bag")

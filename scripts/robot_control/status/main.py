@@ -14,7 +14,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
 from robot_control.msg import DriveState, RobotStatus, SafetyStatus
-from robot_control.status.report import Heard, changed, status_of
+from robot_control.status.report import Reports, changed, status_of
 from robot_control.why.diagnosis import SILENCE
 from robot_control.why.facts import below
 
@@ -43,7 +43,7 @@ class Status:
 
     def look(self, now: float) -> None:
         """Publishes where it is due."""
-        status = status_of(self._heard(now))
+        status = status_of(self._reports_of_now(now))
         status.software_version = self._version
         status.uptime = now - self._began
         if now - self._published_at < PERIOD and not changed(status, self._published):
@@ -52,10 +52,10 @@ class Status:
         self._published, self._published_at = status, now
         self._publisher.publish(status)
 
-    def _heard(self, now: float) -> Heard:
-        return Heard(
+    def _reports_of_now(self, now: float) -> Reports:
+        return Reports(
             safety=self._safety if now - self._safety_at < SILENCE else None,
-            reports={name: report for name, (at, report) in dict(self._reports).items() if now - at < SILENCE},
+            diagnostics={name: report for name, (at, report) in dict(self._reports).items() if now - at < SILENCE},
             commander=self._commander() if now - self._drive_at < SILENCE else "",
         )
 

@@ -20,33 +20,33 @@ ODOMETRY_SENSORS = ("left_encoder", "right_encoder", "gyro")
 
 
 @dataclass(frozen=True)
-class Heard:
-    """What was said and is not too old to count."""
+class Reports:
+    """The last report of each node, where it is not too old to count."""
 
     safety: SafetyStatus | None = None
-    reports: Mapping[str, DiagnosticStatus] = field(default_factory=dict)  # by node, below the namespace
+    diagnostics: Mapping[str, DiagnosticStatus] = field(default_factory=dict)  # by node, below the namespace
     commander: str = ""  # of drive_state: where there is a list of command sources
 
     def value(self, node: str, key: str) -> str:
         """Of a node's report; empty: it does not say."""
-        report = self.reports.get(node)
+        report = self.diagnostics.get(node)
         return next((pair.value for pair in report.values if pair.key == key), "") if report is not None else ""
 
 
-def status_of(heard: Heard) -> RobotStatus:
+def status_of(reports: Reports) -> RobotStatus:
     """All but stamp, version and uptime."""
     status = RobotStatus()
-    senders = heard.value("diff_drive_controller", "senders")
+    senders = reports.value("diff_drive_controller", "senders")
     status.senders = senders.split(", ") if senders else []
-    status.commander = heard.commander
-    status.health, status.problems = _health(heard)
-    if heard.safety is not None:
-        status.safety_state = heard.safety.state_name
-        status.causes, status.sentences = heard.safety.causes, heard.safety.sentences
-        status.remedies, status.warnings = heard.safety.remedies, heard.safety.warning_sentences
+    status.commander = reports.commander
+    status.health, status.problems = _health(reports)
+    if reports.safety is not None:
+        status.safety_state = reports.safety.state_name
+        status.causes, status.sentences = reports.safety.causes, reports.safety.sentences
+        status.remedies, status.warnings = reports.safety.remedies, reports.safety.warning_sentences
     status.mode = _mode(status)
-    status.odometry_confidence = _confidence(heard)
-    status.odometry_degraded = bool(heard.value("state_estimator", "degraded"))
+    status.odometry_confidence = _confidence(reports)
+    status.odometry_degraded = bool(reports.value("state_estimator", "degraded"))
     return status
 
 
@@ -65,26 +65,26 @@ def _mode(status: RobotStatus) -> str:
     return "manual" if all(name.startswith(MANUAL_NODES) for name in names) else "automatic"
 
 
-def _health(heard: Heard) -> tuple[int, list[str]]:
+def _health(reports: Reports) -> tuple[int, list[str]]:
     levels, problems = [RobotStatus.OK], []
     for node in REQUIRED:
-        if node not in heard.reports:
+        if node not in reports.diagnostics:
             levels.append(RobotStatus.ERROR)
             problems.append(f"{node} is silent")
-    for node, report in sorted(heard.reports.items()):
+    for node, report in sorted(reports.diagnostics.items()):
         if report.level != DiagnosticStatus.OK:
             levels.append(RobotStatus.WARN if report.level == DiagnosticStatus.WARN else RobotStatus.ERROR)
             problems.append(f"{node}: {report.message}")
     return max(levels), problems
 
 
-def _confidence(heard: Heard) -> float:
-    flags = heard.value("state_estimator", "flags")
-    if "state_estimator" not in heard.reports:
+def _confidence(reports: Reports) -> float:
+    flags = reports.value("state_estimator", "flags")
+    if "state_estimator" not in reports.diagnostics:
         return math.nan
     if "valid" not in flags.split():
         return 0.0
-    return min(float(heard.value("state_estimator", f"confidence_{sensor}") or "nan") for sensor in ODOMETRY_SENSORS)
+    return min(float(reports.value("state_estimator", f"confidence_{sensor}") or "nan") for sensor in ODOMETRY_SENSORS)
 
 
 def changed(new: RobotStatus, old: RobotStatus) -> bool:
