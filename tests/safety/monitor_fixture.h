@@ -94,7 +94,7 @@ class MonitorTest : public testing::Test {
     const std::uint64_t cycle = sensors_.head.cycle;
     for (std::size_t i = 0; i < kWheels; ++i) {
       angle_[i] += speed_[i] * static_cast<double>(elapsed) * kPeriod;
-      sensors_.joints[i].position = kQuantum * std::floor(angle_[i] / kQuantum);
+      sensors_.joints[i].position = quantum_ * std::floor(angle_[i] / quantum_);
       sensors_.joints[i].velocity = speed_[i];
     }
     if (noisy_gyro_) sensors_.imu.angular_velocity[0] = cycle % 2 == 0 ? 1e-4 : -1e-4;
@@ -176,6 +176,7 @@ class MonitorTest : public testing::Test {
   MonitorInput input_;
   SafetyMonitor monitor_{parameters(), robot(), kPeriod};
   Permit permit_;
+  double quantum_ = kQuantum;  ///< rad, of the encoders
   bool begun_ = false;
   bool noisy_gyro_ = true;
   bool fresh_state_ = true;              ///< the command descends from the state of its own cycle

@@ -73,6 +73,42 @@ TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverS
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
+/// 64 counts a turn, one in 0.49 s at 0.2 rad/s. The motors push all the time, as inside a skid steer's curve.
+class CoarseEncoderTest : public WheelFollowingTest {
+ protected:
+  static constexpr double kSlow = 0.2;            // rad/s
+  static constexpr double kCount = 64 * kQuantum;  // rad
+
+  CoarseEncoderTest() {
+    ask_for(0);
+    turn_wheels(0);
+    new_run();
+    quantum_ = kCount;
+    steps(kStart);
+    drive();
+    steps(100);
+    target(kSlow);
+    turn_wheels(kSlow);
+    for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = 0.6 * robot().joints[i].effort_limit;
+  }
+};
+
+TEST_F(CoarseEncoderTest, AWheelThatTurnsFromCountToCountIsNotStalled) {
+  steps(20000);
+  EXPECT_EQ(permit_.causes, 0u);
+}
+
+// The next count may be a whole one away, and the last one leaves the window late; then kStall, with a quantum, at kPushed.
+TEST_F(CoarseEncoderTest, AWheelThatStandsIsStalledOnceItsCountIsOverdue) {
+  const double owed = kCount / kSlow, missed = (kStall + kCount) / WheelFollowing::kPushed;
+  steps(static_cast<std::uint64_t>(owed / kPeriod));
+  turn_wheels(0);
+  steps(static_cast<std::uint64_t>(missed / kPeriod) - 1);
+  EXPECT_EQ(permit_.causes, 0u);
+  steps(static_cast<std::uint64_t>((owed + kSpeedWindow) / kPeriod) + 1);
+  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
+}
+
 // At 30 rad/s the 0.3 rad of kStall take 10 cycles; corrupt_frame, the true cause, takes 3.
 TEST_F(WheelFollowingTest, AnAbsurdTargetDoesNotMakeAStallOfOneCycle) {
   RobotModel limited = robot();

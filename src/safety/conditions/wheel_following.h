@@ -8,7 +8,9 @@
 ///                    |ω| ≥ kTurns·|q̇*|, or since it gained kProgress + δ towards its target. Limit: rad + 1 quantum,
 ///                    because a slowly turning wheel shows a count per quantum. w = kPushed while the motor torque τ,
 ///                    and τ less that of the planned acceleration (planned_torque.h), are above `pushed`, else 0: a
-///                    loop with a stuck encoder increases its torque however slow the target is. A target above the
+///                    loop with a stuck encoder increases its torque however slow the target is. Not before the target
+///                    itself has moved by a quantum, though: until then a wheel that turns need not have shown a
+///                    count, and inside a curve of a skid steer it takes most of its torque. A target above the
 ///                    wheel's velocity limit counts as that limit. In a turn nothing counts while s·τ ≤ `held` and
 ///                    still grows, by kRise of it within kBuildUp: the loop is about to overcome the friction of treads
 ///                    that scrub, for instance after a reversal. So kExcused of the limit is excused at most.
@@ -71,6 +73,7 @@ class WheelFollowing {
   /// Of one wheel.
   struct Stall {
     double missed = 0;                                       ///< rad
+    double way = 0;                                          ///< rad, ∫|q̇*|dt since the wheel last turned
     double excused = 0;                                      ///< rad, while the torque grew
     double mark = 0;                                         ///< rad/s towards the target, when `missed` began
     double peak = -std::numeric_limits<double>::infinity();  ///< N·m towards the target, since then
