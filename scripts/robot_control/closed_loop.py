@@ -197,6 +197,13 @@ class ClosedLoop:
         return self._loop.stop_distance(speed, emergency)
 
     @property
+    def smooth_speed(self) -> float:
+        """Speed [m/s] of a rim below which wheels may start with a jerk, behind encoders of
+        `state_estimator.encoder_noise` (control/smooth_speed.h).
+        """
+        return self._loop.smooth_speed
+
+    @property
     def paused(self) -> bool:
         """What `set_pause` said last."""
         return self._paused

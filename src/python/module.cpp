@@ -13,6 +13,7 @@
 
 #include "control/limits/drive_limits.h"
 #include "control/limits/stop_distance.h"
+#include "control/smooth_speed.h"
 #include "control/wheel_loops/wheel_loop_stability.h"
 #include "drivers/model/mujoco_model.h"
 #include "drivers/mujoco_plant.h"
@@ -27,6 +28,7 @@
 #include "python/run_bag.h"
 #include "python/signal_names.h"
 #include "python/wheel_loops.h"
+#include "runtime/start_check.h"
 #include "signals/cause_names.h"
 #include "signals/slip_detection.h"
 #include "simulation/closed_loop.h"
@@ -162,6 +164,12 @@ double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
   return stop_distance(speed, deceleration, limits.jerk) + std::abs(speed) * parameters.loop.period();
 }
 
+double smooth_speed_of(const ClosedLoop& loop) {
+  const Parameters& parameters = loop.parameters();
+  return smooth_speed(parameters.controller, loop.robot(), encoder_count(parameters.estimator),
+                      parameters.loop.period());
+}
+
 std::vector<std::pair<std::string, std::string>> column_units(const ClosedLoop& loop) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const Column& column : columns_of(loop)) names.emplace_back(column.name, column.unit);
@@ -213,6 +221,7 @@ void bind_closed_loop(py::module_& module) {
       .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr)
       .def("record", &record, py::arg("commands"))
       .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
+      .def_property_readonly("smooth_speed", &smooth_speed_of)
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
       .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot()); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)

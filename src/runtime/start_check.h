@@ -1,6 +1,8 @@
 #pragma once
 /// What parameters and robot must be together, checked by every composition of the loop before it starts.
 
+#include <string>
+
 #include "parameters/parameters.h"
 #include "robot/robot_model.h"
 
@@ -8,6 +10,14 @@ namespace robot_control {
 
 /// Throws ParameterError with every problem: whatever control_problems.h refuses.
 void require_drivable(const Parameters& parameters, const RobotModel& robot);
+
+/// rad, the count of a wheel's encoder that `encoder_noise` stands for, uniform over it.
+double encoder_count(const EstimatorParameters& estimator) noexcept;
+
+/// What a user should know of slow driving, in one sentence: the speed of smooth_speed.h behind these encoders, if it
+/// is above kSlow; else empty.
+std::string note_on_slow_driving(const Parameters& parameters, const RobotModel& robot);
+inline constexpr double kSlow = 0.05;  ///< m/s, hardly ever commanded
 
 /// The robot with rate and clock in its hash and source: what the driver announces and every other node compares
 /// with its own. A node of another rate or clock refuses as one of another robot does.

@@ -76,7 +76,7 @@ TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverS
 /// 64 counts a turn, one in 0.49 s at 0.2 rad/s. The motors push all the time, as inside a skid steer's curve.
 class CoarseEncoderTest : public WheelFollowingTest {
  protected:
-  static constexpr double kSlow = 0.2;            // rad/s
+  static constexpr double kSlow = 0.2;             // rad/s
   static constexpr double kCount = 64 * kQuantum;  // rad
 
   CoarseEncoderTest() {
@@ -98,7 +98,8 @@ TEST_F(CoarseEncoderTest, AWheelThatTurnsFromCountToCountIsNotStalled) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-// The next count may be a whole one away, and the last one leaves the window late; then kStall, with a quantum, at kPushed.
+// The next count may be a whole one away, and the last one leaves the window late; then kStall, with a quantum, at
+// kPushed.
 TEST_F(CoarseEncoderTest, AWheelThatStandsIsStalledOnceItsCountIsOverdue) {
   const double owed = kCount / kSlow, missed = (kStall + kCount) / WheelFollowing::kPushed;
   steps(static_cast<std::uint64_t>(owed / kPeriod));

@@ -23,6 +23,7 @@
 #include "bridge/reports/report_line.h"
 #include "files/ascii.h"
 #include "runtime/processes/controller_process.h"
+#include "runtime/start_check.h"
 
 namespace robot_control {
 namespace {
@@ -42,6 +43,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
   void connect(ros::NodeHandle& handle) override {
     expect_monitor();
+    if (const std::string note = note_on_slow_driving(parameters(), robot()); !note.empty())
+      ROS_INFO("%s", note.c_str());
     ros::NodeHandle own("~");
     set_parameters_ = own.advertiseService("set_parameters", &DiffDriveControllerNode::set_parameters, this);
     set_parameter_map_ = own.advertiseService("set_parameter_map", &DiffDriveControllerNode::set_parameter_map, this);

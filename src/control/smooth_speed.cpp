@@ -1,0 +1,26 @@
+#include "control/smooth_speed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/measured_robot.h"
+#include "control/wheel_loops/feed_forward.h"
+#include "control/wheel_loops/ground_friction.h"
+#include "control/wheel_loops/wheel_loop_gains.h"
+
+namespace robot_control {
+
+double smooth_speed(const DriveControllerParameters& parameters, const RobotModel& robot, double quantum,
+                    double period) {
+  const RobotModel measured = measured_robot(robot, parameters.feed_forward);
+  const double hidden = quantum + (GroundFriction(measured).scrubs() ? kTread : 0);
+  double fastest = 0;
+  for (const WheelModel& wheel : measured.wheels) {
+    const double inertia = std::min(straight_inertia(measured, wheel), turning_inertia(measured, wheel));
+    const double ki = wheel_loop_gains(parameters, measured, wheel, period).ki;
+    fastest = std::max(fastest, wheel.radius * std::sqrt(27.0 / 6.0 * ki / inertia) * hidden);
+  }
+  return fastest;
+}
+
+}  // namespace robot_control
