@@ -60,11 +60,11 @@ void Estimator::begin_rest() noexcept {
 /// The last two windows are integrated at once.
 void Estimator::end_rest() noexcept {
   rested_ = rested_ || bias_measured_;
+  const bool stood = (lasting_flags_ & kStateStandstill) != 0;  // a run may begin in motion
   moved_ = true;
   resting_ = false;
   lasting_flags_ &= ~std::uint64_t{kStateStandstill};
   flags_ &= ~std::uint64_t{kStateStandstill};
-  const bool stood = last_window_.time > 0;
   HeldMotion held = std::exchange(open_window_, {});
   held.add(std::exchange(last_window_, {}));
   const double before = core_.pose().yaw;
@@ -81,7 +81,7 @@ void Estimator::end_rest() noexcept {
   if (stood) {
     slip_.stand(uncorrected_yaw_, tilt_.up());
   } else {
-    slip_.restart();  // a run may begin in motion
+    slip_.restart();
   }
   if (wheels_.both_received()) begin_comparison();
 }
