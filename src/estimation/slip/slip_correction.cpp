@@ -15,7 +15,14 @@ constexpr double kLine = 0.4;        // s, over which the line's slope is taken
 constexpr double kDoubts = 3;        // deviations
 constexpr double kLeastSlip = 0.02;  // m/s
 constexpr double kQuiet = 0.15;      // m/s²: a robot that slides brakes by more
-constexpr double kSlack = 0.02;      // m/s, of the bounds
+constexpr double kSlack = 0.02;      // m/s, of the bounds; rad/s
+
+/// In axes that are turned by that angle.
+Planar turned(const Planar& v, double angle) noexcept {
+  const double c = std::cos(angle);
+  const double n = std::sin(angle);
+  return {c * v.x + n * v.y, c * v.y - n * v.x};
+}
 
 }  // namespace
 
@@ -43,6 +50,8 @@ SlipCorrection::Step SlipCorrection::begin(const SlipStatistic& statistic, doubl
   sideways_ = true;
   path_began_ = statistic.path_began();
   from_ = looked_ = onset;
+  slope_ = line_;
+  turn_ = 0;
   if (onset.time < path_began_) from_ = statistic.before(path_began_);
   decide(statistic.last(), known);
   Step correction = travel(statistic.last(), known);
@@ -68,63 +77,69 @@ double SlipCorrection::speed_deviation(const Known& known) const noexcept {
   return std::sqrt(square(onset_deviation_) + square(known.slow * t) + square(known.white) * t);
 }
 
-/// Which sides slip, m/s that they leave the line by, and whether the robot slides across.
-void SlipCorrection::judge_contacts(const Known& known, const double (&sides)[2], double turn, double across) noexcept {
+/// Which sides slip and whether the robot slides across; `off`, m/s: from the line, along, across, and of W.
+void SlipCorrection::judge_contacts(const Known& known, const Slope& off, const Slope& bend) noexcept {
   const double doubt = std::max(kLeastSlip, kDoubts * std::hypot(speed_deviation(known), known.along));
-  const bool one_sided = std::abs(turn) > std::max(kLeastSlip, kDoubts * known.turn);
-  for (const std::size_t i : {0U, 1U}) slips_[i] = std::abs(sides[i]) > doubt;
-  if (one_sided && !slips_[0] && !slips_[1]) slips_[std::abs(sides[0]) > std::abs(sides[1]) ? 0 : 1] = true;
+  const bool one_sided = std::abs(off.turn) > std::max(kLeastSlip, kDoubts * known.turn);
+  for (const std::size_t i : {0U, 1U}) slips_[i] = std::abs(off.side(i)) > doubt;
+  if (one_sided && !slips_[0] && !slips_[1]) slips_[std::abs(off.side(0)) > std::abs(off.side(1)) ? 0 : 1] = true;
   if (one_sided && slips_[0] && slips_[1]) {  // one side at least keeps to the line if the other explains all of it
-    const std::size_t better = std::abs(sides[0]) < std::abs(sides[1]) ? 0 : 1;
-    if (std::abs(sides[better]) < 1.5 * doubt) slips_[better] = false;
+    const std::size_t better = std::abs(off.side(0)) < std::abs(off.side(1)) ? 0 : 1;
+    if (std::abs(off.side(better)) < 1.5 * doubt) slips_[better] = false;
   }
-  sideways_ = std::abs(across) > doubt;
+  sideways_ = std::abs(off.across) > doubt;
+  const double steady = std::max(kLeastSlip, kDoubts * known.along);  // friction bends E, beside the line, too
+  for (const std::size_t i : {0U, 1U}) slips_[i] = slips_[i] || std::abs(bend.side(i)) > steady;
+  sideways_ = sideways_ || std::abs(bend.across) > steady;
+}
+
+/// Wheels and gyro stand still, and the body does not brake, as friction would brake it.
+bool SlipCorrection::stands(const SlipStatistic::Point& to, const Known& known, double dt) const noexcept {
+  const Planar velocity{to.speed.x + line_.x, to.speed.y + line_.y};
+  const Planar acceleration{(to.speed.x - looked_.speed.x) / dt, (to.speed.y - looked_.speed.y) / dt};
+  const double speed = std::hypot(velocity.x, velocity.y);
+  const double brakes = speed > kSlack ? -(acceleration.x * velocity.x + acceleration.y * velocity.y) / speed
+                                       : std::hypot(acceleration.x, acceleration.y);
+  return std::abs(known.speed) < kSlack && std::abs(to.yaw - looked_.yaw) < kSlack * dt &&
+         brakes < kQuiet + kDoubts * known.slow;
+}
+
+/// The line is half that of before, half what a side that rolls says.
+void SlipCorrection::renew_line(const SlipStatistic::Point& to, const Known& known, const Slope& off) noexcept {
+  const bool both = !slips_[0] && !slips_[1];
+  const double along = both ? off.along : off.side(slips_[0] ? 1 : 0);
+  const Planar half = turned({0.5 * along, sideways_ ? 0 : 0.5 * off.across}, -(to.yaw + looked_.yaw) / 2);
+  line_ = {line_.x + half.x, line_.y + half.y};
+  if (!sideways_) anchored_ = to.time;
+  counted_ = 0;
+  onset_deviation_ = known.along + known.slow * (to.time - looked_.time);
 }
 
 void SlipCorrection::decide(const SlipStatistic::Point& to, const Known& known) noexcept {
   const double dt = to.time - looked_.time;
   if (!(dt > 0)) return;
-  const double c = std::cos((to.yaw + looked_.yaw) / 2);
-  const double n = std::sin((to.yaw + looked_.yaw) / 2);
-  const double x = (to.e.x - looked_.e.x) / dt - line_.x;
-  const double y = (to.e.y - looked_.e.y) / dt - line_.y;
-  const double along = c * x + n * y;
-  const double across = c * y - n * x;
+  const double yaw = (to.yaw + looked_.yaw) / 2;
+  const Planar slope{(to.e.x - looked_.e.x) / dt, (to.e.y - looked_.e.y) / dt};
+  const Planar beside = turned({slope.x - line_.x, slope.y - line_.y}, yaw);
+  const Planar bent = turned({slope.x - slope_.x, slope.y - slope_.y}, yaw);
   const double turn = (to.w - looked_.w) / dt;
-  const double rate = (to.yaw - looked_.yaw) / dt;
-  const double sides[2] = {along - turn / 2, along + turn / 2};
-  judge_contacts(known, sides, turn, across);
-  const double gained_x = (to.speed.x - looked_.speed.x) / dt;
-  const double gained_y = (to.speed.y - looked_.speed.y) / dt;
-  const bool stands = std::abs(known.speed) < kSlack &&
-                      std::hypot(gained_x, gained_y) < kQuiet + kDoubts * known.slow && std::abs(rate) < kSlack;
-  stood_ = stands ? stood_ + dt : 0;
+  const Slope off{.along = beside.x, .across = beside.y, .turn = turn};
+  judge_contacts(known, off, {.along = bent.x, .across = bent.y, .turn = turn - turn_});
+  slope_ = slope;
+  turn_ = turn;
+  stood_ = stands(to, known, dt) ? stood_ + dt : 0;
   if (stood_ >= kStands) {
-    slips_ = {false, false};
+    slips_ = {};
     sideways_ = false;
+    line_ = {-to.speed.x, -to.speed.y};
+  } else if (!slips_[0] || !slips_[1]) {
+    renew_line(to, known, off);
   }
-  const bool rolls = !slips_[0] || !slips_[1];
-  double off = 0;  // by how much the line is wrong along, as a side that rolls says
-  if (!slips_[0] && !slips_[1])
-    off = along;
-  else if (!slips_[0])
-    off = sides[0];
-  else if (!slips_[1])
-    off = sides[1];
   agreed_ = !slips_[0] && !slips_[1] && !sideways_ ? agreed_ + dt : 0;
-  if (rolls) {
-    const double lateral = sideways_ ? 0 : across;
-    line_.x += 0.5 * (c * off - n * lateral);
-    line_.y += 0.5 * (n * off + c * lateral);
-    if (!sideways_) anchored_ = to.time;
-    counted_ = 0;
-    onset_deviation_ = known.along + known.slow * dt;
-  }
-  const double excess = slipped(along, turn);
   const auto [low, high] = bounds(known);
-  excess_ = known.speed - std::clamp(known.speed - excess, low, high);
-  aside_ = sideways_ ? std::clamp(-across, -std::max(-low, high), std::max(-low, high)) : 0;
-  name_reasons(known, sides[0], sides[1]);
+  excess_ = known.speed - std::clamp(known.speed - slipped(off.along, turn), low, high);
+  aside_ = sideways_ ? std::clamp(-off.across, -std::max(-low, high), std::max(-low, high)) : 0;
+  name_reasons(known, off.side(0), off.side(1));
   looked_ = to;
 }
 

@@ -2,11 +2,11 @@
 /// The correction of the way while wheels slip: explicit and bounded.
 ///
 /// From the onset on, E's earlier line is continued (slip_statistic.h): what E leaves it by is slip, and is taken off
-/// the way. A side that rolls, because it keeps to that line within its doubts, gives the way instead, with W, and
-/// renews the line. The speed stays between zero, that of the onset, and the wheels'. The slide ends when both sides
-/// keep to the line for kAgreed, when wheels that stand and an acceleration of nothing show that the robot stands, or
-/// after kLongest without a side that rolls; where the accelerometer shakes, all of the correction is taken back then.
-/// A correction is uncertain by kUncertain of itself.
+/// the way. A side that rolls, because E keeps to that line within its doubts and does not bend, as friction bends it,
+/// gives the way instead, with W, and renews the line. The speed stays between zero, that of the onset, and that of the
+/// wheels. The slide ends when both sides keep to the line for kAgreed, when wheels stand and the body does not brake,
+/// which shows that the robot stands, or after kLongest without a side that rolls; where the accelerometer shakes, all
+/// of the correction is taken back then. A correction is uncertain by kUncertain of itself.
 
 #include <algorithm>
 #include <array>
@@ -65,12 +65,20 @@ class SlipCorrection {
   double onset_speed() const noexcept { return onset_speed_; }  ///< m/s, along, before it slipped
 
  private:
+  /// m/s, base axes, of E and W.
+  struct Slope {
+    double along = 0, across = 0, turn = 0;
+    double side(std::size_t i) const noexcept { return along + (i == 0 ? -1 : 1) * turn / 2; }
+  };
+
   Step travel(const SlipStatistic::Point& to, const Known& known) noexcept;
   void decide(const SlipStatistic::Point& to, const Known& known) noexcept;
   std::pair<double, double> bounds(const Known& known) const noexcept;  ///< m/s, of the speed along
   double size() const noexcept;                                         ///< m², of the total squared
   double speed_deviation(const Known& known) const noexcept;
-  void judge_contacts(const Known& known, const double (&sides)[2], double turn, double across) noexcept;
+  void judge_contacts(const Known& known, const Slope& off, const Slope& bend) noexcept;
+  bool stands(const SlipStatistic::Point& to, const Known& known, double dt) const noexcept;
+  void renew_line(const SlipStatistic::Point& to, const Known& known, const Slope& off) noexcept;
   void name_reasons(const Known& known, double left, double right) noexcept;
   /// By how much the wheels are ahead of the ground, of that of both sides together and that of their turn.
   double slipped(double along, double turn) const noexcept;
@@ -85,6 +93,8 @@ class SlipCorrection {
   SlipStatistic::Point from_;    ///< of the last correction
   SlipStatistic::Point looked_;  ///< of the last decision
   Planar line_;                  ///< m/s, slope of E without slip
+  Planar slope_;                 ///< m/s, of E at the last decision
+  double turn_ = 0;              ///< m/s, slope of W likewise
   double path_began_ = 0;        ///< s
   double anchored_ = 0;          ///< s, time since which the line has been carried on
   double agreed_ = 0, stood_ = 0;

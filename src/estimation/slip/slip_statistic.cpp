@@ -13,7 +13,9 @@ constexpr double kSlow = 0.02;      // m/s², what no inertial sensor on a movin
 constexpr double kSlip = 2e-3;      // m/√m
 constexpr double kWindUp = 1.6e-3;  // rad/√(rad/s)
 constexpr double kStep = 0.5;
-constexpr double kCalmLevel = 3;  // level
+constexpr double kUsual = 0.1;     // share of the speed of one comparison in the usual one
+constexpr double kSlowest = 0.01;  // m/s: slower than that nothing is learned
+constexpr double kCalmLevel = 3;   // level
 constexpr std::uint64_t kFirst = 8;
 constexpr double kProof = 5;
 constexpr double kSeconded = 3;
@@ -108,9 +110,11 @@ SlipStatistic::Second SlipStatistic::second_difference(double span) const noexce
   second.path = end.path - first.path;
   second.turned = end.yaw - first.yaw;
   second.changed = end.rate - middle.rate;
-  second.gained = std::min(second.path / late, std::hypot(end.speed.x - first.speed.x, end.speed.y - first.speed.y));
   const double x = end.e.x - middle.e.x - (middle.e.x - first.e.x) * late / early;
   const double y = end.e.y - middle.e.y - (middle.e.y - first.e.y) * late / early;
+  const Planar gained{end.speed.x - first.speed.x, end.speed.y - first.speed.y};
+  second.gained = std::min({second.path / late, std::hypot(gained.x, gained.y),
+                            std::hypot(gained.x + 2 * x / late, gained.y + 2 * y / late)});
   const double c = std::cos(middle.yaw);
   const double n = std::sin(middle.yaw);
   second.d = {c * x + n * y, c * y - n * x, end.w - middle.w};
@@ -123,7 +127,6 @@ SlipStatistic::Noise SlipStatistic::best() const noexcept {
 
 double SlipStatistic::deviation(std::size_t channel, const Second& s, const Noise& noise,
                                 const Doubts& doubts) const noexcept {
-  const double speed = s.path / (2 * s.span);
   if (channel == kTurn) {
     const double b = params_.wheel_base;
     return std::sqrt(4 * square(params_.encoder) + 2 * square(noise.slip) * s.path +
@@ -132,20 +135,27 @@ double SlipStatistic::deviation(std::size_t channel, const Second& s, const Nois
   }
   const double slow = square(noise.slow) + doubts.acceleration[channel];
   return std::sqrt(6 * square(params_.encoder) + square(noise.white) * s.span * s.span * s.span * 2 / 3 +
-                   slow * square(s.span * s.span) + 2 * square(kSlip) * s.path + 6 * square(noise.jitter * speed));
+                   slow * square(s.span * s.span) + 2 * square(kSlip) * s.path + 6 * square(noise.jitter * s.speed()));
+}
+
+double SlipStatistic::at_speed(double level, double speed) const noexcept {
+  const double faster = std::max(1.0, speed / std::max(kSlowest, usual_speed_));
+  return std::sqrt(1 + (square(level) - 1) * square(faster));
 }
 
 double SlipStatistic::expected(std::size_t span, std::size_t channel, const Second& s,
                                const Doubts& doubts) const noexcept {
   const double least = deviation(channel, s, best(), doubts);
   const double level = level_[span][channel];
-  const double usual = level == 0 ? std::max(least, deviation(channel, s, kFloor, doubts)) : level * least;
+  const double usual =
+      level == 0 ? std::max(least, deviation(channel, s, kFloor, doubts)) : at_speed(level, s.speed()) * least;
   return std::hypot(usual, doubts.offset * (channel == kTurn ? params_.wheel_base * s.changed : s.gained));
 }
 
 void SlipStatistic::judge(const Doubts& doubts, bool learns) noexcept {
   std::array<Second, kCount> seconds;
   for (std::size_t i = 0; i < kCount; ++i) seconds[i] = second_difference(kSpans[i]);
+  if (seconds[kTiltSpan].known) speed_ = seconds[kTiltSpan].speed();
   proven_ = {};
   for (std::size_t c = 0; c < kChannels; ++c) {
     const auto exceeds = [&](std::size_t i, double deviations) {
@@ -166,7 +176,7 @@ void SlipStatistic::judge(const Doubts& doubts, bool learns) noexcept {
   for (std::size_t i = 0; i < kCount; ++i) {
     const Second& second = seconds[i];
     const bool unknown = level_[i][kAlong] == 0;
-    if ((learns || unknown) && second.known && second.path > 0.01 * second.span &&
+    if ((learns || unknown) && second.known && second.path > kSlowest * second.span &&
         now_.time - learned_at_[i] >= second.span) {
       learn(i, second, doubts);
     }
@@ -186,6 +196,9 @@ void SlipStatistic::judge(const Doubts& doubts, bool learns) noexcept {
 
 void SlipStatistic::learn(std::size_t span, const Second& second, const Doubts& doubts) noexcept {
   learned_at_[span] = now_.time;
+  if (span == kTiltSpan)
+    usual_speed_ +=
+        std::max(kUsual, 1.0 / static_cast<double>(seen_[span][kAlong] + 1)) * (second.speed() - usual_speed_);
   for (std::size_t c = 0; c < kChannels; ++c) {
     const double ratio = std::abs(second.d[c]) / deviation(c, second, best(), doubts) / kNormal90;
     double& level = level_[span][c];
@@ -212,12 +225,12 @@ double SlipStatistic::level() const noexcept {
 
 double SlipStatistic::white() const noexcept {
   const double level = level_[kTiltSpan][kAlong];
-  return level == 0 ? kFloor.white : level * params_.accelerometer;
+  return level == 0 ? kFloor.white : at_speed(level, speed_) * params_.accelerometer;
 }
 
 double SlipStatistic::slow(double acceleration_variance) const noexcept {
   const double level = level_[kTiltSpan][kAlong];
-  return std::sqrt(square(level == 0 ? kFloor.slow : level * kSlow) + acceleration_variance);
+  return std::sqrt(square(level == 0 ? kFloor.slow : at_speed(level, speed_) * kSlow) + acceleration_variance);
 }
 
 }  // namespace robot_control

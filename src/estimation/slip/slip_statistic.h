@@ -17,7 +17,9 @@
 /// Real floors shake an accelerometer thirty times harder than its data sheet says. So each T of each channel learns a
 /// level: the 90 % quantile of |D|/σ_D, by steps of kStep on its logarithm (H. Robbins, S. Monro, A stochastic
 /// approximation method, 1951), from the largest of the first kFirst; before that it is that of kFloor, a robot that
-/// shakes. To that come (σ_τ Δspeed)² and (B σ_τ Δω)² of the clock offset (planar/planar_core.h). Slip is proven where
+/// shakes. A robot that drives faster than usual shakes more: what exceeds the sensors' noise grows in proportion to
+/// the speed. To that come (σ_τ Δspeed)² and (B σ_τ Δω)² of the clock offset (planar/planar_core.h); Δspeed: the lesser
+/// one of wheels and accelerometer, because no offset bends E while the wheels keep their speed. Slip is proven where
 /// |D| exceeds kProof of the deviations that belong to that quantile, and kSeconded of those of the next longer T: one
 /// late stamp is as large in every T.
 
@@ -133,6 +135,7 @@ class SlipStatistic {
     bool known = false;
     double span = 0, path = 0, turned = 0, changed = 0, gained = 0;
     std::array<double, kChannels> d{};
+    double speed() const noexcept { return path / (2 * span); }  ///< m/s
   };
   struct Noise {
     double white = 0, slow = 0, jitter = 0, slip = 0;
@@ -141,6 +144,8 @@ class SlipStatistic {
   static constexpr Noise kFloor{.white = 0.065, .slow = 0.2, .jitter = 0.005, .slip = 5e-3};
   Second second_difference(double span) const noexcept;
   double deviation(std::size_t channel, const Second& second, const Noise& noise, const Doubts& doubts) const noexcept;
+  /// Of T at a speed, m/s: what shakes a robot grows with its speed beyond that at which the level was learned.
+  double at_speed(double level, double speed) const noexcept;
   double expected(std::size_t span, std::size_t channel, const Second& second, const Doubts& doubts) const noexcept;
   void learn(std::size_t span, const Second& second, const Doubts& doubts) noexcept;
   Noise best() const noexcept;
@@ -163,7 +168,9 @@ class SlipStatistic {
   std::array<std::array<double, kChannels>, kCount> onset_{};  ///< |D|/σ of the last proof
   Pull pull_;
   double pulled_at_ = 0;
-  double path_began_ = 0;  ///< s
+  double usual_speed_ = 0;  ///< m/s, at which the levels are learned
+  double speed_ = 0;        ///< m/s, at the last judgement
+  double path_began_ = 0;   ///< s
 };
 
 }  // namespace robot_control
