@@ -13,7 +13,7 @@
 /// (tilt/tilt.h) are learned; until the first rest is over the pose is corrected by that bias, too. Every run begins at
 /// rest. A window that turns out not to be quiet is integrated at once, with the one before.
 ///
-/// Samples may come at any rate. One that is not finite or impossible is not used (kStateBadSample, which says, too,
+/// Samples may come at any rate. One that is not finite or impossible is not used (kStateBadSample, which also states
 /// that encoders are missing in this cycle), and the last one holds: for three times the gap between the last two,
 /// within kShortestHold … kLongestHold. Beyond that the sensor is lost, and its flag is set:
 ///   gyro            yaw comes from the wheels, by the calibration learned so far
@@ -26,7 +26,7 @@
 /// biases follow every sample.
 ///
 /// kStateDegraded, with a reason: kDegradedHeading, the gyro's bias is known no better than kUnknownBias, which is
-/// so before the first rest; kDegradedPosition, the correction of a slide was not believable and was taken back.
+/// so before the first rest; kDegradedPosition, the correction of a slide was not plausible and was taken back.
 ///
 /// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kBlock.
 

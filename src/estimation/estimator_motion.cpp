@@ -56,7 +56,7 @@ double Estimator::turn(double dt) noexcept {
 std::array<double, 2> Estimator::tyres_creep(double distance) const noexcept {
   if (!imu_.accelerometer() || parameters_.tyre_creep == 0) return {};
   std::array<double, 2> creep = tilt_.acceleration(array(*imu_.accelerometer()));
-  for (const std::size_t axis : {0U, 1U}) {
+  for (const int axis : {0, 1}) {
     const double sine = tilt_.up()[axis];
     const double uncertain = Tuning::kSignificant * std::sqrt(std::max(0.0, tilt_.covariance(axis, axis)));
     creep[axis] += kGravity * std::copysign(std::max(0.0, std::abs(sine) - uncertain), sine);

@@ -12,7 +12,8 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kPlane[3] = {0, 1, 5};  // x, y and yaw in a Matrix6
+const std::array<int, 3> kPlane{0, 1, 5};  // x, y and yaw in a Matrix6
+using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace
 
@@ -32,17 +33,10 @@ Planar Estimator::axle(double yaw) const noexcept {
 
 /// Of a frame's pose, moved from base_link to the middle of the wheels.
 Eigen::Matrix3d Estimator::covariance_of_middle(const StateFrame& frame) const noexcept {
-  Eigen::Matrix3d covariance;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      covariance(static_cast<int>(i), static_cast<int>(j)) = frame.pose_covariance[6 * kPlane[i] + kPlane[j]];
-    }
-  }
   const Planar lever = axle(yaw_of(frame.pose_odom.orientation));
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity();
-  jacobian(0, 2) = -lever.y;
-  jacobian(1, 2) = lever.x;
-  return jacobian * covariance * jacobian.transpose();
+  jacobian.col(2) << -lever.y, lever.x, 1;
+  return jacobian * Eigen::Map<const PoseMatrix>(frame.pose_covariance.data())(kPlane, kPlane) * jacobian.transpose();
 }
 
 void Estimator::fill_pose(StateFrame& out) const noexcept {
@@ -70,29 +64,25 @@ double Estimator::wheels_late() const noexcept {
   return std::erfc(-core_.offset() / deviation / std::numbers::sqrt2) / 2;
 }
 
-/// P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ (σ_encoder² + v² σ_stamp²), J by x, y, yaw and clock offset; a: direction of
+/// P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ (σ_encoder² + v² σ_stamp²), J by clock offset, x, y and yaw; a: direction of
 /// travel, m: velocity of base_link, gap: between two samples of the gyro, evenly distributed.
 void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept {
   const double late = wheels_late();
   const double yaw_rate = resting_ ? 0 : yaw_rate_;
   const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0);
   const Eigen::Vector3d turning(lever.y, -lever.x, 1);
-  Eigen::Matrix<double, 3, 4> jacobian = Eigen::Matrix<double, 3, 4>::Identity();
-  jacobian(0, 2) = lever.y;
-  jacobian(1, 2) = -lever.x;
-  jacobian.col(3) = late * forward_speed() * along + (late - 1) * yaw_rate * turning;
-  Eigen::Matrix3d covariance = jacobian * core_.pose_and_offset_covariance() * jacobian.transpose();
+  Eigen::Matrix<double, 3, 4> jacobian;
+  jacobian << late * forward_speed() * along + (late - 1) * yaw_rate * turning, Eigen::Vector3d::UnitX(),
+      Eigen::Vector3d::UnitY(), turning;
+  const Eigen::Matrix4d states = core_.covariance().topLeftCorner<4, 4>();
+  Eigen::Matrix3d covariance = jacobian * states * jacobian.transpose();
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
   covariance += square(imu_.gyro_gap()) / 8 * motion * motion.transpose();
   covariance += (square(encoder_) + square(forward_speed()) * wheels_.stamp_variance()) * along * along.transpose();
   if (pose_set_) covariance.setZero();
-  out.pose_covariance = {};
-  for (const std::size_t i : {2U, 3U, 4U}) out.pose_covariance[7 * i] = Tuning::kPlanarVariance;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      out.pose_covariance[6 * kPlane[i] + kPlane[j]] = covariance(static_cast<int>(i), static_cast<int>(j));
-    }
-  }
+  Eigen::Map<PoseMatrix> published(out.pose_covariance.data());
+  published = Tuning::kPlanarVariance * PoseMatrix::Identity();
+  published(kPlane, kPlane) = covariance;
   fill_attitude_covariance(yaw, covariance(2, 2), out);
 }
 

@@ -116,7 +116,7 @@ bool Estimator::slides_at_rest() noexcept {
   if (!watch_.last_force()) return false;
   const auto acceleration = tilt_.acceleration(*watch_.last_force());
   bool slides = false;
-  for (const std::size_t axis : {0U, 1U}) {
+  for (const int axis : {0, 1}) {
     const double deviation = std::sqrt(tilt_.acceleration_variance(axis));
     slides = slides || std::abs(acceleration[axis]) > Tuning::kQuietAcceleration + Tuning::kSignificant * deviation;
   }

@@ -12,11 +12,11 @@ namespace robot_control {
 namespace {
 
 static_assert(kCopyableState<Estimator>);
-static_assert(std::is_trivially_copyable_v<PlanarCore>);
+static_assert(kCopyableState<PlanarCore>);
 static_assert(std::is_trivially_copyable_v<SlipStatistic>);
 static_assert(std::is_trivially_copyable_v<SlipCorrection>);
 static_assert(std::is_trivially_copyable_v<RestWatch>);
-static_assert(std::is_trivially_copyable_v<Tilt>);
+static_assert(kCopyableState<Tilt>);
 
 class EstimatorSnapshotTest : public EstimatorFixture {
  protected:

@@ -45,7 +45,7 @@ class NoisyDrive {
   /// Normalised estimation error squared of x, y and yaw.
   double nees() const {
     const Eigen::Vector3d error(core_.pose().x - truth_.x, core_.pose().y - truth_.y, core_.pose().yaw - truth_.yaw);
-    const Eigen::Matrix3d known = matrix_of(core_).topLeftCorner<3, 3>();
+    const Eigen::Matrix3d known = core_.covariance().block<3, 3>(PlanarCore::kX, PlanarCore::kX);
     return error.dot(known.llt().solve(error));
   }
 
@@ -214,7 +214,7 @@ TEST(CoreConsistency, TheCovarianceIsNeverNegative) {
           core.turn_by_gyro(any(random), 0.1);
           core.roll(any(random), any(random), any(random));
       }
-      const CoreMatrix p = matrix_of(core);
+      const CoreMatrix p = core.covariance();
       ASSERT_EQ((p - p.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * p.cwiseAbs().maxCoeff(), true) << seed << ' ' << i;
       ASSERT_GE(p.diagonal().minCoeff(), 0) << "seed " << seed << ", step " << i;
       ASSERT_GT(smallest_eigenvalue(p), -1e-9) << "seed " << seed << ", step " << i;

@@ -1,5 +1,5 @@
 #pragma once
-/// A planar core in the midst of a drive, its covariance as a matrix, and matrices of the textbook beside it.
+/// A planar core in the midst of a drive, and matrices of the textbook beside it.
 
 #include <gtest/gtest.h>
 
@@ -12,18 +12,8 @@
 
 namespace robot_control {
 
-using CoreMatrix = Eigen::Matrix<double, PlanarCore::kSize, PlanarCore::kSize>;
-using CoreVector = Eigen::Matrix<double, PlanarCore::kSize, 1>;
-
-inline CoreMatrix matrix_of(const PlanarCore& core) {
-  CoreMatrix p;
-  for (std::size_t i = 0; i < PlanarCore::kSize; ++i) {
-    for (std::size_t k = 0; k < PlanarCore::kSize; ++k) {
-      p(static_cast<int>(i), static_cast<int>(k)) = core.covariance(i, k);
-    }
-  }
-  return p;
-}
+using CoreMatrix = PlanarCore::Matrix;
+using CoreVector = PlanarCore::Vector;
 
 /// What of the error state is a value: all but the gyro's scale, which is 0.
 inline CoreVector values_of(const PlanarCore& core) {

@@ -41,7 +41,7 @@ class CoreTransportTest : public testing::Test {
   void expect_transport(const Step& step, const CoreMatrix& before, const CoreVector& at, const CoreMatrix& noise) {
     const CoreMatrix by = derivative(step, at);
     const CoreMatrix expected = by * before * by.transpose() + noise;
-    const CoreMatrix p = matrix_of(core_);
+    const CoreMatrix p = core_.covariance();
     for (int i = 0; i < p.rows(); ++i) {
       for (int k = 0; k < p.cols(); ++k) {
         const double scale = std::sqrt(expected(i, i) * expected(k, k));
@@ -55,7 +55,7 @@ class CoreTransportTest : public testing::Test {
 TEST_F(CoreTransportTest, TheGyroTurnsByItsBiasAndItsScale) {
   constexpr double kAngle = 0.05;
   constexpr double kInterval = 0.1;
-  const CoreMatrix before = matrix_of(core_);
+  const CoreMatrix before = core_.covariance();
   const CoreVector at = values_of(core_);
   const Step step = [&](CoreVector x) {
     x[PlanarCore::kYaw] += (1 + x[PlanarCore::kScale]) * (kAngle - x[PlanarCore::kBias] * kInterval);
@@ -71,7 +71,7 @@ TEST_F(CoreTransportTest, AWayTurnsWithTheYawOfItsReading) {
   constexpr double kRate = 0.8;
   const double x = 0.3;
   const double y = -0.4;
-  const CoreMatrix before = matrix_of(core_);
+  const CoreMatrix before = core_.covariance();
   const CoreVector at = values_of(core_);
   const Step step = [&](CoreVector state) {
     const double turned =
@@ -94,7 +94,7 @@ TEST_F(CoreTransportTest, TheWheelsTurnByTheirCalibration) {
   core_.roll(1, 2, 0);
   const double left = 0.2;
   const double right = 0.5;
-  const CoreMatrix before = matrix_of(core_);
+  const CoreMatrix before = core_.covariance();
   const CoreVector at = values_of(core_);
   const Step step = [&](CoreVector x) {
     PlanarCore other(params);

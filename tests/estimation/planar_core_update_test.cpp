@@ -42,7 +42,7 @@ class CoreUpdateTest : public testing::Test {
 };
 
 TEST_F(CoreUpdateTest, ABlockIsAKalmanUpdateThatConsidersTheGyrosScale) {
-  const CoreMatrix before = matrix_of(core_);
+  const CoreMatrix before = core_.covariance();
   const CoreVector x = values_of(core_);
   const CoreVector h = measurement();
   constexpr double kInnovation = 2e-4;
@@ -60,7 +60,7 @@ TEST_F(CoreUpdateTest, ABlockIsAKalmanUpdateThatConsidersTheGyrosScale) {
   for (int i = 0; i < change.size(); ++i) {
     EXPECT_NEAR(change[i], kInnovation * gain[i], kRounding * std::sqrt(before(i, i)) + 1e-15) << i;
   }
-  const CoreMatrix p = matrix_of(core_);
+  const CoreMatrix p = core_.covariance();
   for (int i = 0; i < p.rows(); ++i) {
     for (int k = 0; k < p.cols(); ++k) {
       if (i == k && (i == PlanarCore::kRatio || i == PlanarCore::kBase || i == PlanarCore::kOffset)) {
@@ -84,7 +84,7 @@ TEST_F(CoreUpdateTest, AnInnovationPullsNoHarderThanHubersBound) {
   const double deviation = 1e-4 / std::sqrt(end_block(1e-4).nis);
   core_ = other;
   const CoreVector x = values_of(core_);
-  const CoreVector ph = matrix_of(core_) * measurement();
+  const CoreVector ph = core_.covariance() * measurement();
   const PlanarCore::Innovation verdict = end_block(5 * deviation);
   EXPECT_TRUE(verdict.used);
   EXPECT_NEAR(verdict.nis, 25, 1e-6);
@@ -113,7 +113,7 @@ TEST_F(CoreUpdateTest, WhatIsHeldIsNotLearned) {
 
 // Gyro's mean at rest, of variance r: a Kalman update of the bias, and through it of the heading.
 TEST_F(CoreUpdateTest, ARestIsAKalmanUpdateOfTheBias) {
-  const CoreMatrix before = matrix_of(core_);
+  const CoreMatrix before = core_.covariance();
   const CoreVector x = values_of(core_);
   constexpr double kVariance = 1e-6;
   core_.rest(0.003, kVariance, false);
@@ -126,7 +126,7 @@ TEST_F(CoreUpdateTest, ARestIsAKalmanUpdateOfTheBias) {
   h[PlanarCore::kBias] = 1;
   const CoreMatrix left = CoreMatrix::Identity() - gain * h.transpose();
   const CoreMatrix expected = left * before * left.transpose() + kVariance * gain * gain.transpose();
-  const CoreMatrix p = matrix_of(core_);
+  const CoreMatrix p = core_.covariance();
   for (int i = 0; i < p.rows(); ++i) {
     for (int k = 0; k < p.cols(); ++k) {
       EXPECT_NEAR(p(i, k), expected(i, k), 1e-9 * std::sqrt(before(i, i) * before(k, k))) << i << ", " << k;
@@ -153,8 +153,8 @@ TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
   EXPECT_EQ((values_of(core_) - x).norm(), 0);
   const CoreVector held = values_of(free) - x;
   ASSERT_GT(std::abs(held[PlanarCore::kBias]), 0);
-  const CoreMatrix expected = matrix_of(free) + held * held.transpose();
-  EXPECT_LT((matrix_of(core_) - expected).cwiseAbs().maxCoeff(), kRounding * expected.cwiseAbs().maxCoeff());
+  const CoreMatrix expected = free.covariance() + held * held.transpose();
+  EXPECT_LT((core_.covariance() - expected).cwiseAbs().maxCoeff(), kRounding * expected.cwiseAbs().maxCoeff());
   core_.replace_bias();
   core_.hold_corrections(false);
   EXPECT_LT((values_of(core_) - values_of(free)).norm(), 1e-15);
@@ -181,7 +181,7 @@ TEST_F(CoreUpdateTest, APathIsNotCorrectedByABiasThatIsNotProven) {
 
 TEST_F(CoreUpdateTest, PlacingForgetsWhatThePoseWasCorrelatedWith) {
   core_.place({1, 2, 3});
-  const CoreMatrix p = matrix_of(core_);
+  const CoreMatrix p = core_.covariance();
   for (const int i : {PlanarCore::kX, PlanarCore::kY, PlanarCore::kYaw, PlanarCore::kAnchor}) {
     EXPECT_EQ(p.row(i).norm(), 0) << i;
     EXPECT_EQ(p.col(i).norm(), 0) << i;
@@ -192,7 +192,7 @@ TEST_F(CoreUpdateTest, PlacingForgetsWhatThePoseWasCorrelatedWith) {
 
 TEST_F(CoreUpdateTest, ABiasThatIsSetIsCorrelatedWithNothing) {
   core_.set_bias(0.02, 0.003);
-  const CoreMatrix p = matrix_of(core_);
+  const CoreMatrix p = core_.covariance();
   EXPECT_EQ(core_.bias(), 0.02);
   EXPECT_NEAR(p(PlanarCore::kBias, PlanarCore::kBias), 9e-6, 1e-18);
   EXPECT_NEAR(p.row(PlanarCore::kBias).norm(), 9e-6, 1e-18);

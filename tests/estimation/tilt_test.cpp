@@ -62,7 +62,7 @@ TEST(TiltTest, ItsVarianceIsBoundedHoweverLongNothingCorrectsIt) {
     tilt.turn({}, 1.0, false);
     if (i % 100 == 0) tilt.pull(0, 0, 1.0, 1e6);
   }
-  for (const std::size_t axis : {0U, 1U}) EXPECT_LE(tilt.covariance(axis, axis), Tuning::kSteepest * Tuning::kSteepest);
+  for (const int axis : {0, 1}) EXPECT_LE(tilt.covariance(axis, axis), Tuning::kSteepest * Tuning::kSteepest);
 }
 
 // Of what a first rest shows, the bias has the share of its own variance: 0.0004 of 0.0104.

@@ -1,5 +1,5 @@
 #pragma once
-/// The angle by which the gyro says that the robot turned in each step, also through a short silence of the gyro.
+/// The angle by which the robot turned in each step by the gyro, also through a short silence of the gyro.
 ///
 /// While the gyro is lost (imu_samples.h) the wheels turn the robot. Where its samples come back within kLongestHold,
 /// their straight line replaces what the wheels turned meanwhile:

@@ -16,7 +16,7 @@ void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sa
     channel.mean = *sample;
     if (continued && trapezoid) channel.mean = channel.last + (*sample - channel.last) * (steps / 2);
     channel.catches_up = continued && trapezoid && channel.age > dt;
-    if (channel.received && dt > channel.hold) channel.mean.reset();  // one sample does not speak for a step that long
+    if (channel.received && dt > channel.hold) channel.mean.reset();  // one sample is no mean of a step that long
     // Also from a sample that was lost in between: otherwise a device slower than the short hold would be lost for
     // ever.
     if (channel.received && channel.age > 0) {

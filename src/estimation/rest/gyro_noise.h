@@ -5,7 +5,7 @@
 ///   n² = max(n₀², (N (kMountedGyro n₀)² + Σ T (m_k+1 − m_k)²/2) / (N + count))      n₀: of the data sheet, N:
 ///   kNoisePrior
 ///
-/// No gyro on a robot is quieter than its data sheet, and most are louder: recordings show 3.5 … 4.5e-4 where it says
+/// No gyro on a robot is quieter than its data sheet, and most are louder: recordings show 3.5 … 4.5e-4 where it states
 /// 2.4e-4. Beyond kNoiseMemory windows older ones are forgotten exponentially.
 
 #include <algorithm>

@@ -1,24 +1,25 @@
 #pragma once
 /// Which way is up, in base axes, and the accelerometer's bias along and across: gravity's direction turned by the
-/// gyro, and corrected by what the accelerometer says at rest, and beyond the wheels' acceleration.
+/// gyro, and corrected by what the accelerometer measures at rest, and beyond the wheels' acceleration.
 ///
 ///   u̇ = −ω × u        accelerometer/g = u + β at rest        u: unit vector; β: bias/g, along and across
 ///
 /// Error state: u_x, u_y, β_x, β_y. One rest shows their sums alone; rests in two headings tell them apart, because
 /// gravity turns against the robot and the bias does not. How the tilt changed from one rest to the next, the gyro
-/// says; where it is in doubt, that the floor is plane: the tilt of the last rest, turned by the wheels, known to
-/// kFloor. Where the rest contradicts that, too, by more than kDoubts deviations, the tilt is open again: what failed
-/// on the way turns the tilt, it does not change the bias.
+/// measures; where it is unreliable, the floor is taken to be plane: the tilt is that of the last rest, turned by the
+/// wheels, known to kFloor. Where the rest contradicts that, too, by more than kSignificant deviations, the tilt is
+/// unknown again: what failed on the way turns the tilt, it does not change the bias.
 ///
-/// The gyro is in doubt when it turns the robot over faster than kTipping by kDoubtful in all, or repeats one sample
-/// for kStuck: a robot on its wheels does neither.
+/// The gyro is unreliable where it turned the robot over faster than kTipping, by kUnreliableTurn in all, or repeated
+/// one sample for kStuckGyro: a robot on its wheels does neither.
 ///
-/// Bounded: the robot stands on its wheels. The gyro's x and y count after a first rest only, when their bias is known:
-/// a broken axis reads −31 °/s at rest.
+/// Bounded by kSteepest: the robot stands on its wheels. The gyro's x and y count after a first rest only, when their
+/// bias is known: a broken axis reads −31 °/s at rest.
 
+#include <Eigen/Core>
 #include <array>
-#include <cstddef>
 
+#include "estimation/values.h"
 #include "robot/gravity.h"
 #include "signals/geometry.h"
 
@@ -48,31 +49,30 @@ class Tilt {
   /// Of an earlier process: `up` base axes, `bias` m/s² along and across.
   void set(const Vector3& up, const std::array<double, 2>& bias) noexcept;
 
-  const Vector3& up() const noexcept { return now_.up; }
-  double roll() const noexcept;                                                            ///< rad
-  double pitch() const noexcept;                                                           ///< rad
-  double bias(std::size_t axis) const noexcept { return kGravity * now_.bias[axis]; }      ///< m/s², along and across
-  double vertical_bias() const noexcept { return vertical_; }                              ///< m/s², along u
-  double covariance(std::size_t i, std::size_t k) const noexcept { return now_.p[i][k]; }  ///< of u_x, u_y
+  Vector3 up() const noexcept { return array(now_.up); }
+  double roll() const noexcept;                                                     ///< rad
+  double pitch() const noexcept;                                                    ///< rad
+  double bias(int axis) const noexcept { return kGravity * now_.bias[axis]; }       ///< m/s², along and across
+  double vertical_bias() const noexcept { return vertical_; }                       ///< m/s², along u
+  double covariance(int i, int k) const noexcept { return now_.covariance(i, k); }  ///< of u_x, u_y
   /// (m/s²)², of gravity and bias together.
-  double acceleration_variance(std::size_t axis) const noexcept { return kGravity * kGravity * now_.variance(axis); }
+  double acceleration_variance(int axis) const noexcept { return kGravity * kGravity * now_.variance(axis); }
   /// m/s²: `force` without gravity and bias, along and across.
   std::array<double, 2> acceleration(const Vector3& force) const noexcept {
     return {force[0] - kGravity * (now_.up[0] + now_.bias[0]), force[1] - kGravity * (now_.up[1] + now_.bias[1])};
   }
 
  private:
-  using Plane = std::array<double, 2>;  ///< along and across
   struct Estimate {
-    Vector3 up{0, 0, 1};
-    Plane bias{};                              ///< β
-    std::array<std::array<double, 4>, 4> p{};  ///< covariance of u_x, u_y, β_x, β_y
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    Eigen::Vector2d bias = Eigen::Vector2d::Zero();        ///< β
+    Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of u_x, u_y, β_x, β_y
 
     void turn(double angle) noexcept;  ///< of the robot, about the vertical: of the covariance alone
-    double off(const Plane& sum, std::size_t axis) const noexcept { return sum[axis] - up[axis] - bias[axis]; }
-    double variance(std::size_t axis) const noexcept;  ///< of u + β
-    bool contradicts(const Plane& sum, double variance) const noexcept;
-    void update(const Plane& sum, double variance) noexcept;
+    Eigen::Vector2d innovation(const Eigen::Vector2d& sum) const noexcept { return sum - up.head<2>() - bias; }
+    double variance(int axis) const noexcept;  ///< of u + β
+    bool contradicts(const Eigen::Vector2d& sum, double noise) const noexcept;
+    void update(const Eigen::Vector2d& sum, double noise) noexcept;
     void bound() noexcept;
   };
 
@@ -83,9 +83,9 @@ class Tilt {
   Estimate now_;
   double vertical_ = 0;
   Estimate rested_;                            ///< at the end of the last rest
-  bool known_ = false;                         ///< there was one
-  double rolled_ = 0;                          ///< rad, since then
-  double doubt_ = 0;                           ///< rad, likewise
+  bool has_rested_ = false;                    ///< there was one
+  double rolled_ = 0;                          ///< rad, since then, by the wheels
+  double unreliable_ = 0;                      ///< rad, likewise, by a gyro that turned the robot over
   double stuck_ = 0;                           ///< s
   Vector3 last_{};                             ///< rad/s
   double turned_ = 0, walked_ = 0, time_ = 0;  ///< rad, rad², s: since the covariance aged

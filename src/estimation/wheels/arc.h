@@ -24,8 +24,7 @@ struct Chord {
 };
 
 inline double sinc(double h) noexcept {
-  constexpr double kSeries = 0.008;  // below, the first term left out, h⁶/5040, is under 2⁻⁵³
-  return std::abs(h) < kSeries ? 1 - h * h / 6 * (1 - h * h / 20) : std::sin(h) / h;
+  return h == 0 ? 1 : std::sin(h) / h;
 }
 
 inline Chord chord_of(const Motion& motion, double yaw) noexcept {

@@ -72,7 +72,7 @@ class WheelSides {
   bool any_lost() const noexcept { return lost(kLeft) || lost(kRight); }
   bool both_lost() const noexcept { return lost(kLeft) && lost(kRight); }
   bool both_fell_silent() const noexcept;  ///< both are lost, and had brought readings
-  /// Readings that come much closer than usual were held up on their way: their stamps say nothing about the speed.
+  /// Readings that come much closer than usual were held up on their way: their stamps give no speed.
   /// Once per step.
   bool in_a_batch() noexcept;
 
