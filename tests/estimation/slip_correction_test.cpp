@@ -48,6 +48,16 @@ class SlipCorrectionTest : public SlipFixture {
     for (int i = 0; i < 100 && !slide_.active(); ++i) go(SlidingBody::kStep);
     ASSERT_TRUE(slide_.active());
   }
+  /// On locked wheels, with an accelerometer that is off by 0.05 m/s².
+  void slide_to_a_stand() {
+    spin(-body_.speed);
+    body_.error = 0.05;
+    while (body_.speed > 0) {
+      go(SlidingBody::kStep, -1);
+      body_.left = body_.right = -body_.speed;
+    }
+    body_.speed = body_.left = body_.right = 0;
+  }
   /// m, of the way by wheels and correction.
   double error() const {
     return std::hypot(body_.wheels().x + corrected_.x - body_.x, body_.wheels().y + corrected_.y - body_.y);
@@ -147,15 +157,30 @@ TEST_F(SlipCorrectionTest, EndsWhenTheWheelsAgreeWithTheBody) {
 
 // The body has stopped within the slide; then its line is as wrong as the accelerometer made it.
 TEST_F(SlipCorrectionTest, EndsWhenTheRobotStands) {
-  spin(-body_.speed);
-  body_.error = 0.05;
-  while (body_.speed > 0) {
-    go(SlidingBody::kStep, -1);
-    body_.left = body_.right = -body_.speed;
-  }
-  body_.speed = body_.left = body_.right = 0;
+  slide_to_a_stand();
   EXPECT_LT(go(2), 0.6);
   EXPECT_FALSE(slide_.active());
+}
+
+// Within the doubts of the line and yet bent by friction: what is left of the slip would pass for the line.
+TEST_F(SlipCorrectionTest, ItLastsWhileFrictionStillBendsE) {
+  constexpr double kFriction = 0.5;  // m/s² by which the wheels come back to the ground's speed
+  spin(0.5);
+  body_.error = 0.02;
+  go(2.0);
+  while (slide_.active() && body_.left > 0) {
+    go(SlidingBody::kStep);
+    body_.left = body_.right = body_.left - kFriction * SlidingBody::kStep;
+  }
+  EXPECT_LE(body_.left, 1e-9) << "m/s of slip were left when it ended";
+}
+
+TEST_F(SlipCorrectionTest, AfterAStandTheLineIsThatOfNoSpeed) {
+  slide_to_a_stand();
+  ASSERT_LT(go(2), 0.6);
+  const SlipStatistic::Point& now = body_.statistic.now();
+  EXPECT_NEAR(now.speed.x + slide_.line().x, 0, 1e-12);
+  EXPECT_NEAR(now.speed.y + slide_.line().y, 0, 1e-12);
 }
 
 TEST_F(SlipCorrectionTest, EndsAfterTheLongestTime) {

@@ -122,6 +122,18 @@ TEST_F(SlipStatisticTest, SensorsOfTheDataSheetAreCalm) {
   EXPECT_LT(body_.statistic.white(), 3 * SlipStatisticParams{}.accelerometer);
 }
 
+// Vibration that grows with the speed: levels that were learned at 0.5 m/s hold at four times that speed.
+TEST_F(SlipFixture, FasterDrivingThanUsualShakesMore) {
+  body_.noise = 30 * SlipStatisticParams{}.accelerometer;
+  drive(0.5, 1.0);
+  drive(60);
+  const double before = body_.statistic.white();
+  drive(1.5, 1.0);
+  body_.noise *= 4;
+  EXPECT_EQ(drive(0.8), 0);
+  EXPECT_GT(body_.statistic.white(), 3 * before);
+}
+
 TEST_F(SlipStatisticTest, WhatWasNoSlipRaisesTheLevels) {
   const double before = body_.statistic.level();
   body_.left = body_.right = 0.5;
