@@ -70,6 +70,16 @@ def test_refuses_the_log_of_another_robot(run_csv, tmp_path, monkeypatch):
     assert not (tmp_path / "x.yaml").exists()
 
 
+@pytest.mark.parametrize("column", ["gate_verdict", "left_wheel_joint_velocity_command"])
+def test_names_a_column_that_the_log_does_not_have(run_csv, column, tmp_path, monkeypatch):
+    header, rest = run_csv.read_text().split("\n", 1)
+    other = tmp_path / "run.csv"
+    other.write_text(",".join("x" if name == column else name for name in header.split(",")) + "\n" + rest)
+    message = refusal(monkeypatch, f"--log={other}", f"--output={tmp_path}/x.yaml")
+    assert message == f"identify.py: {other}: no column {column}, which is needed here"
+    assert not (tmp_path / "x.yaml").exists()
+
+
 def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
     message = refusal(monkeypatch, f"--log={tmp_path}/none.csv")
     assert message == f"identify.py: {tmp_path}/none.csv cannot be opened or written: No such file or directory"

@@ -52,7 +52,7 @@ def main() -> None:
     try:
         check_outputs([options.output], [options.log, options.params, options.urdf])
         if options.log is not None:
-            _fit(dict(read_log(options.log)), _settings_of_files(options), options, f"log {options.log.name}")
+            _fit(read_log(options.log), _settings_of_files(options), options, f"log {options.log.name}")
         else:
             with running_settings("identify", CONTROLLER, NO_MASTER, SIMULATED_TIME) as settings:
                 with ended_by_signals() as signals:
