@@ -27,7 +27,7 @@ double encoder_count(const EstimatorParameters& estimator) noexcept {
 std::string note_on_slow_driving(const Parameters& parameters, const RobotModel& robot) {
   const double count = encoder_count(parameters.estimator);
   const double speed = smooth_speed(parameters.controller, robot, count, parameters.loop.period());
-  if (speed <= kSlow) return {};
+  if (speed <= kSlowRim) return {};
   std::array<char, 300> text{};
   std::snprintf(
       text.data(), text.size(),

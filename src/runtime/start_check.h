@@ -15,9 +15,9 @@ void require_drivable(const Parameters& parameters, const RobotModel& robot);
 double encoder_count(const EstimatorParameters& estimator) noexcept;
 
 /// What a user should know of slow driving, in one sentence: the speed of smooth_speed.h behind these encoders, if it
-/// is above kSlow; else empty.
+/// is above kSlowRim; else empty.
 std::string note_on_slow_driving(const Parameters& parameters, const RobotModel& robot);
-inline constexpr double kSlow = 0.05;  ///< m/s, hardly ever commanded
+inline constexpr double kSlowRim = 0.05;  ///< m/s, hardly ever commanded
 
 /// The robot with rate and clock in its hash and source: what the driver announces and every other node compares
 /// with its own. A node of another rate or clock refuses as one of another robot does.

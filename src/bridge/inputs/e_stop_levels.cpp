@@ -22,7 +22,7 @@ bool EStopLevels::remember(const std::string& publisher) {
 void EStopLevels::receive(const std::string& publisher, bool stop) {
   const bool first = remember(publisher);
   const bool further = !known_.contains(publisher);
-  if (!further) heard_.insert(publisher);
+  if (!further) received_.insert(publisher);
   if (stop) {
     levels_.insert_or_assign(further ? kFurther : publisher, false);
     return;
@@ -39,9 +39,9 @@ void EStopLevels::settle(const std::vector<std::string>& present) {
   silent_.clear();
   for (const std::string& publisher : present) {
     remember(publisher);
-    if (!heard_.contains(publisher)) silent_.push_back(publisher);
+    if (!received_.contains(publisher)) silent_.push_back(publisher);
   }
-  if (silent_.empty() && !heard_.empty() && levels_.empty()) held_ = false;
+  if (silent_.empty() && !received_.empty() && levels_.empty()) held_ = false;
 }
 
 std::vector<std::string> EStopLevels::publishers() const {

@@ -44,9 +44,9 @@ class EStopLevels {
 
   std::map<std::string, bool> levels_;  ///< that are true; the value: a first message of another said false since
   std::set<std::string> known_;         ///< publishers that were seen, by a message or by `settle`
-  std::set<std::string> heard_;         ///< publishers of which a message was received
+  std::set<std::string> received_;      ///< publishers of which a message was received
   bool held_ = false;
-  std::vector<std::string> silent_;  ///< of those that were there at the last `settle`, not in heard_
+  std::vector<std::string> silent_;  ///< of those that were there at the last `settle`, not in received_
 };
 
 }  // namespace robot_control

@@ -127,8 +127,8 @@ ConditionMeasurement WheelFollowing::stalled(const SensorFrame& sensors, const W
     if (turns || speed > stall.mark + kProgress + motion.speed_tolerance(i)) {
       stall = {.mark = speed};
     } else {
-      stall.way += wanted * dt;
-      const bool overdue = stall.way > motion.quantum(i);
+      stall.target_travel += wanted * dt;
+      const bool overdue = stall.target_travel > motion.quantum(i);
       const bool pushes = overdue && std::min(std::abs(torque), std::abs(torque - planned_[i])) > pushed_[i];
       const double pushed = pushes ? kPushed : 0;
       const bool excused = stall.excused < kExcused * stall_.limit() &&

@@ -73,7 +73,7 @@ class WheelFollowing {
   /// Of one wheel.
   struct Stall {
     double missed = 0;                                       ///< rad
-    double way = 0;                                          ///< rad, ∫|q̇*|dt since the wheel last turned
+    double target_travel = 0;                                ///< rad, ∫|q̇*|dt since the wheel last turned
     double excused = 0;                                      ///< rad, while the torque grew
     double mark = 0;                                         ///< rad/s towards the target, when `missed` began
     double peak = -std::numeric_limits<double>::infinity();  ///< N·m towards the target, since then
