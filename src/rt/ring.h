@@ -134,10 +134,11 @@ class RingReader {
   }
 
   std::uint64_t position() const noexcept { return position_; }
+  std::uint64_t written() const noexcept { return memory_->written.load(std::memory_order_acquire); }
   std::uint64_t overwritten() const noexcept { return overwritten_; }
   std::uint64_t dropped() const noexcept { return memory_->dropped.load(std::memory_order_relaxed); }
 
-  /// Position of the first row of the present writer.
+  /// Position of the first row of the present writer, once that has appended one; before, that of its predecessor.
   std::uint64_t began() const noexcept { return memory_->began.load(std::memory_order_acquire); }
 
  private:

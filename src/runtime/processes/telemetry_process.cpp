@@ -40,7 +40,8 @@ class TelemetryProcess::Source {
     if (snapshot_channel_.poll()) snapshots_.emplace(snapshot_channel_.memory(), 0);
     if (!channel_.poll()) return;
     retire();
-    begin();
+    reader_.emplace(channel_.memory());
+    begun_ = false;
     dropped_before_ = reader_->dropped();
     read.store(reader_->position(), std::memory_order_release);
   }
@@ -50,8 +51,9 @@ class TelemetryProcess::Source {
   template <class Keep, class Store>
   std::size_t drain(Join& join, std::atomic<std::uint64_t>& read, Keep keep, Store store) {
     std::size_t rows = 0;
+    if (!begun_) begin();
     // One ring's worth at most, so that a writer that is faster than this does not hold the others up.
-    while (reader_ && rows < kRingRows) {
+    while (begun_ && rows < kRingRows) {
       batch_.clear();
       while (batch_.size() < kBatch && reader_->take(row_)) batch_.push_back(row_);
       if (batch_.empty()) break;
@@ -77,13 +79,14 @@ class TelemetryProcess::Source {
   static constexpr std::size_t kBatch = 64;
 
   /// With the rows of the present writer that are there: a snapshot of its law is among them (law_snapshot.h). Some
-  /// room is left for what it writes meanwhile.
+  /// room is left for what it writes meanwhile. Only a row appended since the ring was mapped proves that its writer
+  /// lives and that `began` is its own: one that starts holds the lock before it has stored that.
   void begin() {
     constexpr std::uint64_t kBack = kRingRows - kRingRows / 8;
-    reader_.emplace(channel_.memory());
-    if (!channel_.locked()) return;  // what is there is of a process that has ended
-    const std::uint64_t next = reader_->position();
-    reader_.emplace(channel_.memory(), std::max(reader_->began(), next - std::min(next, kBack)));
+    if (!reader_ || reader_->written() == reader_->position()) return;
+    const std::uint64_t mapped_at = reader_->position();
+    reader_.emplace(channel_.memory(), std::max(reader_->began(), mapped_at - std::min(mapped_at, kBack)));
+    begun_ = true;
   }
 
   void retire() {
@@ -94,6 +97,7 @@ class TelemetryProcess::Source {
 
   ForeignChannel<Ring<Row>> channel_;
   std::optional<RingReader<Row>> reader_;
+  bool begun_ = false;  ///< rows are taken
   std::uint64_t dropped_before_ = 0;
   std::uint64_t dropped_ = 0;
   std::uint64_t overwritten_ = 0;
