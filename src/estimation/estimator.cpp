@@ -36,10 +36,8 @@ EstimatorState::EstimatorState(const EstimatorParameters& parameters, const Robo
       gyro_noise_(parameters.gyro_noise),
       rate_(parameters.rate_bandwidth, period),
       wheel_velocities_(robot, parameters.speed_bandwidth, period),
-      slip_(slip_params(parameters, robot)),
-      watch_(rest_params(parameters, robot)) {
-  slip_.restart();
-}
+      slip_detector_(slip_params(parameters, robot)),
+      watch_(rest_params(parameters, robot)) {}
 
 Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period)
     : EstimatorState(checked(parameters, robot, period), robot, period),
@@ -142,7 +140,7 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   } else if (dt > 0) {
     integrate_wheels();
     if (wheels_.both_received()) wheels_.average_speed(std::abs(core_.offset()));
-    slide_.age(dt);
+    slip_correction_.age(dt);
     if (resting_) {
       rest(dt);
     } else {
@@ -156,8 +154,8 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
     place(*pose_set_);
     open_window_ = last_window_ = {};
     slope_shortening_ = 0;
-    slip_.begin_path();
-    slide_.begin_path(slip_);
+    slip_detector_.begin_path();
+    slip_correction_.begin_path(slip_detector_.difference());
   }
 }
 
@@ -172,8 +170,8 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   if (readings.restarted) comparison_ = {};
   if (readings.lost_travels == 0) return;
   core_.shift(0, 0, readings.lost_travels * square(Tuning::kRestart));
-  slip_.restart();
-  slide_.end();
+  slip_detector_.restart();
+  slip_correction_.end();
 }
 
 /// Raw odometry: the travel of either side since its last reading.
@@ -205,7 +203,8 @@ Estimator::Prediction Estimator::prediction() const noexcept {
   if (resting_) return {};
   Prediction ahead;
   if (core_.offset() > 0) {
-    const double speed = wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slide_.excess();
+    const double speed =
+        wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slip_correction_.excess_speed();
     ahead.distance = speed * core_.offset();
   } else {
     ahead.turn = -yaw_rate_ * core_.offset();
@@ -216,7 +215,7 @@ Estimator::Prediction Estimator::prediction() const noexcept {
 }
 
 double Estimator::forward_speed() const noexcept {
-  return resting_ ? 0 : wheels_.speed_at(rate_.rate().z()) - slide_.excess();
+  return resting_ ? 0 : wheels_.speed_at(rate_.rate().z()) - slip_correction_.excess_speed();
 }
 
 }  // namespace robot_control

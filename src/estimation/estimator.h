@@ -3,11 +3,11 @@
 ///
 ///   encoders ─► travel of either side ─┬─► planar core ─► pose, calibration, covariance
 ///   gyro ──────────────────────────────┤        ▲ explicit, bounded correction of the path
-///   accelerometer, tilt filter ────────┴─► slip statistic ─► slide
+///   accelerometer, tilt filter ────────┴─► slip detector ─► slide
 ///
 /// The pose is wheels for the distance and gyro for the heading (planar/planar_core.h). The accelerometer enters it by
 /// the tilt, which shortens the distance, and the creep of tyres, parts of a percent; else only while slip is proven
-/// (slip/slip_statistic.h, slip/slip_correction.h), and then within bounds.
+/// (slip/slip_detector.h, slip/slip_correction.h), and then within bounds.
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay, the gyro's bias and the tilt
 /// (tilt/tilt.h) are learned; until the first rest is over the pose is corrected by that bias, too. Every run begins at
@@ -26,7 +26,7 @@
 /// biases follow every sample.
 ///
 /// kStateDegraded, with a reason: kDegradedHeading, the gyro's bias is known no better than kUnknownBias, which is
-/// so before the first rest; kDegradedPosition, the correction of a slide was not plausible and was taken back.
+/// so before the first rest; kDegradedPosition, the correction of a slide was not plausible and was undone.
 ///
 /// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kBlock.
 
@@ -112,8 +112,8 @@ class Estimator : private EstimatorState {
   void watch_slip(double dt, double turned) noexcept;
   void follow_slide() noexcept;
   void judge_slip() noexcept;
-  void correct(const SlipCorrection::Step& correction) noexcept;
-  SlipCorrection::Known known() const noexcept;
+  void correct(const PathCorrection& correction) noexcept;
+  SlipCorrection::Input correction_input() const noexcept;
   void compare_turns(double dt) noexcept;
   void begin_comparison() noexcept;
   void note(SensorIndex sensor, double nis, double dt) noexcept;

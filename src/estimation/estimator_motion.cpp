@@ -71,19 +71,15 @@ void Estimator::advance_path(const WheelSides::Travel& travel) noexcept {
   const Vector3& up = tilt_.up();
   const double level = travel.distance * std::sqrt(std::max(0.0, 1 - up[0] * up[0]));
   const double shortening = slope_shortening_ + std::abs(travel.distance - level);
-  core_.shift(0, 0, square(SlipCorrection::kUncertain) * (square(shortening) - square(slope_shortening_)));
+  core_.shift(0, 0, square(Tuning::kCorrectionDeviation) * (square(shortening) - square(slope_shortening_)));
   slope_shortening_ = shortening;
   const std::array<double, 2> creep = tyres_creep(travel.distance);
   const double along = level - creep[0];
-  const auto path = [&](double yaw) {
-    return Planar{std::cos(yaw) * along + std::sin(yaw) * creep[1], std::sin(yaw) * along - std::cos(yaw) * creep[1]};
-  };
+  const auto path = [&](double yaw) { return rotated({along, -creep[1]}, yaw); };
   const double turned = travel.turn_since + yaw_rate_ * core_.offset();
   const Planar odom = path(core_.pose().yaw - turned);
   core_.roll(odom.x, odom.y, yaw_rate_);
-  const Planar uncorrected = path(uncorrected_yaw_ - turned);
-  uncorrected_step_.x += uncorrected.x;
-  uncorrected_step_.y += uncorrected.y;
+  uncorrected_step_ = uncorrected_step_ + path(uncorrected_yaw_ - turned);
   height_ += travel.distance * up[0];
   distance_ += std::abs(travel.distance);
 }
@@ -91,83 +87,77 @@ void Estimator::advance_path(const WheelSides::Travel& travel) noexcept {
 void Estimator::watch_slip(double dt, double turned) noexcept {
   const bool inertial = imu_.gyro() && imu_.accelerometer() && !wheels_.any_lost() && !wheels_.in_a_batch();
   if (!inertial) {
-    slip_.restart();
-    slide_.end();
+    slip_detector_.restart();
+    slip_correction_.end();
     return;
   }
   const double left = wheels_.left();
   const double right = wheels_.right();
-  const bool point = slip_.step({.dt = dt,
-                                 .acceleration = tilt_.acceleration(array(*imu_.accelerometer())),
-                                 .up = tilt_.up(),
-                                 .turned = turned,
-                                 .yaw = uncorrected_yaw_,
-                                 .way = uncorrected_step_,
-                                 .across = (right - left + core_.ratio() * (left + right) / 2) / (1 + core_.base()),
-                                 .path = (std::abs(left) + std::abs(right)) / 2,
-                                 .read = wheels_.both_received(),
-                                 .rate = yaw_rate_});
-  if (slide_.active() && wheels_.both_received()) follow_slide();
-  if (point && !slip_.empty()) judge_slip();
+  const bool point =
+      slip_detector_.step({.dt = dt,
+                           .acceleration = tilt_.acceleration(array(*imu_.accelerometer())),
+                           .up = tilt_.up(),
+                           .turned = turned,
+                           .yaw = uncorrected_yaw_,
+                           .path = uncorrected_step_,
+                           .right_minus_left = (right - left + core_.ratio() * (left + right) / 2) / (1 + core_.base()),
+                           .distance = (std::abs(left) + std::abs(right)) / 2,
+                           .both_sides_read = wheels_.both_received(),
+                           .yaw_rate = yaw_rate_});
+  if (slip_correction_.active() && wheels_.both_received()) follow_slide();
+  if (point && !slip_detector_.difference().empty()) judge_slip();
 }
 
 /// While a slide is going on.
 void Estimator::follow_slide() noexcept {
-  correct(slide_.step(slip_, known()));
-  if (slide_.active()) return;
-  if (!slide_.gave_up()) return slip_.restart_on(slide_.line());
-  if (slide_.taken_back()) slip_.learn_false();
-  slip_.restart();
+  correct(slip_correction_.step(slip_detector_.difference(), correction_input()));
+  if (slip_correction_.active()) return;
+  if (!slip_correction_.timed_out()) return slip_detector_.restart_on_line(slip_correction_.line_slope());
+  if (slip_correction_.undone()) slip_detector_.learn_false_proof();
+  slip_detector_.restart();
 }
 
 void Estimator::judge_slip() noexcept {
-  const bool learns = !slide_.active() && slide_.since_end() > Tuning::kCalm;
-  slip_.judge({.acceleration = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
-               .base = core_.deviation(PlanarCore::kBase),
-               .offset = core_.deviation(PlanarCore::kOffset),
-               .bias = std::sqrt(core_.bias_variance())},
-              learns);
-  for (const auto& [sensor, channel] :
-       {std::pair{kAccelerometer, SlipStatistic::kAlong}, std::pair{kLateralContact, SlipStatistic::kAcross},
-        std::pair{kGyro, SlipStatistic::kTurn}}) {
-    note(sensor, slip_.nis(channel), SlipStatistic::kGrid);
-  }
-  if (slide_.active()) return;
-  double span = 0;
-  for (const auto channel : {SlipStatistic::kAlong, SlipStatistic::kAcross, SlipStatistic::kTurn}) {
-    const double proven = slip_.span(channel);
-    if (proven > 0 && (span == 0 || proven < span)) span = proven;
-  }
-  if (span > 0) {
-    if (slip_.proven(SlipStatistic::kAcross)) ++rejected_[kLateralContact];
-    correct(slide_.begin(slip_, span, known()));
-  } else if (slip_.pull().known) {
-    tilt_.pull(slip_.pull().along, slip_.pull().across, slip_.pull().interval, std::sqrt(slip_.pull().variance));
+  const bool learns = !slip_correction_.active() && slip_correction_.since_end() > Tuning::kCalm;
+  slip_detector_.judge({.acceleration_variance = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
+                        .wheel_base = core_.deviation(PlanarCore::kBase),
+                        .clock_offset = core_.deviation(PlanarCore::kOffset),
+                        .gyro_bias = std::sqrt(core_.bias_variance())},
+                       learns);
+  note(kAccelerometer, slip_detector_.nis(SlipResidual::kAlong), Tuning::kPointInterval);
+  note(kLateralContact, slip_detector_.nis(SlipResidual::kAcross), Tuning::kPointInterval);
+  note(kGyro, slip_detector_.nis(SlipResidual::kTurn), Tuning::kPointInterval);
+  if (slip_correction_.active()) return;
+  const SlipDetector::GravityError& gravity = slip_detector_.gravity_error();
+  if (const double span = slip_detector_.shortest_proven_span(); span > 0) {
+    if (slip_detector_.proven(SlipResidual::kAcross)) ++rejected_[kLateralContact];
+    correct(slip_correction_.begin(slip_detector_.difference(), span, correction_input()));
+  } else if (gravity.known) {
+    tilt_.correct(gravity.along, gravity.across, gravity.interval, gravity.deviation);
   }
 }
 
-SlipCorrection::Known Estimator::known() const noexcept {
-  return {.white = slip_.white(),
-          .slow = slip_.slow(std::max(tilt_.acceleration_variance(0), tilt_.acceleration_variance(1))),
-          .along = slip_.slope_deviation(SlipStatistic::kAlong),
-          .turn = slip_.slope_deviation(SlipStatistic::kTurn),
-          .speed = wheels_.speed(),
-          .calm = slip_.calm()};
+SlipCorrection::Input Estimator::correction_input() const noexcept {
+  const double variance = std::max(tilt_.acceleration_variance(0), tilt_.acceleration_variance(1));
+  return {.noise = slip_detector_.acceleration_noise(variance),
+          .path_slope_deviation = slip_detector_.slope_deviation(SlipResidual::kAlong),
+          .turn_slope_deviation = slip_detector_.slope_deviation(SlipResidual::kTurn),
+          .wheel_speed = wheels_.speed(),
+          .sensors_as_specified = slip_detector_.sensors_as_specified()};
 }
 
-/// The slip statistic's axes are turned against odom's.
-void Estimator::correct(const SlipCorrection::Step& correction) noexcept {
-  const double turned = core_.pose().yaw - uncorrected_yaw_;
-  const double c = std::cos(turned);
-  const double s = std::sin(turned);
-  core_.shift(c * correction.x - s * correction.y, s * correction.x + c * correction.y, correction.variance);
+/// The axes of the slip detector are turned against odom's.
+void Estimator::correct(const PathCorrection& correction) noexcept {
+  const Planar shift = rotated(correction.shift, core_.pose().yaw - uncorrected_yaw_);
+  core_.shift(shift.x, shift.y, correction.variance);
 }
 
 void Estimator::compare_turns(double dt) noexcept {
   comparison_.time += dt;
   comparison_.left += wheels_.left();
   comparison_.right += wheels_.right();
-  if (slide_.active() || (parameters_.slip_detection && slide_.since_end() < Tuning::kCalm)) comparison_.open = false;
+  if (slip_correction_.active() || (parameters_.slip_detection && slip_correction_.since_end() < Tuning::kCalm))
+    comparison_.open = false;
   if (!wheels_.both_received() || (comparison_.open && comparison_.time < Tuning::kBlock)) return;
   if (!imu_.gyro() || gyro_turn_.silent()) return;
   if (comparison_.open) {

@@ -44,7 +44,7 @@ void Estimator::begin_rest() noexcept {
   resting_ = true;
   gyro_noise_.interrupt();
   open_window_ = last_window_ = {};
-  slide_.end();
+  slip_correction_.end();
   comparison_ = {};
   wheels_.forget_turn();
   flags_ |= kStateStandstill;
@@ -79,9 +79,9 @@ void Estimator::end_rest() noexcept {
   advance_path({.distance = (held.left + held.right) / 2, .turn_since = turned / 2});
   wheels_.forget_turn();
   if (stood) {
-    slip_.stand(uncorrected_yaw_, tilt_.up());
+    slip_detector_.restart_at_rest(uncorrected_yaw_, tilt_.up());
   } else {
-    slip_.restart();
+    slip_detector_.restart();
   }
   if (wheels_.both_received()) begin_comparison();
 }

@@ -86,15 +86,15 @@ RestWatchParams rest_params(const EstimatorParameters& parameters, const RobotMo
           .turn_per_metre = 1 / robot.effective_wheel_base()};
 }
 
-SlipStatisticParams slip_params(const EstimatorParameters& parameters, const RobotModel& robot) {
+SlipParams slip_params(const EstimatorParameters& parameters, const RobotModel& robot) {
   const WheelGeometry wheels(robot);
   return {.encoder = encoder_deviation(parameters, robot),
           .accelerometer = parameters.accelerometer_noise,
           .wheel_base = wheels.wheel_base,
-          .slip = parameters.wheel_slip_noise,
-          .ahead = robot.imu_in_base.position[0] - wheels.axle_x,
-          .aside = robot.imu_in_base.position[1] - wheels.axle_y,
-          .height = robot.imu_in_base.position[2] - wheels.ground};
+          .wheel_slip_noise = parameters.wheel_slip_noise,
+          .imu_x = robot.imu_in_base.position[0] - wheels.axle_x,
+          .imu_y = robot.imu_in_base.position[1] - wheels.axle_y,
+          .imu_above_ground = robot.imu_in_base.position[2] - wheels.ground};
 }
 
 }  // namespace robot_control

@@ -4,7 +4,7 @@
 #include "estimation/estimator_parameters.h"
 #include "estimation/planar/planar_core.h"
 #include "estimation/rest/rest_watch.h"
-#include "estimation/slip/slip_statistic.h"
+#include "estimation/slip/motion_difference.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/wheels/wheel_geometry.h"
 #include "robot/robot_model.h"
@@ -27,6 +27,6 @@ double icr_deviation(const RobotModel& robot);
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot);
 TiltParams tilt_params(const EstimatorParameters& parameters);
 RestWatchParams rest_params(const EstimatorParameters& parameters, const RobotModel& robot);
-SlipStatisticParams slip_params(const EstimatorParameters& parameters, const RobotModel& robot);
+SlipParams slip_params(const EstimatorParameters& parameters, const RobotModel& robot);
 
 }  // namespace robot_control

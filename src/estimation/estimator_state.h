@@ -15,7 +15,7 @@
 #include "estimation/rest/held_motion.h"
 #include "estimation/rest/rest_watch.h"
 #include "estimation/slip/slip_correction.h"
-#include "estimation/slip/slip_statistic.h"
+#include "estimation/slip/slip_detector.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/wheels/wheel_sides.h"
 #include "estimation/wheels/wheel_velocities.h"
@@ -58,8 +58,8 @@ class EstimatorState {
   std::array<std::uint64_t, kMaxConfidences> rejected_{};
 
   // Slip. Its axes are odom's but for the corrections of the yaw, which would bend a path that is integrated twice.
-  SlipStatistic slip_;
-  SlipCorrection slide_;
+  SlipDetector slip_detector_;
+  SlipCorrection slip_correction_;
   double uncorrected_yaw_ = 0;  ///< rad
   Planar uncorrected_step_;     ///< m, path of this step
 

@@ -2,6 +2,7 @@
 /// Small algebra on plain values, which the estimator's state is made of.
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "signals/geometry.h"
 
@@ -12,6 +13,26 @@ inline double square(double value) noexcept {
 }
 inline Vector3 array(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
+}
+
+/// Vector in the plane; trivially copyable, which Eigen's is not.
+struct Planar {
+  double x = 0, y = 0;
+
+  friend Planar operator+(const Planar& a, const Planar& b) noexcept { return {a.x + b.x, a.y + b.y}; }
+  friend Planar operator-(const Planar& a, const Planar& b) noexcept { return {a.x - b.x, a.y - b.y}; }
+  friend Planar operator-(const Planar& a) noexcept { return {-a.x, -a.y}; }
+  friend Planar operator*(const Planar& a, double factor) noexcept { return {a.x * factor, a.y * factor}; }
+  friend Planar operator/(const Planar& a, double divisor) noexcept { return {a.x / divisor, a.y / divisor}; }
+  friend double dot(const Planar& a, const Planar& b) noexcept { return a.x * b.x + a.y * b.y; }
+  double norm() const noexcept { return std::hypot(x, y); }
+};
+
+/// `v` turned by `angle` rad; components in base axes → components in odom axes, if `angle` is the yaw.
+inline Planar rotated(const Planar& v, double angle) noexcept {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * v.x - s * v.y, s * v.x + c * v.y};
 }
 
 }  // namespace robot_control

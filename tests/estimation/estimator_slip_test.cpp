@@ -162,7 +162,7 @@ TEST_F(EstimatorSlipTest, IsNotForgottenWhereThePoseIsSet) {
 // However long it spun.
 TEST_F(EstimatorSlipTest, EndsWhenTheWheelRollsAgain) {
   robot_.tread[0] = 1.0;
-  const int cycles = static_cast<int>(SlipCorrection::kLongest / kPeriod);
+  const int cycles = static_cast<int>(Tuning::kLongestSlide / kPeriod);
   EXPECT_GT(flagged(cycles), 0.9 * cycles);
   flagged(cycles / 2);
   ASSERT_TRUE(all_finite(state_));

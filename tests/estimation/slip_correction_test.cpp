@@ -1,4 +1,4 @@
-// The correction of the way while wheels slip, as the estimator applies it: explicit, bounded, and it ends.
+// The correction of the path while wheels slip, as the estimator applies it: explicit, bounded, and it ends.
 
 #include "estimation/slip_fixture.h"
 #include "signals/state_frame.h"
@@ -10,34 +10,31 @@ class SlipCorrectionTest : public SlipFixture {
  protected:
   SlipCorrectionTest() { learn(); }
 
-  SlipCorrection::Known known() const {
-    return {.white = body_.statistic.white(),
-            .slow = body_.statistic.slow(1e-6),
-            .along = body_.statistic.slope_deviation(SlipStatistic::kAlong),
-            .turn = body_.statistic.slope_deviation(SlipStatistic::kTurn),
-            .speed = body_.wheel_speed(),
-            .calm = calm_};
+  SlipCorrection::Input input() const {
+    return {.noise = body_.detector.acceleration_noise(1e-6),
+            .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong),
+            .turn_slope_deviation = body_.detector.slope_deviation(SlipResidual::kTurn),
+            .wheel_speed = body_.wheel_speed(),
+            .sensors_as_specified = as_specified_};
   }
-  void add(const SlipCorrection::Step& step) {
-    corrected_.x += step.x;
-    corrected_.y += step.y;
-    variance_ += step.variance;
-    largest_ = std::max(largest_, std::hypot(step.x, step.y));
+  void add(const PathCorrection& correction) {
+    corrected_ = corrected_ + correction.shift;
+    variance_ += correction.variance;
   }
   /// s until the slide ends, or `seconds`.
   double go(double seconds, double ahead = 0, double across = 0, double turning = 0) {
     for (double t = 0; t < seconds - SlidingBody::kStep / 2; t += SlidingBody::kStep) {
       const bool point = body_.step(ahead, across, turning);
-      if (slide_.active()) {
-        add(slide_.step(body_.statistic, known()));
-        if (!slide_.active()) return t;
+      if (correction_.active()) {
+        add(correction_.step(body_.detector.difference(), input()));
+        if (!correction_.active()) return t;
       } else if (point) {
         judge(false);
         double span = 0;
-        for (const auto channel : {SlipStatistic::kAlong, SlipStatistic::kAcross, SlipStatistic::kTurn}) {
-          span = std::max(span, body_.statistic.span(channel));
+        for (const auto channel : SlipDetector::kChannels) {
+          span = std::max(span, body_.detector.proven_span(channel));
         }
-        if (span > 0) add(slide_.begin(body_.statistic, span, known()));
+        if (span > 0) add(correction_.begin(body_.detector.difference(), span, input()));
       }
     }
     return seconds;
@@ -45,8 +42,8 @@ class SlipCorrectionTest : public SlipFixture {
   /// Both treads are `faster` than the ground until a slide has begun.
   void spin(double faster) {
     body_.left = body_.right = faster;
-    for (int i = 0; i < 100 && !slide_.active(); ++i) go(SlidingBody::kStep);
-    ASSERT_TRUE(slide_.active());
+    for (int i = 0; i < 100 && !correction_.active(); ++i) go(SlidingBody::kStep);
+    ASSERT_TRUE(correction_.active());
   }
   /// On locked wheels, with an accelerometer that is off by 0.05 m/s².
   void slide_to_a_stand() {
@@ -58,35 +55,34 @@ class SlipCorrectionTest : public SlipFixture {
     }
     body_.speed = body_.left = body_.right = 0;
   }
-  /// m, of the way by wheels and correction.
+  /// m, of the path by wheels and correction.
   double error() const {
     return std::hypot(body_.wheels().x + corrected_.x - body_.x, body_.wheels().y + corrected_.y - body_.y);
   }
   double wheels_error() const { return std::hypot(body_.wheels().x - body_.x, body_.wheels().y - body_.y); }
 
-  SlipCorrection slide_;
-  bool calm_ = true;
+  SlipCorrection correction_;
+  bool as_specified_ = true;
   Planar corrected_;
   double variance_ = 0;  ///< m²
-  double largest_ = 0;   ///< m, of one step
 };
 
-TEST_F(SlipCorrectionTest, TakesASpinOffTheWay) {
+TEST_F(SlipCorrectionTest, TakesASpinOffThePath) {
   spin(0.5);
   go(1.0);
   EXPECT_GT(wheels_error(), 0.4);
   EXPECT_LT(error(), wheels_error() / 20);
   EXPECT_LT(error(), 3 * std::sqrt(variance_) + 0.005);
-  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipSpinning);
-  EXPECT_NEAR(slide_.excess(), 0.5, 0.03);
+  EXPECT_EQ(correction_.reasons(), kSlipLeft | kSlipRight | kSlipSpinning);
+  EXPECT_NEAR(correction_.excess_speed(), 0.5, 0.03);
 }
 
-TEST_F(SlipCorrectionTest, AddsTheWayOfASkid) {
+TEST_F(SlipCorrectionTest, AddsThePathOfASkid) {
   spin(-0.4);
   go(1.0);
   EXPECT_GT(wheels_error(), 0.3);
   EXPECT_LT(error(), wheels_error() / 20);
-  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipStalled);
+  EXPECT_EQ(correction_.reasons(), kSlipLeft | kSlipRight | kSlipStalled);
 }
 
 // Wheels that stand while the body slides on do not spin.
@@ -96,16 +92,16 @@ TEST_F(SlipCorrectionTest, LockedWheelsAreStalled) {
     go(SlidingBody::kStep, -1);
     body_.left = body_.right = -body_.speed - 1e-9;
   }
-  ASSERT_TRUE(slide_.active());
-  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipStalled);
+  ASSERT_TRUE(correction_.active());
+  EXPECT_EQ(correction_.reasons(), kSlipLeft | kSlipRight | kSlipStalled);
 }
 
-TEST_F(SlipCorrectionTest, TheOtherSideGivesTheWayOfASpinOfOne) {
+TEST_F(SlipCorrectionTest, TheOtherSideGivesThePathOfASpinOfOne) {
   body_.left = 0.5;
-  for (int i = 0; i < 100 && !slide_.active(); ++i) go(SlidingBody::kStep);
+  for (int i = 0; i < 100 && !correction_.active(); ++i) go(SlidingBody::kStep);
   go(10.0);
-  EXPECT_TRUE(slide_.active()) << "a side that rolls carries it on as long as it takes";
-  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipTurn | kSlipSpinning);
+  EXPECT_TRUE(correction_.active()) << "a side that rolls carries it on as long as it takes";
+  EXPECT_EQ(correction_.reasons(), kSlipLeft | kSlipTurn | kSlipSpinning);
   EXPECT_GT(wheels_error(), 2);
   EXPECT_LT(error(), wheels_error() / 50);
 }
@@ -115,18 +111,18 @@ class SlipBounds : public SlipCorrectionTest, public testing::WithParamInterface
   static constexpr double kSlack = 0.021;  // m/s, of the bounds, and rounding
 };
 
-// Whatever the accelerometer reads in a slide: the way is that of a speed between zero, that of before, and the
+// Whatever the accelerometer reads in a slide: the path is that of a speed between zero, that of before, and the
 // wheels'. A renewed line moves it at once, within the same bounds.
-TEST_P(SlipBounds, TheWayStaysBetweenRestAndTheWheels) {
+TEST_P(SlipBounds, ThePathStaysBetweenRestAndTheWheels) {
   spin(0.7);
   body_.error = GetParam();
   const double began = body_.wheels().x + corrected_.x;
-  for (int i = 1; i < 2000 && slide_.active(); ++i) {
+  for (int i = 1; i < 2000 && correction_.active(); ++i) {
     go(SlidingBody::kStep);
     const double time = i * SlidingBody::kStep;
-    const double way = body_.wheels().x + corrected_.x - began;
-    ASSERT_GT(way, -kSlack * time - 1e-3) << i;
-    ASSERT_LT(way, (body_.wheel_speed() + kSlack) * time + 1e-3) << i;
+    const double path = body_.wheels().x + corrected_.x - began;
+    ASSERT_GT(path, -kSlack * time - 1e-3) << i;
+    ASSERT_LT(path, (body_.wheel_speed() + kSlack) * time + 1e-3) << i;
   }
 }
 
@@ -134,9 +130,9 @@ TEST_P(SlipBounds, TheWayStaysBetweenRestAndTheWheels) {
 TEST_P(SlipBounds, TheSpeedStaysBetweenRestAndTheWheels) {
   spin(0.7);
   body_.error = GetParam();
-  for (int i = 0; i < 600 && slide_.active(); ++i) {
+  for (int i = 0; i < 600 && correction_.active(); ++i) {
     go(SlidingBody::kStep);
-    const double speed = body_.wheel_speed() - slide_.excess();
+    const double speed = body_.wheel_speed() - correction_.excess_speed();
     ASSERT_GT(speed, -kSlack) << i;
     ASSERT_LT(speed, body_.wheel_speed() + kSlack) << i;
   }
@@ -150,25 +146,25 @@ TEST_F(SlipCorrectionTest, EndsWhenTheWheelsAgreeWithTheBody) {
   go(1.0);
   body_.left = body_.right = 0;
   EXPECT_LT(go(2), 0.5);
-  EXPECT_FALSE(slide_.active());
-  EXPECT_FALSE(slide_.gave_up());
-  EXPECT_EQ(slide_.reasons(), 0u);
+  EXPECT_FALSE(correction_.active());
+  EXPECT_FALSE(correction_.timed_out());
+  EXPECT_EQ(correction_.reasons(), 0u);
 }
 
 // The body has stopped within the slide; then its line is as wrong as the accelerometer made it.
 TEST_F(SlipCorrectionTest, EndsWhenTheRobotStands) {
   slide_to_a_stand();
   EXPECT_LT(go(2), 0.6);
-  EXPECT_FALSE(slide_.active());
+  EXPECT_FALSE(correction_.active());
 }
 
-// Within the doubts of the line and yet bent by friction: what is left of the slip would pass for the line.
+// Within the tolerance of the line and yet bent by friction: what is left of the slip would pass for the line.
 TEST_F(SlipCorrectionTest, ItLastsWhileFrictionStillBendsE) {
   constexpr double kFriction = 0.5;  // m/s² by which the wheels come back to the ground's speed
   spin(0.5);
   body_.error = 0.02;
   go(2.0);
-  while (slide_.active() && body_.left > 0) {
+  while (correction_.active() && body_.left > 0) {
     go(SlidingBody::kStep);
     body_.left = body_.right = body_.left - kFriction * SlidingBody::kStep;
   }
@@ -178,40 +174,40 @@ TEST_F(SlipCorrectionTest, ItLastsWhileFrictionStillBendsE) {
 TEST_F(SlipCorrectionTest, AfterAStandTheLineIsThatOfNoSpeed) {
   slide_to_a_stand();
   ASSERT_LT(go(2), 0.6);
-  const SlipStatistic::Point& now = body_.statistic.now();
-  EXPECT_NEAR(now.speed.x + slide_.line().x, 0, 1e-12);
-  EXPECT_NEAR(now.speed.y + slide_.line().y, 0, 1e-12);
+  const MotionDifference::Point& now = body_.detector.difference().now();
+  EXPECT_NEAR(now.velocity.x + correction_.line_slope().x, 0, 1e-12);
+  EXPECT_NEAR(now.velocity.y + correction_.line_slope().y, 0, 1e-12);
 }
 
 TEST_F(SlipCorrectionTest, EndsAfterTheLongestTime) {
   spin(0.5);
-  EXPECT_NEAR(go(20), SlipCorrection::kLongest, 0.3);
-  EXPECT_FALSE(slide_.active());
-  EXPECT_TRUE(slide_.gave_up());
+  EXPECT_NEAR(go(20), Tuning::kLongestSlide, 0.3);
+  EXPECT_FALSE(correction_.active());
+  EXPECT_TRUE(correction_.timed_out());
   EXPECT_GT(std::hypot(corrected_.x, corrected_.y), 1);
 }
 
-// Where the accelerometer shakes, a slide of that length is none: the way is that of the wheels again.
-TEST_F(SlipCorrectionTest, OnAShakenRobotItTakesBackWhatItCorrected) {
-  calm_ = false;
+// Where the accelerometer shakes, a slide of that length is none: the path is that of the wheels again.
+TEST_F(SlipCorrectionTest, OnAShakenRobotItUndoesWhatItCorrected) {
+  as_specified_ = false;
   spin(0.5);
-  EXPECT_NEAR(go(20), SlipCorrection::kLongestShaken, 0.3);
-  EXPECT_TRUE(slide_.gave_up());
+  EXPECT_NEAR(go(20), Tuning::kLongestShakenSlide, 0.3);
+  EXPECT_TRUE(correction_.timed_out());
   EXPECT_NEAR(corrected_.x, 0, 1e-12);
   EXPECT_NEAR(corrected_.y, 0, 1e-12);
   EXPECT_GT(std::sqrt(variance_), 0.5) << "it may have been one";
 }
 
-TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsTakenBack) {
-  calm_ = false;
+TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsUndone) {
+  as_specified_ = false;
   spin(0.5);
   go(0.5);
   const Planar before = corrected_;
   ASSERT_GT(std::hypot(before.x, before.y), 0.1);
-  body_.statistic.begin_path();
-  slide_.begin_path(body_.statistic);
+  body_.detector.begin_path();
+  correction_.begin_path(body_.detector.difference());
   go(20);
-  ASSERT_TRUE(slide_.gave_up());
+  ASSERT_TRUE(correction_.timed_out());
   EXPECT_NEAR(corrected_.x, before.x, 1e-12);
   EXPECT_NEAR(corrected_.y, before.y, 1e-12);
 }
@@ -219,27 +215,27 @@ TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsTakenBack) {
 // It is proven 0.1 … 0.8 s after it began.
 TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsCorrectedByASlideThatIsProvenLater) {
   body_.left = body_.right = 0.5;
-  while (!slide_.active()) {
+  while (!correction_.active()) {
     corrected_ = {};
-    body_.statistic.begin_path();
+    body_.detector.begin_path();
     go(SlidingBody::kStep);
   }
-  EXPECT_LE(std::hypot(corrected_.x, corrected_.y), 0.5 * SlipStatistic::kGrid * 1.1);
+  EXPECT_LE(std::hypot(corrected_.x, corrected_.y), 0.5 * Tuning::kPointInterval * 1.1);
 }
 
-TEST_F(SlipCorrectionTest, ResetEndsIt) {
+TEST_F(SlipCorrectionTest, TheEndLeavesNoExcess) {
   spin(0.5);
-  slide_.reset();
-  EXPECT_FALSE(slide_.active());
-  EXPECT_EQ(slide_.excess(), 0);
+  correction_.end();
+  EXPECT_FALSE(correction_.active());
+  EXPECT_EQ(correction_.excess_speed(), 0);
 }
 
 TEST_F(SlipCorrectionTest, SlidingSidewaysIsCorrectedAcross) {
   go(0.5, 0, 1.0);
   go(0.5);
-  ASSERT_TRUE(slide_.active());
-  EXPECT_NE(slide_.reasons() & kSlipSideways, 0u);
-  EXPECT_NEAR(slide_.aside(), 0.5, 0.05);
+  ASSERT_TRUE(correction_.active());
+  EXPECT_NE(correction_.reasons() & kSlipSideways, 0u);
+  EXPECT_NEAR(correction_.lateral_speed(), 0.5, 0.05);
   EXPECT_LT(error(), wheels_error() / 5);
 }
 

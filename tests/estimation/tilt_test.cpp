@@ -46,11 +46,11 @@ TEST(TiltTest, IsBoundedHoweverTheGyroTurns) {
   }
 }
 
-TEST(TiltTest, IsBoundedHoweverTheAccelerometerPulls) {
+TEST(TiltTest, IsBoundedHoweverTheAccelerometerCorrectsIt) {
   Tilt tilt;
   for (int i = 0; i < 1000; ++i) {
     tilt.turn({}, kTiltStep, true);
-    tilt.pull(8.0, -9.0, 1.0, 1e-3);
+    tilt.correct(8.0, -9.0, 1.0, 1e-3);
     ASSERT_LE(std::hypot(tilt.up()[0], tilt.up()[1]), Tuning::kSteepest + 1e-9);
     ASSERT_GT(tilt.up()[2], 0);
   }
@@ -60,7 +60,7 @@ TEST(TiltTest, ItsVarianceIsBoundedHoweverLongNothingCorrectsIt) {
   Tilt tilt;
   for (int i = 0; i < 100000; ++i) {
     tilt.turn({}, 1.0, false);
-    if (i % 100 == 0) tilt.pull(0, 0, 1.0, 1e6);
+    if (i % 100 == 0) tilt.correct(0, 0, 1.0, 1e6);
   }
   for (const int axis : {0, 1}) EXPECT_LE(tilt.covariance(axis, axis), Tuning::kSteepest * Tuning::kSteepest);
 }
@@ -177,14 +177,14 @@ TEST(TiltTest, ARestThatContradictsGyroAndFloorOpensTheTiltAndLeavesTheBias) {
 }
 
 // Onto a slope of 0.05 rad without a gyro that counts: the wheels' acceleration finds it.
-TEST(TiltTest, ThePullOfGravityTurnsIt) {
+TEST(TiltTest, TheErrorOfGravityTurnsIt) {
   Tilt tilt;
   stand(tilt, gravity(0));
   for (int i = 0; i < 30000; ++i) {
     tilt.turn({}, kTiltStep, false);
     if (i % 40 != 0) continue;
     const double along = gravity(0.05)[0] - kGravity * tilt.up()[0] - tilt.bias(0);
-    tilt.pull(along, 0, 0.4, 0.05);
+    tilt.correct(along, 0, 0.4, 0.05);
   }
   EXPECT_NEAR(tilt.pitch(), 0.05, kAllowedTilt);
 }

@@ -1,220 +1,151 @@
 #include "estimation/slip/slip_correction.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include "estimation/values.h"
-#include "signals/state_frame.h"
 
 namespace robot_control {
 namespace {
 
-constexpr double kAgreed = 0.15;     // s
-constexpr double kStands = 0.25;     // s
-constexpr double kLine = 0.4;        // s, over which the line's slope is taken
-constexpr double kDoubts = 3;        // deviations
-constexpr double kLeastSlip = 0.02;  // m/s
-constexpr double kQuiet = 0.15;      // m/s²: a robot that slides brakes by more
-constexpr double kSlack = 0.02;      // m/s, of the bounds; rad/s
-
-/// In axes that are turned by that angle.
-Planar turned(const Planar& v, double angle) noexcept {
-  const double c = std::cos(angle);
-  const double n = std::sin(angle);
-  return {c * v.x + n * v.y, c * v.y - n * v.x};
+double squared_norm(const Planar& v) noexcept {
+  return square(v.x) + square(v.y);
 }
 
 }  // namespace
 
-SlipCorrection::Step SlipCorrection::begin(const SlipStatistic& statistic, double span, const Known& known) noexcept {
-  const SlipStatistic::Point& onset = statistic.before(statistic.last().time - 0.9 * span);
-  const SlipStatistic::Point& older = statistic.before(onset.time - std::max(kLine, span));
-  const double time = onset.time - older.time;
-  if (!(time > 0)) return {};
+PathCorrection SlipCorrection::begin(const MotionDifference& difference, double span, const Input& input) noexcept {
+  const Point& onset = difference.before(difference.last().time - 0.9 * span);
+  const Point& older = difference.before(onset.time - std::max(Tuning::kLineTime, span));
+  if (!(onset.time > older.time)) return {};
   active_ = true;
-  gave_up_ = false;
-  reasons_ = 0;
-  since_end_ = 0;
-  line_ = {(onset.e.x - older.e.x) / time, (onset.e.y - older.e.y) / time};
-  const double heading_x = std::cos(onset.yaw);
-  const double heading_y = std::sin(onset.yaw);
-  const double before = heading_x * (onset.speed.x + line_.x) + heading_y * (onset.speed.y + line_.y);
-  least_ = std::min(0.0, before);
-  most_ = std::max(0.0, before);
-  onset_speed_ = before;
-  onset_deviation_ = std::sqrt(square(known.along) + square(known.slow * time / 2) + square(known.white) * time / 3);
-  anchored_ = onset.time;
-  counted_ = agreed_ = stood_ = 0;
+  timed_out_ = false;
+  since_end_ = rolling_time_ = standing_time_ = turn_slope_ = 0;
   total_ = {};
-  slips_ = {true, true};
-  sideways_ = true;
-  path_began_ = statistic.path_began();
-  from_ = looked_ = onset;
-  slope_ = line_;
-  turn_ = 0;
-  if (onset.time < path_began_) from_ = statistic.before(path_began_);
-  decide(statistic.last(), known);
-  Step correction = travel(statistic.last(), known);
-  correction.variance += square(kUncertain) * size();
+  contacts_.slip_all();
+  line_.begin(older, onset, input.noise, input.path_slope_deviation);
+  path_slope_ = line_.slope();
+  onset_speed_ = rotated(onset.velocity + line_.slope(), -onset.yaw).x;
+  path_begin_ = difference.path_begin();
+  corrected_ = onset.time < path_begin_ ? difference.before(path_begin_) : onset;
+  decided_ = onset;
+  decide(difference.last(), input);
+  PathCorrection correction = correct(difference.last(), input);
+  correction.variance += square(Tuning::kCorrectionDeviation) * squared_norm(total_);
   return correction;
 }
 
-std::pair<double, double> SlipCorrection::bounds(const Known& known) const noexcept {
-  return {std::min(least_, known.speed) - kSlack, std::max(most_, known.speed) + kSlack};
-}
-
-double SlipCorrection::slipped(double along, double turn) const noexcept {
-  if (slips_[0] && slips_[1]) return along;
-  return slips_[0] ? -turn / 2 : slips_[1] ? turn / 2 : 0;
-}
-
-double SlipCorrection::size() const noexcept {
-  return square(total_.x) + square(total_.y);
-}
-
-double SlipCorrection::speed_deviation(const Known& known) const noexcept {
-  const double t = std::max(0.0, from_.time - anchored_);
-  return std::sqrt(square(onset_deviation_) + square(known.slow * t) + square(known.white) * t);
-}
-
-/// Which sides slip and whether the robot slides across; `off`, m/s: from the line, along, across, and of W.
-void SlipCorrection::judge_contacts(const Known& known, const Slope& off, const Slope& bend) noexcept {
-  const double doubt = std::max(kLeastSlip, kDoubts * std::hypot(speed_deviation(known), known.along));
-  const bool one_sided = std::abs(off.turn) > std::max(kLeastSlip, kDoubts * known.turn);
-  for (const std::size_t i : {0U, 1U}) slips_[i] = std::abs(off.side(i)) > doubt;
-  if (one_sided && !slips_[0] && !slips_[1]) slips_[std::abs(off.side(0)) > std::abs(off.side(1)) ? 0 : 1] = true;
-  if (one_sided && slips_[0] && slips_[1]) {  // one side at least keeps to the line if the other explains all of it
-    const std::size_t better = std::abs(off.side(0)) < std::abs(off.side(1)) ? 0 : 1;
-    if (std::abs(off.side(better)) < 1.5 * doubt) slips_[better] = false;
-  }
-  sideways_ = std::abs(off.across) > doubt;
-  const double steady = std::max(kLeastSlip, kDoubts * known.along);  // friction bends E, beside the line, too
-  for (const std::size_t i : {0U, 1U}) slips_[i] = slips_[i] || std::abs(bend.side(i)) > steady;
-  sideways_ = sideways_ || std::abs(bend.across) > steady;
-}
-
-/// Wheels and gyro stand still, and the body does not brake, as friction would brake it.
-bool SlipCorrection::stands(const SlipStatistic::Point& to, const Known& known, double dt) const noexcept {
-  const Planar velocity{to.speed.x + line_.x, to.speed.y + line_.y};
-  const Planar acceleration{(to.speed.x - looked_.speed.x) / dt, (to.speed.y - looked_.speed.y) / dt};
-  const double speed = std::hypot(velocity.x, velocity.y);
-  const double brakes = speed > kSlack ? -(acceleration.x * velocity.x + acceleration.y * velocity.y) / speed
-                                       : std::hypot(acceleration.x, acceleration.y);
-  return std::abs(known.speed) < kSlack && std::abs(to.yaw - looked_.yaw) < kSlack * dt &&
-         brakes < kQuiet + kDoubts * known.slow;
-}
-
-/// The line is half that of before, half what a side that rolls says.
-void SlipCorrection::renew_line(const SlipStatistic::Point& to, const Known& known, const Slope& off) noexcept {
-  const bool both = !slips_[0] && !slips_[1];
-  const double along = both ? off.along : off.side(slips_[0] ? 1 : 0);
-  const Planar half = turned({0.5 * along, sideways_ ? 0 : 0.5 * off.across}, -(to.yaw + looked_.yaw) / 2);
-  line_ = {line_.x + half.x, line_.y + half.y};
-  if (!sideways_) anchored_ = to.time;
-  counted_ = 0;
-  onset_deviation_ = known.along + known.slow * (to.time - looked_.time);
-}
-
-void SlipCorrection::decide(const SlipStatistic::Point& to, const Known& known) noexcept {
-  const double dt = to.time - looked_.time;
-  if (!(dt > 0)) return;
-  const double yaw = (to.yaw + looked_.yaw) / 2;
-  const Planar slope{(to.e.x - looked_.e.x) / dt, (to.e.y - looked_.e.y) / dt};
-  const Planar beside = turned({slope.x - line_.x, slope.y - line_.y}, yaw);
-  const Planar bent = turned({slope.x - slope_.x, slope.y - slope_.y}, yaw);
-  const double turn = (to.w - looked_.w) / dt;
-  const Slope off{.along = beside.x, .across = beside.y, .turn = turn};
-  judge_contacts(known, off, {.along = bent.x, .across = bent.y, .turn = turn - turn_});
-  slope_ = slope;
-  turn_ = turn;
-  stood_ = stands(to, known, dt) ? stood_ + dt : 0;
-  if (stood_ >= kStands) {
-    slips_ = {};
-    sideways_ = false;
-    line_ = {-to.speed.x, -to.speed.y};
-  } else if (!slips_[0] || !slips_[1]) {
-    renew_line(to, known, off);
-  }
-  agreed_ = !slips_[0] && !slips_[1] && !sideways_ ? agreed_ + dt : 0;
-  const auto [low, high] = bounds(known);
-  excess_ = known.speed - std::clamp(known.speed - slipped(off.along, turn), low, high);
-  aside_ = sideways_ ? std::clamp(-off.across, -std::max(-low, high), std::max(-low, high)) : 0;
-  name_reasons(known, off.side(0), off.side(1));
-  looked_ = to;
-}
-
-void SlipCorrection::name_reasons(const Known& known, double left, double right) noexcept {
-  reasons_ = 0;
-  if (slips_[0]) reasons_ |= kSlipLeft;
-  if (slips_[1]) reasons_ |= kSlipRight;
-  if (slips_[0] != slips_[1]) reasons_ |= kSlipTurn;
-  if (sideways_) reasons_ |= kSlipSideways;
-  const double excess[2] = {left, right};  // m/s, of the wheels over the ground
-  for (const std::size_t i : {0U, 1U}) {
-    if (!slips_[i]) continue;
-    const bool faster = std::abs(known.speed) > std::abs(known.speed - excess[i]);
-    reasons_ |= faster ? kSlipSpinning : kSlipStalled;
-  }
-}
-
-SlipCorrection::Step SlipCorrection::travel(const SlipStatistic::Point& to, const Known& known) noexcept {
-  const double dt = to.time - from_.time;
-  if (!(dt > 0)) return {};
-  const double c = std::cos((to.yaw + from_.yaw) / 2);
-  const double n = std::sin((to.yaw + from_.yaw) / 2);
-  const double x = to.e.x - from_.e.x - line_.x * dt;
-  const double y = to.e.y - from_.e.y - line_.y * dt;
-  const double turn = to.w - from_.w;
-  double along = slipped(c * x + n * y, turn);
-  double across = sideways_ ? c * y - n * x : 0;
-  const double rolled = known.speed * dt;
-  const auto [low, high] = bounds(known);
-  along = rolled - std::clamp(rolled - along, low * dt, high * dt);
-  const double widest = std::max(-low, high) * dt;
-  across = std::clamp(across, -widest, widest);
-  const double t = to.time - anchored_;
-  const double total =
-      square(onset_deviation_ * t) + square(known.slow * t * t / 2) + square(known.white) * t * t * t / 3;
-  const double variance = slips_[0] && slips_[1] ? std::max(0.0, total - counted_) : 0;
-  counted_ = std::max(counted_, total);
-  from_ = to;
-  total_.x -= c * along - n * across;
-  total_.y -= n * along + c * across;
-  return {-c * along + n * across, -n * along - c * across, variance};
-}
-
-SlipCorrection::Step SlipCorrection::step(const SlipStatistic& statistic, const Known& known) noexcept {
-  const SlipStatistic::Point& now = statistic.now();
+PathCorrection SlipCorrection::step(const MotionDifference& difference, const Input& input) noexcept {
+  const Point& now = difference.now();
   const Planar earlier = total_;
-  const double before = size();
-  Step correction = travel(now, known);
-  correction.variance += square(kUncertain) * std::max(0.0, size() - before);
-  if (now.time - looked_.time < 2 * SlipStatistic::kGrid * (1 - 1e-9)) return correction;
-  const double carried = now.time - std::max(anchored_, path_began_);
-  const bool blind = slips_[0] && slips_[1];
-  const Planar line = line_;
-  decide(now, known);
-  if (blind && (!slips_[0] || !slips_[1])) {  // the line's error grew on the way
-    const double x = (line_.x - line.x) * carried;
-    const double y = (line_.y - line.y) * carried;
-    correction.x += x;
-    correction.y += y;
-    total_.x += x;
-    total_.y += y;
+  PathCorrection correction = correct(now, input);
+  correction.variance +=
+      square(Tuning::kCorrectionDeviation) * std::max(0.0, squared_norm(total_) - squared_norm(earlier));
+  if (now.time - decided_.time < 2 * Tuning::kPointInterval * (1 - 1e-9)) return correction;
+  const double carried_on = now.time - std::max(line_.begin_time(), path_begin_);
+  const bool both_slipped = contacts_.both_slip();
+  const Planar slope = line_.slope();
+  decide(now, input);
+  if (both_slipped && !contacts_.both_slip()) {  // the error of the line has moved the path since it was carried on
+    const Planar shift = (line_.slope() - slope) * carried_on;
+    correction.shift = correction.shift + shift;
+    total_ = total_ + shift;
   }
-  gave_up_ = now.time - anchored_ > (known.calm ? kLongest : kLongestShaken);
-  if (gave_up_ && !known.calm) {  // the plain odometry wins
-    correction = {-earlier.x, -earlier.y, size()};
-    taken_back_ = kTakenBack;
+  const double longest = input.sensors_as_specified ? Tuning::kLongestSlide : Tuning::kLongestShakenSlide;
+  timed_out_ = now.time - line_.begin_time() > longest;
+  if (timed_out_ && !input.sensors_as_specified) {
+    correction = {-earlier, squared_norm(total_)};
+    undone_for_ = Tuning::kUndoneTime;
   }
-  if (agreed_ >= kAgreed || stood_ >= kStands || gave_up_) end();
+  if (rolling_time_ >= Tuning::kRollingTime || standing_time_ >= Tuning::kStandingTime || timed_out_) end();
   return correction;
 }
 
-void SlipCorrection::begin_path(const SlipStatistic& statistic) noexcept {
+/// Slopes since the last decision → contacts, line, speeds and reasons.
+void SlipCorrection::decide(const Point& to, const Input& input) noexcept {
+  const double dt = to.time - decided_.time;
+  if (!(dt > 0)) return;
+  const double yaw = (to.yaw + decided_.yaw) / 2;
+  const Planar path_slope = (to.path_difference - decided_.path_difference) / dt;
+  const double turn_slope = (to.turn_difference - decided_.turn_difference) / dt;
+  const Planar off_line = rotated(path_slope - line_.slope(), -yaw);
+  const Planar bend = rotated(path_slope - std::exchange(path_slope_, path_slope), -yaw);
+  const DifferenceSlope excess{.along = off_line.x, .across = off_line.y, .turn = turn_slope};
+  const double turn_bend = turn_slope - std::exchange(turn_slope_, turn_slope);
+  contacts_.judge(excess, {.along = bend.x, .across = bend.y, .turn = turn_bend}, tolerance(input));
+  standing_time_ = stands(to, input) ? standing_time_ + dt : 0;
+  if (standing_time_ >= Tuning::kStandingTime) {
+    contacts_.roll_all();
+    line_.set_slope(-to.velocity);
+  } else if (!contacts_.both_slip()) {
+    renew_line(to, input, excess);
+  }
+  rolling_time_ = contacts_.all_roll() ? rolling_time_ + dt : 0;
+  const auto [low, high] = speed_bounds(input.wheel_speed);
+  const double speed = input.wheel_speed - contacts_.slipped(excess.along, excess.turn);
+  excess_speed_ = input.wheel_speed - std::clamp(speed, low, high);
+  const double fastest = std::max(-low, high);
+  lateral_speed_ = contacts_.sideways ? std::clamp(-excess.across, -fastest, fastest) : 0;
+  reasons_ = contacts_.reasons(excess, input.wheel_speed);
+  decided_ = to;
+}
+
+SlideContacts::Tolerance SlipCorrection::tolerance(const Input& input) const noexcept {
+  const double line = line_.speed_deviation(corrected_.time, input.noise);
+  const auto significant = [](double deviation) {
+    return std::max(Tuning::kLeastSlip, Tuning::kSignificant * deviation);
+  };
+  return {.path = significant(std::hypot(line, input.path_slope_deviation)),
+          .turn = significant(input.turn_slope_deviation),
+          .bend = significant(input.path_slope_deviation)};
+}
+
+/// Wheels and gyro stand still, and the body does not brake.
+bool SlipCorrection::stands(const Point& to, const Input& input) const noexcept {
+  const double dt = to.time - decided_.time;
+  const Planar velocity = to.velocity + line_.slope();
+  const Planar acceleration = (to.velocity - decided_.velocity) / dt;
+  const double speed = velocity.norm();
+  const double braking = speed > Tuning::kLeastSlip ? -dot(acceleration, velocity) / speed : acceleration.norm();
+  return std::abs(input.wheel_speed) < Tuning::kLeastSlip &&
+         std::abs(to.yaw - decided_.yaw) < Tuning::kLeastSlip * dt &&
+         braking < Tuning::kLeastBraking + Tuning::kSignificant * input.noise.slow;
+}
+
+/// Towards the slope that a rolling side shows.
+void SlipCorrection::renew_line(const Point& to, const Input& input, const DifferenceSlope& excess) noexcept {
+  const bool both_roll = !contacts_.slips[0] && !contacts_.slips[1];
+  const double along = both_roll ? excess.along : excess.side(contacts_.slips[0] ? 1 : 0);
+  const Planar change{Tuning::kLineGain * along, contacts_.sideways ? 0 : Tuning::kLineGain * excess.across};
+  line_.renew(rotated(change, (to.yaw + decided_.yaw) / 2),
+              input.path_slope_deviation + input.noise.slow * (to.time - decided_.time));
+  if (!contacts_.sideways) line_.begin_at(to.time);
+}
+
+/// Of the path since the last correction.
+PathCorrection SlipCorrection::correct(const Point& to, const Input& input) noexcept {
+  const double dt = to.time - corrected_.time;
+  if (!(dt > 0)) return {};
+  const double yaw = (to.yaw + corrected_.yaw) / 2;
+  const Planar off_line = rotated(to.path_difference - corrected_.path_difference - line_.slope() * dt, -yaw);
+  const double slipped = contacts_.slipped(off_line.x, to.turn_difference - corrected_.turn_difference);
+  const double rolled = input.wheel_speed * dt;
+  const auto [low, high] = speed_bounds(input.wheel_speed);
+  const double farthest = std::max(-low, high) * dt;
+  const double along = rolled - std::clamp(rolled - slipped, low * dt, high * dt);
+  const double across = std::clamp(contacts_.sideways ? off_line.y : 0, -farthest, farthest);
+  const Planar shift = -rotated({along, across}, yaw);
+  corrected_ = to;
+  total_ = total_ + shift;
+  return {shift, line_.take_variance(to.time, input.noise, contacts_.both_slip())};
+}
+
+std::pair<double, double> SlipCorrection::speed_bounds(double wheel_speed) const noexcept {
+  const auto [low, high] = std::minmax({0.0, onset_speed_, wheel_speed});
+  return {low - Tuning::kLeastSlip, high + Tuning::kLeastSlip};
+}
+
+void SlipCorrection::begin_path(const MotionDifference& difference) noexcept {
   if (!active_) return;
-  path_began_ = statistic.now().time;
-  from_ = statistic.now();
+  path_begin_ = difference.now().time;
+  corrected_ = difference.now();
   total_ = {};
 }
 
@@ -222,9 +153,8 @@ void SlipCorrection::end() noexcept {
   if (!active_) return;
   active_ = false;
   since_end_ = 0;
-  excess_ = aside_ = 0;
-  slips_ = {};
-  sideways_ = false;
+  excess_speed_ = lateral_speed_ = 0;
+  contacts_.roll_all();
 }
 
 }  // namespace robot_control

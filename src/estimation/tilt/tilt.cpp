@@ -73,7 +73,7 @@ void Tilt::age() noexcept {
   turned_ = walked_ = time_ = 0;
 }
 
-void Tilt::pull(double along, double across, double dt, double deviation) noexcept {
+void Tilt::correct(double along, double across, double dt, double deviation) noexcept {
   age();
   const Eigen::Vector2d sum = now_.up.head<2>() + now_.bias + Eigen::Vector2d(along, across) / kGravity;
   now_.update(sum, square(deviation / kGravity) * std::max(1.0, Tuning::kSlowTime / dt));

@@ -40,8 +40,8 @@ class Tilt {
   /// By the wheels, rad.
   void roll(double turn) noexcept { rolled_ += turn; }
 
-  /// By how much gravity seems to be too small, m/s², along and across, over the last `dt`; deviation m/s².
-  void pull(double along, double across, double dt, double deviation) noexcept;
+  /// By how much gravity and bias are larger than taken, m/s², along and across, over the last `dt`; deviation m/s².
+  void correct(double along, double across, double dt, double deviation) noexcept;
 
   /// The robot rests: `force` m/s² is its accelerometer's mean over `dt`.
   void rest(const Vector3& force, double dt) noexcept;

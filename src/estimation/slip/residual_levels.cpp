@@ -1,0 +1,84 @@
+#include "estimation/slip/residual_levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_control {
+namespace {
+
+constexpr ResidualNoise kUnlearned{.white = Tuning::kUnlearnedWhite,
+                                   .slow = Tuning::kUnlearnedSlow,
+                                   .jitter = Tuning::kUnlearnedJitter,
+                                   .slip = Tuning::kFirstSlip};
+
+}  // namespace
+
+ResidualLevels::ResidualLevels(const SlipParams& params) noexcept
+    : params_(params),
+      nominal_{.white = params.accelerometer,
+               .slow = Tuning::kSlowAcceleration,
+               .jitter = 0,
+               .slip = params.wheel_slip_noise} {}
+
+double ResidualLevels::nominal_deviation(Channel channel, const SlipResidual& residual,
+                                         const SlipUncertainty& uncertainty) const noexcept {
+  return residual_deviation(channel, residual, nominal_, uncertainty, params_);
+}
+
+double ResidualLevels::at_speed(double level, double speed) const noexcept {
+  const double faster = std::max(1.0, speed / std::max(Tuning::kSlowestComparison, usual_speed_));
+  return std::sqrt(1 + (square(level) - 1) * square(faster));
+}
+
+double ResidualLevels::deviation(std::size_t span, Channel channel, const SlipResidual& residual,
+                                 const SlipUncertainty& uncertainty) const noexcept {
+  const double nominal = nominal_deviation(channel, residual, uncertainty);
+  const double level = level_[span][channel];
+  const double usual = level == 0
+                           ? std::max(nominal, residual_deviation(channel, residual, kUnlearned, uncertainty, params_))
+                           : at_speed(level, residual.speed()) * nominal;
+  const double change =
+      channel == SlipResidual::kTurn ? params_.wheel_base * residual.yaw_rate_change : residual.speed_change;
+  return std::hypot(usual, uncertainty.clock_offset * change);
+}
+
+void ResidualLevels::learn(double time, std::size_t span, const SlipResidual& residual,
+                           const SlipUncertainty& uncertainty, bool slip) noexcept {
+  const bool unknown = level_[span][SlipResidual::kAlong] == 0;
+  const bool moves = residual.known && residual.distance > Tuning::kSlowestComparison * residual.span;
+  if ((slip && !unknown) || !moves || !(time - learned_at_[span] >= residual.span)) return;
+  learned_at_[span] = time;
+  if (span == kTiltSpan) {
+    const double share = 1.0 / static_cast<double>(count_[span][SlipResidual::kAlong] + 1);
+    usual_speed_ += std::max(Tuning::kUsualSpeedShare, share) * (residual.speed() - usual_speed_);
+  }
+  for (const Channel channel : {SlipResidual::kAlong, SlipResidual::kAcross, SlipResidual::kTurn}) {
+    const double nominal = nominal_deviation(channel, residual, uncertainty);
+    learn_level(span, channel, std::abs(residual.value[channel]) / nominal / Tuning::kNormal90);
+  }
+}
+
+void ResidualLevels::learn_level(std::size_t span, Channel channel, double ratio) noexcept {
+  double& level = level_[span][channel];
+  double& largest = largest_[span][channel];
+  const std::uint64_t count = ++count_[span][channel];
+  if (count <= Tuning::kFirstResiduals) largest = std::max(largest, ratio);
+  if (count == Tuning::kFirstResiduals) level = std::max(1.0, largest);
+  if (count <= Tuning::kFirstResiduals) return;
+  level = std::max(1.0, level * std::exp((ratio > level ? 0.9 : -0.1) * Tuning::kQuantileStep));
+}
+
+void ResidualLevels::raise(const Levels& least) noexcept {
+  for (std::size_t i = 0; i < kSpans; ++i) {
+    for (std::size_t c = 0; c < SlipResidual::kChannels; ++c) level_[i][c] = std::max(level_[i][c], least[i][c]);
+  }
+}
+
+AccelerationNoise ResidualLevels::acceleration_noise(double speed, double variance) const noexcept {
+  const double level = level_[kTiltSpan][SlipResidual::kAlong];
+  const double factor = level == 0 ? 1 : at_speed(level, speed);
+  const ResidualNoise& noise = level == 0 ? kUnlearned : nominal_;
+  return {.white = factor * noise.white, .slow = std::sqrt(square(factor * noise.slow) + variance)};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,80 @@
+#pragma once
+/// Whether wheels slip, by residuals of wheels against gyro and accelerometer (slip_residual.h) over four spans T, each
+/// measured against its usual level (residual_levels.h).
+///
+/// Slip is proven where a residual exceeds kProof of its deviations and that of the next longer T kSupport: one late
+/// time stamp is as large in every T, and σ grows with T. Without slip the mean of −D/T² along and across is the error
+/// of gravity and bias that the acceleration contains.
+
+#include <array>
+
+#include "estimation/slip/residual_levels.h"
+
+namespace robot_control {
+
+class SlipDetector {
+ public:
+  using Channel = SlipResidual::Channel;
+  static constexpr std::array<Channel, SlipResidual::kChannels> kChannels{SlipResidual::kAlong, SlipResidual::kAcross,
+                                                                          SlipResidual::kTurn};
+
+  SlipDetector() = default;
+  explicit SlipDetector(const SlipParams& params) noexcept : difference_(params), levels_(params) {}
+
+  void restart() noexcept;  ///< of the differences (motion_difference.h); the levels stay
+  void restart_on_line(const Planar& slope) noexcept;
+  void restart_at_rest(double yaw, const Vector3& up) noexcept;
+  void begin_path() noexcept { difference_.begin_path(); }
+  /// True: a point was added, which may be judged.
+  bool step(const MotionDifference::Sample& sample) noexcept { return difference_.step(sample); }
+  /// At a point. `learns`: no slide is going on.
+  void judge(const SlipUncertainty& uncertainty, bool learns) noexcept;
+  /// The slip that was proven last was none: the levels rise to those that explain it.
+  void learn_false_proof() noexcept;
+
+  const MotionDifference& difference() const noexcept { return difference_; }
+  const ResidualLevels& levels() const noexcept { return levels_; }
+
+  // Of the last judgement:
+  bool proven(Channel channel) const noexcept { return proven_span_[channel] > 0; }
+  double proven_span(Channel channel) const noexcept { return proven_span_[channel]; }  ///< s, the shortest; 0: none
+  double shortest_proven_span() const noexcept;                                         ///< s, of all channels; 0: none
+  double nis(Channel channel) const noexcept { return nis_[channel]; }                  ///< at T = 0.2 s; < 0: none
+  /// m/s: deviation of the slope of E or W over T = 0.1 s.
+  double slope_deviation(Channel channel) const noexcept { return slope_deviation_[channel]; }
+
+  /// By how much gravity is larger than taken, in base axes.
+  struct GravityError {
+    bool known = false;
+    double along = 0, across = 0;  ///< m/s²
+    double deviation = 0;          ///< m/s²
+    double interval = 0;           ///< s since the last one
+  };
+  const GravityError& gravity_error() const noexcept { return gravity_error_; }
+
+  /// While it drives, as learned; `variance` (m/s²)²: of gravity and bias.
+  AccelerationNoise acceleration_noise(double variance) const noexcept {
+    return levels_.acceleration_noise(speed_, variance);
+  }
+  /// The residuals are those that the data sheets explain.
+  bool sensors_as_specified() const noexcept;
+
+ private:
+  using Residuals = std::array<SlipResidual, ResidualLevels::kSpans>;
+
+  void forget_judgement() noexcept;
+  void judge_channel(Channel channel, const Residuals& residuals, const SlipUncertainty& uncertainty) noexcept;
+  void compare_gravity(const SlipResidual& residual, bool learns) noexcept;
+
+  MotionDifference difference_;
+  ResidualLevels levels_;
+  std::array<double, SlipResidual::kChannels> proven_span_{};
+  std::array<double, SlipResidual::kChannels> nis_{-1, -1, -1};
+  std::array<double, SlipResidual::kChannels> slope_deviation_{};
+  ResidualLevels::Levels explaining_levels_{};  ///< of the last proof
+  GravityError gravity_error_;
+  double gravity_compared_at_ = 0;  ///< s
+  double speed_ = 0;                ///< m/s
+};
+
+}  // namespace robot_control

@@ -1,0 +1,58 @@
+#pragma once
+/// What slip, noise and vibration leave of the differences between wheels and inertial sensors (motion_difference.h)
+/// over two successive spans of about T:
+///
+///   along, across:  D = (E₂ − E₁) − (E₁ − E₀) (t₂ − t₁)/(t₁ − t₀)     m, base axes at t₁
+///   turn:           V = W₂ − W₁                                       m
+///
+/// Index 2 is the last point, 1 about T and 0 about 2 T before it. The standard deviations by encoder, accelerometer
+/// (white n and slow a errors), the slip of rolling wheels, time stamps (jitter) and the uncertainties of calibration
+/// (base factor β, gyro bias b) and gravity:
+///
+///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance + 6 (jitter speed)²
+///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (B σ_b T)² + (jitter B Δω)²
+
+#include <array>
+#include <cstddef>
+
+#include "estimation/slip/motion_difference.h"
+
+namespace robot_control {
+
+struct SlipResidual {
+  enum Channel : std::size_t { kAlong, kAcross, kTurn, kChannels };
+
+  bool known = false;                     ///< there were points for both spans
+  double span = 0;                        ///< s: t₂ − t₁
+  double distance = 0;                    ///< m, over both spans
+  double turned = 0;                      ///< rad: Δψ, over both spans
+  double yaw_rate_change = 0;             ///< rad/s: Δω, over the last span
+  double speed_change = 0;                ///< m/s, over both spans, the lesser one of wheels and accelerometer
+  std::array<double, kChannels> value{};  ///< m: D along and across, V
+  double speed() const noexcept { return distance / (2 * span); }  ///< m/s
+};
+
+/// Over spans of about `span` s; unknown if the points are too few or too irregular.
+SlipResidual slip_residual(const MotionDifference& difference, double span) noexcept;
+
+/// Standard deviations of the errors of a sensor.
+struct ResidualNoise {
+  double white = 0;   ///< m/s²/√Hz: n
+  double slow = 0;    ///< m/s²: a
+  double jitter = 0;  ///< s
+  double slip = 0;    ///< m/√m, of either side, in the turn
+};
+
+/// Of what the estimator knows at a point.
+struct SlipUncertainty {
+  std::array<double, 2> acceleration_variance{};  ///< (m/s²)²: σ_g², of gravity and bias, along and across
+  double wheel_base = 0.03;                       ///< σ_β, of the factor of the wheel base
+  double clock_offset = 0;                        ///< s
+  double gyro_bias = 0;                           ///< rad/s: σ_b
+};
+
+/// m
+double residual_deviation(SlipResidual::Channel channel, const SlipResidual& residual, const ResidualNoise& noise,
+                          const SlipUncertainty& uncertainty, const SlipParams& params) noexcept;
+
+}  // namespace robot_control

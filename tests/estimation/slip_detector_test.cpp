@@ -1,0 +1,231 @@
+// The detector of slip: E is a straight line without slip, and the levels are those of floor and robot.
+
+#include "estimation/slip_fixture.h"
+#include "support/constants.h"
+
+namespace robot_control {
+namespace {
+
+constexpr double kShortest = Tuning::kResidualSpans[0];
+constexpr double kNext = Tuning::kResidualSpans[1];
+
+class SlipLine : public testing::TestWithParam<double> {};
+
+// Accelerating, braking and turning, from any speed on: E's slope is that speed, and W is constant. What is left are
+// the steps of 5 ms, of third order.
+TEST_P(SlipLine, IsStraightWithoutSlip) {
+  SlidingBody body;
+  body.speed = GetParam();
+  for (int i = 0; i < 1000; ++i) {
+    body.step(i < 200 ? 1.0 : i < 400 ? -0.5 : 0, 0, i < 300 ? 0.5 : i < 600 ? -0.5 : 0);
+    const MotionDifference::Point& now = body.detector.difference().now();
+    ASSERT_NEAR(now.path_difference.x, GetParam() * now.time, 1e-4) << now.time;
+    ASSERT_NEAR(now.path_difference.y, 0, 1e-4) << now.time;
+    ASSERT_NEAR(now.turn_difference, 0, 1e-12) << now.time;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, SlipLine, testing::Values(0.0, 0.5, -1.0, 4.0));
+
+// The IMU swings about the middle of the wheels: its lever is taken off.
+TEST(SlipLineOfAFarImu, IsStraightWithoutSlip) {
+  SlidingBody body({.imu_x = 0.4, .imu_y = -0.2});
+  for (int i = 0; i < 1000; ++i) {
+    body.step(i < 100 ? 1.0 : 0, 0, i < 200 ? 1.0 : i < 400 ? -1.0 : 0);
+    const Planar& e = body.detector.difference().now().path_difference;
+    ASSERT_NEAR(e.x, 0.4, 2e-3) << i;  // constant
+    ASSERT_NEAR(e.y, -0.2, 2e-3) << i;
+  }
+}
+
+class SlipOfAFarImu : public SlipFixture {
+ protected:
+  SlipOfAFarImu() : SlipFixture({.imu_x = 0.4, .imu_y = -0.2}) {}
+};
+
+// E continues the line of rest: the lever of the IMU is none of its steps.
+TEST_F(SlipOfAFarImu, BehindARestTheLeverIsNoSlip) {
+  EXPECT_EQ(drive(2, 0.3), 0);
+}
+
+class SlipDetectorTest : public SlipFixture {
+ protected:
+  SlipDetectorTest() { learn(); }
+};
+
+// 0.5 m/s beyond the ground are 12 mm within half of the shortest span.
+TEST_F(SlipDetectorTest, ASpinOfBothWheelsIsProvenWithinTheNextSpan) {
+  body_.left = body_.right = 0.5;
+  EXPECT_LE(time_to_proof(SlipResidual::kAlong, 1), kNext);
+}
+
+TEST_F(SlipDetectorTest, LockedWheelsOfARobotThatSlidesOnAreProvenWithinTheNextSpan) {
+  body_.left = body_.right = -body_.speed;
+  EXPECT_LE(time_to_proof(SlipResidual::kAlong, 1), kNext);
+}
+
+TEST_F(SlipDetectorTest, ASpinOfOneWheelIsProvenByTheGyro) {
+  body_.left = 0.3;
+  EXPECT_LE(time_to_proof(SlipResidual::kTurn, 1), kNext);
+}
+
+// Pushed with 1 m/s²: 0.1 m in the next but one span.
+TEST_F(SlipDetectorTest, SlidingSidewaysIsProven) {
+  EXPECT_LE(time_to_proof(SlipResidual::kAcross, 2, 0, 1.0), Tuning::kResidualSpans[2]);
+}
+
+TEST_F(SlipDetectorTest, TheShortestSpanThatProvesItIsPublished) {
+  body_.left = body_.right = 0.5;
+  time_to_proof(SlipResidual::kAlong, 1);
+  EXPECT_GE(body_.detector.proven_span(SlipResidual::kAlong), 0.8 * kShortest);
+  EXPECT_LE(body_.detector.proven_span(SlipResidual::kAlong), 1.6 * kNext);
+}
+
+// Wheels at 20 Hz: two readings in the shortest span.
+TEST_F(SlipDetectorTest, SlowWheelsProveItAsWell) {
+  body_.gap = 10;
+  drive(10);
+  body_.left = body_.right = 0.5;
+  EXPECT_LE(time_to_proof(SlipResidual::kAlong, 1), 2 * kNext);
+}
+
+// One reading at 0.5 m/s that comes 5 ms late: as large in every span.
+TEST_F(SlipDetectorTest, ALateReadingIsNoSlip) {
+  body_.left = body_.right = -0.5;
+  double proven = drive(SlidingBody::kStep);
+  body_.left = body_.right = 0.5;
+  proven += drive(SlidingBody::kStep);
+  body_.left = body_.right = 0;
+  EXPECT_EQ(proven + drive(2), 0);
+}
+
+// A tilt that is wrong by e accelerates it by g e, which D shows.
+TEST_F(SlipDetectorTest, TheAccelerometersSlowErrorIsTheGravityError) {
+  body_.error = 0.03;
+  drive(5);
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < 4000; ++i) {
+    if (!body_.step()) continue;
+    judge(true);
+    if (!body_.detector.gravity_error().known) continue;
+    sum += body_.detector.gravity_error().along;
+    ++count;
+  }
+  ASSERT_GT(count, 20);
+  EXPECT_NEAR(sum / count, 0.03, 0.01);
+}
+
+TEST_F(SlipDetectorTest, SensorsOfTheDataSheetAreAsSpecified) {
+  EXPECT_TRUE(body_.detector.sensors_as_specified());
+  EXPECT_GE(body_.detector.levels().level(), 1);
+  EXPECT_LT(body_.detector.acceleration_noise(0).white, 3 * SlipParams{}.accelerometer);
+}
+
+// Vibration that grows with the speed: levels that were learned at 0.5 m/s hold at four times that speed.
+TEST_F(SlipFixture, FasterDrivingThanUsualShakesMore) {
+  body_.noise = 30 * SlipParams{}.accelerometer;
+  drive(0.5, 1.0);
+  drive(60);
+  const double before = body_.detector.acceleration_noise(0).white;
+  drive(1.5, 1.0);
+  body_.noise *= 4;
+  EXPECT_EQ(drive(0.8), 0);
+  EXPECT_GT(body_.detector.acceleration_noise(0).white, 3 * before);
+}
+
+TEST_F(SlipDetectorTest, WhatWasNoSlipRaisesTheLevels) {
+  const double before = body_.detector.levels().level();
+  body_.left = body_.right = 0.5;
+  ASSERT_LT(time_to_proof(SlipResidual::kAlong, 1), 1);
+  body_.detector.learn_false_proof();
+  EXPECT_GT(body_.detector.levels().level(), 2 * before);
+}
+
+TEST_F(SlipDetectorTest, ARestartProvesNothing) {
+  body_.left = body_.right = 0.5;
+  time_to_proof(SlipResidual::kAlong, 1);
+  body_.detector.restart();
+  EXPECT_FALSE(any_proven());
+  EXPECT_TRUE(body_.detector.difference().empty());
+}
+
+// Before anything is learned it shakes as real floors do.
+TEST_F(SlipFixture, BeginsPessimistic) {
+  EXPECT_EQ(body_.detector.levels().level(), 0);
+  EXPECT_FALSE(body_.detector.sensors_as_specified());
+  EXPECT_GT(body_.detector.acceleration_noise(0).white, 30 * SlipParams{}.accelerometer);
+}
+
+/// Times the data sheet.
+class SlipNoise : public SlipFixture, public testing::WithParamInterface<double> {
+ protected:
+  SlipNoise() { body_.noise = GetParam() * SlipParams{}.accelerometer; }
+};
+
+// 20 minutes, the pessimistic start included; at most a point or two.
+TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
+  double proven = drive(0.5, 1.0);
+  proven += drive(1200);
+  EXPECT_LE(proven, 1e-4 * 1200);
+}
+
+INSTANTIATE_TEST_SUITE_P(Factors, SlipNoise, testing::Values(1.0, 3.0, 10.0, 30.0, 100.0));
+
+// Where it shakes: a tenth of the differences exceeds the 90 % quantile. The steps of the level scatter it.
+TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
+  body_.noise = 100 * SlipParams{}.accelerometer;
+  drive(0.5, 1.0);
+  drive(60);
+  EXPECT_GT(body_.detector.levels().level(), 5);
+  EXPECT_FALSE(body_.detector.sensors_as_specified());
+  int beyond = 0;
+  int count = 0;
+  for (int i = 0; i < 200000; ++i) {
+    if (!body_.step()) continue;
+    judge(true);
+    ++count;
+    beyond += body_.detector.nis(SlipResidual::kAlong) > 1.645 * 1.645 ? 1 : 0;
+  }
+  EXPECT_NEAR(beyond / static_cast<double>(count), 0.1, 0.04);
+}
+
+// Anything finite.
+TEST(SlipDetector, GarbageLeavesItFinite) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    std::mt19937 random(seed);
+    const double garbage[] = {0, 1, -1, 1e-300, 1e3, -1e3, 1e6, 9.8};
+    const auto pick = [&] { return garbage[random() % std::size(garbage)]; };
+    SlipDetector detector{SlipParams{}};
+    for (int i = 0; i < 20000; ++i) {
+      if (random() % 500 == 0) detector.restart_on_line({pick(), pick()});
+      if (random() % 500 == 0) detector.restart_at_rest(pick(), {0.1, 0, 0.99});
+      if (random() % 500 == 0) detector.learn_false_proof();
+      const MotionDifference::Sample sample{.dt = random() % 2 == 0 ? 0.005 : 0.2,
+                                            .acceleration = {pick(), pick()},
+                                            .up = {0.1, 0, 0.99},
+                                            .turned = pick(),
+                                            .yaw = pick(),
+                                            .path = {pick(), pick()},
+                                            .right_minus_left = pick(),
+                                            .distance = std::abs(pick()),
+                                            .both_sides_read = random() % 2 == 0,
+                                            .yaw_rate = pick()};
+      if (detector.step(sample)) detector.judge({.acceleration_variance = {1e-3, 1e-3}}, random() % 2 == 0);
+      for (const auto channel : SlipDetector::kChannels) {
+        ASSERT_TRUE(std::isfinite(detector.nis(channel))) << seed << ' ' << i;
+        ASSERT_TRUE(std::isfinite(detector.slope_deviation(channel))) << seed << ' ' << i;
+        ASSERT_TRUE(std::isfinite(detector.proven_span(channel))) << seed << ' ' << i;
+      }
+      ASSERT_TRUE(std::isfinite(detector.difference().now().path_difference.x) &&
+                  std::isfinite(detector.levels().level()))
+          << seed << ' ' << i;
+      ASSERT_TRUE(std::isfinite(detector.gravity_error().along) && std::isfinite(detector.gravity_error().deviation));
+      ASSERT_TRUE(std::isfinite(detector.acceleration_noise(1e-4).white) &&
+                  std::isfinite(detector.acceleration_noise(1e-4).slow));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace robot_control
