@@ -2,7 +2,7 @@
 /// What StateFrame::residual_level means for the detection of slip, in words.
 ///
 /// Within 0.2 s, by an IMU such as the BMI088, wheels that spin by less than 0.025 m/s times the level prove nothing
-/// (estimation/slip/slip_statistic.h): from kSlowDetection on 0.08 m/s, from kNoDetection on 1 m/s.
+/// (estimation/slip/slip_detector.h): from kSlowDetection on 0.08 m/s, from kNoDetection on 1 m/s.
 
 #include <array>
 #include <cstdio>

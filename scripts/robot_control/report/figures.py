@@ -98,7 +98,7 @@ def _estimate(drive: Drive) -> Iterator[Figure]:
     share = float(np.mean(flags[driving] & SLIP != 0)) if driving.any() else NAN
     yield Figure("slip", "share", "of the time while driving: wheels and inertial sensors disagree", share)
     share = float(np.mean(flags[driving] & DEGRADED != 0)) if driving.any() else NAN
-    yield Figure("degraded", "share", "of the time while driving: a correction taken back, or no gyro bias yet", share)
+    yield Figure("degraded", "share", "of the time while driving: a correction undone, or no gyro bias yet", share)
     for sensor in ("left_encoder", "right_encoder", "gyro", "accelerometer"):
         name = f"confidence_{sensor}"
         low = _percentile(drive.column(name)[driving], 1)
