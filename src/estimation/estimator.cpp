@@ -177,7 +177,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
 /// Raw odometry: the travel of either side since its last reading.
 void Estimator::integrate_wheels() noexcept {
   const Motion motion = geometry_.base_motion(wheels_.mean(), wheels_.turned());
-  const Chord chord = chord_of(motion, wheel_odometry_.yaw);
+  const Planar chord = chord_of(motion, wheel_odometry_.yaw);
   wheel_odometry_.x += chord.x;
   wheel_odometry_.y += chord.y;
   wheel_odometry_.yaw = std::remainder(wheel_odometry_.yaw + motion.turn, 2 * std::numbers::pi);

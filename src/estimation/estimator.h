@@ -59,12 +59,8 @@ class Estimator : private EstimatorState {
   /// never valid is not continued from.
   void resume(const StateFrame& last) noexcept;
 
-  /// reset_odometry: the pose is zero from this cycle on (exactly zero in the next frame); velocities, biases
-  /// and distance stay.
-  void reset_pose() noexcept { set_pose({0, 0, 0}); }
-
-  /// set_odometry: from this cycle on the pose is (x [m], y [m], yaw [rad]), exactly so in the next frame, with a
-  /// covariance of zero; all else stays.
+  /// set_odometry, reset_odometry: from this cycle on the pose is (x [m], y [m], yaw [rad]), exactly so in the next
+  /// frame, with a covariance of zero; all else stays.
   void set_pose(const Vector3& pose) noexcept { pose_request_ = pose; }
 
   /// Fills everything but `out.head`. dt = (sensors.head.cycle − the last one's) · period.

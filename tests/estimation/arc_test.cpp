@@ -15,26 +15,26 @@ constexpr double kArcRounding = 1e-15;
 TEST(Arc, QuarterCircleEndsOneRadiusAheadAndOneRadiusLeft) {
   const double radius = 2.0;
   const double turn = std::numbers::pi / 2;
-  const Chord chord = chord_of({radius * turn, 0, turn}, 0);
+  const Planar chord = chord_of({radius * turn, 0, turn}, 0);
   EXPECT_NEAR(chord.x, radius, 4 * kArcRounding);
   EXPECT_NEAR(chord.y, radius, 4 * kArcRounding);
 }
 
 TEST(Arc, FullCircleReturns) {
-  const Chord chord = chord_of({3.0, 0, 2 * std::numbers::pi}, 0.7);
+  const Planar chord = chord_of({3.0, 0, 2 * std::numbers::pi}, 0.7);
   EXPECT_NEAR(chord.x, 0, kArcRounding);
   EXPECT_NEAR(chord.y, 0, kArcRounding);
 }
 
 TEST(Arc, ZeroTurnIsTheStraightLine) {
-  const Chord chord = chord_of({2.0, 0, 0}, std::numbers::pi / 6);
+  const Planar chord = chord_of({2.0, 0, 0}, std::numbers::pi / 6);
   EXPECT_DOUBLE_EQ(chord.x, 2 * std::cos(std::numbers::pi / 6));
   EXPECT_DOUBLE_EQ(chord.y, 2 * std::sin(std::numbers::pi / 6));
 }
 
 TEST(Arc, ReverseIsTheMirrorOfForward) {
-  const Chord forward = chord_of({1.0, 0, 0.4}, 0);
-  const Chord back = chord_of({-1.0, 0, -0.4}, 0.4);
+  const Planar forward = chord_of({1.0, 0, 0.4}, 0);
+  const Planar back = chord_of({-1.0, 0, -0.4}, 0.4);
   EXPECT_NEAR(forward.x + back.x, 0, kArcRounding);
   EXPECT_NEAR(forward.y + back.y, 0, kArcRounding);
 }
@@ -54,7 +54,7 @@ TEST(Arc, EqualsFineIntegrationOfItsTwist) {
       x += (motion.forward * std::cos(here) - motion.left * std::sin(here)) / steps;
       y += (motion.forward * std::sin(here) + motion.left * std::cos(here)) / steps;
     }
-    const Chord chord = chord_of(motion, yaw);
+    const Planar chord = chord_of(motion, yaw);
     EXPECT_NEAR(chord.x, x, 1e-9) << "sample " << sample;
     EXPECT_NEAR(chord.y, y, 1e-9) << "sample " << sample;
   }

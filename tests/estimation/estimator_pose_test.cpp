@@ -148,7 +148,7 @@ TEST_F(EstimatorPoseTest, AFrameSeenBeforeChangesNothing) {
 TEST_F(EstimatorPoseTest, ResetPoseIsZeroInTheNextFrameAndKeepsTheTwist) {
   drive(0.5, 0.2, 1000);
   const double distance = state_.distance;
-  estimator_.reset_pose();
+  estimator_.set_pose({0, 0, 0});
   drive(0.5, 0.2, 1);
   EXPECT_EQ(state_.pose_odom.position, (Vector3{0, 0, 0}));
   EXPECT_NEAR(yaw(), 0, 1e-15);
@@ -361,7 +361,7 @@ TEST_F(EstimatorPoseTest, StepsWithoutAllocating) {
     if (i == 600) robot_.tread[0] = 2.0;  // spins
     if (i == 1200) robot_.tread[0].reset();
     if (i == 300) robot_.frame().imu.angular_velocity[2] = std::nan("");
-    if (i == 400) estimator_.reset_pose();
+    if (i == 400) estimator_.set_pose({0, 0, 0});
     if (i == 2500) estimator_.resume(state_);
     if (i == 2800) estimator_.enter_run();
     observe();

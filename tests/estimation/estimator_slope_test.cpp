@@ -72,7 +72,7 @@ TEST_P(EstimatorSlopeTest, APoseThatWasSetOwesNothingToTheSlopeBefore) {
   Estimator estimator(parameters_, model_, kPeriod);
   climb(robot, estimator);
   const auto doubt = [&] {
-    estimator.reset_pose();
+    estimator.set_pose({0, 0, 0});
     for (int i = 0; i < 2000; ++i) step(robot, estimator, kSpeed);
     return state_.pose_covariance[0] + state_.pose_covariance[7];
   };

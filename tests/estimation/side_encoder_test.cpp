@@ -138,12 +138,5 @@ TEST_F(SideEncoderTest, AJumpThatDoesNotLastCostsNothing) {
   EXPECT_NEAR(encoder_.travel(), 0.003, 1e-15);
 }
 
-TEST_F(SideEncoderTest, BeginsAnewAfterAReset) {
-  encoder_.reset();
-  EXPECT_FALSE(encoder_.known());
-  EXPECT_EQ(read(-700), EncoderReading::kOffset);
-  EXPECT_EQ(encoder_.travel(), 0);
-}
-
 }  // namespace
 }  // namespace robot_control

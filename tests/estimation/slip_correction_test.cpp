@@ -30,11 +30,9 @@ class SlipCorrectionTest : public SlipFixture {
         if (!correction_.active()) return t;
       } else if (point) {
         judge(false);
-        double span = 0;
-        for (const auto channel : SlipDetector::kChannels) {
-          span = std::max(span, body_.detector.proven_span(channel));
+        if (const double span = body_.detector.shortest_proven_span(); span > 0) {
+          add(correction_.begin(body_.detector.difference(), span, input()));
         }
-        if (span > 0) add(correction_.begin(body_.detector.difference(), span, input()));
       }
     }
     return seconds;

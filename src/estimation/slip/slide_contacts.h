@@ -18,8 +18,10 @@ struct DifferenceSlope {
   double side(std::size_t i) const noexcept { return along + (i == 0 ? -1 : 1) * turn / 2; }
 };
 
-class SlideContacts {
- public:
+struct SlideContacts {
+  std::array<bool, 2> slips{};  ///< left, right
+  bool sideways = false;
+
   /// m/s, beyond which a slope is none of a rolling wheel.
   struct Tolerance {
     double path = 0;  ///< of E from the line
@@ -39,9 +41,6 @@ class SlideContacts {
   double slipped(double along, double turn) const noexcept;
   /// SlipReason; `wheel_speed` m/s.
   std::uint64_t reasons(const DifferenceSlope& excess, double wheel_speed) const noexcept;
-
-  std::array<bool, 2> slips{};  ///< left, right
-  bool sideways = false;
 };
 
 }  // namespace robot_control

@@ -37,9 +37,8 @@ class SlipDetector {
 
   // Of the last judgement:
   bool proven(Channel channel) const noexcept { return proven_span_[channel] > 0; }
-  double proven_span(Channel channel) const noexcept { return proven_span_[channel]; }  ///< s, the shortest; 0: none
-  double shortest_proven_span() const noexcept;                                         ///< s, of all channels; 0: none
-  double nis(Channel channel) const noexcept { return nis_[channel]; }                  ///< at T = 0.2 s; < 0: none
+  double shortest_proven_span() const noexcept;                         ///< s, of all channels; 0: none
+  double nis(Channel channel) const noexcept { return nis_[channel]; }  ///< at T = 0.2 s; < 0: none
   /// m/s: deviation of the slope of E or W over T = 0.1 s.
   double slope_deviation(Channel channel) const noexcept { return slope_deviation_[channel]; }
 

@@ -32,7 +32,8 @@ struct SlipResidual {
   double speed() const noexcept { return distance / (2 * span); }  ///< m/s
 };
 
-/// Over spans of about `span` s; unknown if the points are too few or too irregular.
+/// Over spans of about `span` s; not known where the points make a span shorter than 0.8 or longer than 1.6 of what it
+/// should be.
 SlipResidual slip_residual(const MotionDifference& difference, double span) noexcept;
 
 /// Standard deviations of the errors of a sensor.

@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+#include "estimation/values.h"
+
 namespace robot_control {
 
 struct Motion {
@@ -18,21 +20,13 @@ struct Motion {
   double turn = 0;     ///< rad
 };
 
-/// m, in the axes that `yaw` is measured in.
-struct Chord {
-  double x = 0, y = 0;
-};
-
 inline double sinc(double h) noexcept {
   return h == 0 ? 1 : std::sin(h) / h;
 }
 
-inline Chord chord_of(const Motion& motion, double yaw) noexcept {
-  const double shrink = sinc(motion.turn / 2);
-  const double cosine = std::cos(yaw + motion.turn / 2);
-  const double sine = std::sin(yaw + motion.turn / 2);
-  return {shrink * (cosine * motion.forward - sine * motion.left),
-          shrink * (sine * motion.forward + cosine * motion.left)};
+/// m, in the axes that `yaw` is measured in.
+inline Planar chord_of(const Motion& motion, double yaw) noexcept {
+  return rotated({motion.forward, motion.left}, yaw + motion.turn / 2) * sinc(motion.turn / 2);
 }
 
 }  // namespace robot_control

@@ -35,12 +35,6 @@ SideEncoder::SideEncoder(const RobotModel& robot, Side side) {
   }
 }
 
-void SideEncoder::reset() noexcept {
-  travel_ = time_ = waiting_ = gap_ = 0;
-  known_ = false;
-  rejected_ = 0;
-}
-
 EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept {
   travel_ = 0;
   waiting_ += dt;

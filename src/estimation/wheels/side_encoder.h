@@ -3,11 +3,11 @@
 ///
 ///   travel = mean over the side's wheels of signᵢ · radiusᵢ · (qᵢ − qᵢ,last)    [m]
 ///
-/// The side's wheels are read together: one whose sample is not used rejects the reading. The first reading, and the
-/// first after `reset`, is the offset: no travel. A sample that is missing, not finite or impossible is not used; the
-/// next good one brings the travel of the whole gap. Impossible is a difference above 2 · velocity_limit (1000 rad/s
-/// where the robot names none) times the time passed, plus kEncoderSlack. An encoder that stays impossible for more
-/// than kMaxHeld readings was reset: then the present angles become the offset, and the travel in between is lost.
+/// The side's wheels are read together: one whose sample is not used rejects the reading. The first reading is the
+/// offset: no travel. A sample that is missing, not finite or impossible is not used; the next good one brings the
+/// travel of the whole gap. Impossible is a difference above 2 · velocity_limit (1000 rad/s where the robot names none)
+/// times the time passed, plus kEncoderSlack. An encoder that stays impossible for more than kMaxHeld readings was
+/// reset: then the present angles become the offset, and the travel in between is lost.
 
 #include <cstdint>
 
@@ -28,8 +28,6 @@ class SideEncoder {
  public:
   /// At least one wheel on that side.
   SideEncoder(const RobotModel& robot, Side side);
-
-  void reset() noexcept;
 
   /// `dt`: s since the last call.
   EncoderReading step(const SensorFrame& sensors, double dt) noexcept;

@@ -27,13 +27,6 @@ class WheelVelocities {
       : period_(period),
         wheels_(std::min(robot.wheels.size(), kMaxWheels), Wheel{.tracking = TrackingLoop(bandwidth, period)}) {}
 
-  void reset() noexcept {
-    for (Wheel& wheel : wheels_) {
-      wheel.tracking.reset();
-      wheel.known = false;
-    }
-  }
-
   /// `dt` s after the last one; 0: the first, or the same again.
   void step(const SensorFrame& sensors, double dt) noexcept {
     const bool valid = (sensors.valid & kValidJoints) != 0 && sensors.joint_count >= wheels_.size();
