@@ -71,7 +71,6 @@ struct Tuning {
   static constexpr double kLevelMemory = 0.05;    ///< 1/blocks, of the correlation of innovations: 20 blocks
   static constexpr double kStampMemory = 50;      ///< readings, of the stamps' jitter: its deviation is known to 10 %
   static constexpr double kNoisePrior = 4;        ///< windows that kMountedGyro is worth: 1 s
-  static constexpr double kNoiseMemory = 400;     ///< windows of the gyro's noise: 100 s
   static constexpr double kProof =
       5;  ///< deviations of a residual that prove slip; of normal residuals 1 in a day at 20 per s
   static constexpr double kSupport = 3;       ///< deviations of that of the next longer span; the three-sigma rule

@@ -6,7 +6,7 @@
 ///   kNoisePrior
 ///
 /// No gyro on a robot is quieter than its data sheet, and most are louder: recordings show 3.5 … 4.5e-4 where it states
-/// 2.4e-4. Beyond kNoiseMemory windows older ones are forgotten exponentially.
+/// 2.4e-4.
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +24,8 @@ class GyroNoise {
   /// The mean of the next window, rad/s over s.
   void add(double mean, double window) noexcept {
     if (known_) {
-      const double keep = count_ < Tuning::kNoiseMemory ? 1 : 1 - 1 / Tuning::kNoiseMemory;
-      sum_ = keep * sum_ + window * square(mean - last_) / 2;
-      count_ = keep * count_ + 1;
+      sum_ += window * square(mean - last_) / 2;
+      ++count_;
     }
     last_ = mean;
     known_ = true;
