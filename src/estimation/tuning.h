@@ -19,24 +19,20 @@ struct Tuning {
   static constexpr double kRatioWalk = 0.04;   ///< 1/m, walk of the radius ratio, of the slip noise; recordings
   static constexpr double kBaseWalk = 0.25;    ///< 1/m, walk of the wheel base, likewise; recordings
   static constexpr double kOffset = 0.08;  ///< s, deviation of the clock offset at the start; recordings: 0.03 … 0.17
-  static constexpr double kOffsetWalk = 2e-3;  ///< s/√s, walk of the clock offset; recordings
-  static constexpr double kAccelerometerAtRest =
-      0.03;                                  ///< m/s², what rocking and a motor's hum leave in a mean; recordings
+  static constexpr double kOffsetWalk = 2e-3;           ///< s/√s, walk of the clock offset; recordings
+  static constexpr double kAccelerometerAtRest = 0.03;  ///< m/s², rocking and a motor's hum in a mean; recordings
   static constexpr double kTiltWalk = 2e-3;  ///< rad/√s: rough ground, and 0.02 m/s² that change within 1 s; recordings
   static constexpr double kTiltWalkWithoutGyro = 0.02;  ///< rad/√s, while the gyro's x and y do not count; faults
   static constexpr double kSlowTime = 3.0;  ///< s, in which slow errors of the accelerometer change; recordings
   static constexpr double kMountedGyro =
       2;  ///< noise of a gyro on a robot over its data sheet's; recordings: 1.5 … 1.9
   static constexpr double kTipping = 0.5;  ///< rad/s about x and y, beyond which a gyro is taken to fail; faults
-  static constexpr double kUnreliableTurn =
-      0.005;  ///< rad by that in all, from which the gyro does not carry the tilt; faults
+  static constexpr double kUnreliableTurn = 0.005;   ///< rad by that, from which on the gyro is not trusted; faults
   static constexpr double kStuckGyro = 0.1;          ///< s of one and the same sample, for a gyro that fails; faults
   static constexpr double kQuietAcceleration = 0.1;  ///< m/s², mean of a window of a robot that does not slide; faults
-  static constexpr std::uint64_t kSlidingWindows =
-      6;  ///< in a row; then the tilt is wrong, and the robot rests; faults
-  static constexpr double kConstantRate =
-      10.0;                                  ///< s of one rate while the wheels stand: it is the gyro's bias; faults
-  static constexpr double kCalm = 0.5;       ///< s after a slide in which nothing is learned; recordings
+  static constexpr std::uint64_t kSlidingWindows = 6;  ///< in a row; then the tilt is wrong, and it rests; faults
+  static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: it is the gyro's bias; faults
+  static constexpr double kCalm = 0.5;           ///< s after a slide in which nothing is learned; recordings
   static constexpr double kBatch = 0.3;      ///< of the usual gap between readings, below which they came in a batch;
                                              ///< recordings
   static constexpr double kGapFading = 0.9;  ///< of the largest gap per reading; recordings, of stamps with jitter
@@ -45,8 +41,7 @@ struct Tuning {
 
   static constexpr double kPathSlip = 2e-3;  ///< m/√m, slip of wheels that roll, in the path difference; recordings
   static constexpr double kWindUp = 1.6e-3;  ///< rad/√(rad/s), of treads and gears in a turn that changes; recordings
-  static constexpr double kSlowAcceleration =
-      0.02;  ///< m/s², slow error of an acceleration: 2 mrad of tilt; recordings
+  static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error: 2 mrad of tilt; recordings
   static constexpr double kUnlearnedWhite = 0.065;   ///< m/s²/√Hz, noise before a level is learned; recordings: the
                                                      ///< roughest of skid steers, a vacuum cleaner and a car
   static constexpr double kUnlearnedSlow = 0.2;      ///< m/s², likewise
@@ -71,10 +66,9 @@ struct Tuning {
   static constexpr double kLevelMemory = 0.05;    ///< 1/blocks, of the correlation of innovations: 20 blocks
   static constexpr double kStampMemory = 50;      ///< readings, of the stamps' jitter: its deviation is known to 10 %
   static constexpr double kNoisePrior = 4;        ///< windows that kMountedGyro is worth: 1 s
-  static constexpr double kProof =
-      5;  ///< deviations of a residual that prove slip; of normal residuals 1 in a day at 20 per s
-  static constexpr double kSupport = 3;       ///< deviations of that of the next longer span; the three-sigma rule
-  static constexpr double kNormal90 = 1.645;  ///< deviations, 90 % quantile of |normal|
+  static constexpr double kProof = 5;             ///< deviations that prove slip: 1 of 1.7 million normal residuals
+  static constexpr double kSupport = 3;           ///< deviations of that of the next longer span; the three-sigma rule
+  static constexpr double kNormal90 = 1.645;      ///< deviations, 90 % quantile of |normal|
   static constexpr std::uint64_t kFirstResiduals = 8;  ///< whose largest is the first level: their 90 % quantile
   static constexpr double kQuantileStep = 0.5;         ///< of the logarithm of a level: 1.6 up, 1/1.05 down
   static constexpr double kUsualSpeedShare = 0.1;      ///< of the speed of one residual in the usual one
