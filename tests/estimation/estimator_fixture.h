@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "estimation/estimator.h"
 #include "estimation/rolling_robot.h"
+#include "support/positive_definite.h"
 
 namespace robot_control {
 
@@ -35,12 +35,9 @@ inline bool all_finite(const StateFrame& state) {
   return good;
 }
 
-/// Of the correlation: smallest eigenvalue, 0 for rounding of a singular one.
-inline double smallest_correlation(const Matrix6& published) {
-  Eigen::Matrix<double, 6, 6> matrix = Eigen::Map<const Eigen::Matrix<double, 6, 6>>(published.data());
-  const Eigen::Matrix<double, 6, 1> scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(matrix).eigenvalues().minCoeff();
+/// positive_definite() of what a state publishes.
+inline bool is_covariance(const Matrix6& published, double slack) {
+  return positive_definite([&](std::size_t i, std::size_t j) { return published[6 * i + j]; }, 6, slack);
 }
 
 class EstimatorFixture : public testing::Test {

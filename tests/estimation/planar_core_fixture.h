@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
 
@@ -27,14 +26,6 @@ inline CoreVector values_of(const PlanarCore& core) {
   x[PlanarCore::kOffset] = core.offset();
   x[PlanarCore::kAnchor] = core.pose().yaw - core.turned();
   return x;
-}
-
-/// Of the correlation: smallest eigenvalue; quantities known exactly are left out.
-inline double smallest_eigenvalue(const CoreMatrix& p) {
-  const CoreVector scale =
-      p.diagonal().unaryExpr([](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0; });
-  const CoreMatrix correlation = scale.asDiagonal() * p * scale.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<CoreMatrix>(correlation).eigenvalues().minCoeff();
 }
 
 inline PlanarCoreParams core_without_noise() {
