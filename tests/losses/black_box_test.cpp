@@ -72,7 +72,9 @@ TEST_F(ABlackBox, HoldsEveryCycleUpToTheSigkillOfAllNodes) {
   for (const char* name : {"crash.1.bag", "crash.2.bag", "crash.3.bag"}) EXPECT_TRUE(await_bag(name)) << name;
 }
 
-TEST_F(ABlackBox, IsSavedWithFiveSecondsAfterALatchedStop) {
+using NightlyBlackBox = ABlackBox;
+
+TEST_F(NightlyBlackBox, IsSavedWithFiveSecondsAfterALatchedStop) {
   robot_.await_cycles(500);
   nodes().process(LoopNode::kEstimator).stop_with(SIGSTOP);
   ASSERT_TRUE(await_bag("stop.1.bag"));
@@ -115,8 +117,6 @@ TEST_F(ABlackBox, HoldsASnapshotOfEachLawBeforeAStopRightAfterTheStartOfTelemetr
     })) << kLawNodes.at(law);
   }
 }
-
-using NightlyBlackBox = ABlackBox;
 
 /// Then no row says that it stopped.
 TEST_F(NightlyBlackBox, IsSavedAfterTheStopForALostDriverToo) {

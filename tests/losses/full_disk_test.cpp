@@ -91,7 +91,7 @@ TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
 
 /// A file system cannot be made read-only while a log on it is open. But one that is may be mounted over the folder:
 /// what is written on then goes where no other process can read it.
-TEST_F(AFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLogsGoOnAfterwards) {
+TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLogsGoOnAfterwards) {
   if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
     GTEST_SKIP() << "mounting is not granted";
   }
@@ -122,7 +122,7 @@ TEST_F(AFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLogsGoOnA
   EXPECT_TRUE(robot_.await([&] { return begun_again(".csv") && begun_again(".bag"); }, 60));
 }
 
-TEST_F(AFullDisk, LeavesABagThatIsReadToItsLastWholeChunk) {
+TEST_F(NightlyFullDisk, LeavesABagThatIsReadToItsLastWholeChunk) {
   nodes().prepare(LoopNode::kTelemetry, [] {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{3 * kLimit, 3 * kLimit};
