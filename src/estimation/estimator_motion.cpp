@@ -118,6 +118,7 @@ void Estimator::follow_slide() noexcept {
 }
 
 void Estimator::judge_slip() noexcept {
+  if (!slip_correction_.active()) slip_detector_.set_clock_offset(core_.offset());
   const bool learns = !slip_correction_.active() && slip_correction_.since_end() > Tuning::kCalm;
   slip_detector_.judge({.acceleration_variance = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
                         .wheel_base = core_.deviation(PlanarCore::kBase),

@@ -77,6 +77,7 @@ struct Tuning {
 
   static constexpr std::array<double, 4> kResidualSpans{0.1, 0.2, 0.4, 0.8};  ///< s: T of slip_residual.h
   static constexpr double kPointInterval = 0.05;  ///< s between two points of the differences: half the shortest T
+  static constexpr double kCarriedOn = 0.01;      ///< s, for which an inertial motion is carried on: 0.05 mm at 1 m/s²
   static constexpr double kUndoneTime = 5.0;      ///< s, for which an undone correction is reported
   static constexpr double kBlock = 1.0;           ///< s, between two comparisons of wheels and gyro; of the confidences
   static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings: as long as a command lives (hal/gate.h)

@@ -38,6 +38,77 @@ TEST(SlipLineOfAFarImu, IsStraightWithoutSlip) {
   }
 }
 
+/// Steps by which the wheels' stamps are late; < 0: early.
+class SlipOfOtherClocks : public SlipFixture, public testing::WithParamInterface<int> {
+ protected:
+  SlipOfOtherClocks() {
+    body_.late = GetParam();
+    body_.detector.set_clock_offset(GetParam() * SlidingBody::kStep);
+  }
+  /// s in which slip was proven, of 30 starts and stops with turns.
+  double start_and_stop() {
+    double proven = 0;
+    for (int i = 0; i < 30; ++i) {
+      proven += drive(0.5, 1.0, 0, 0.5) + drive(1) + drive(0.5, -1.0, 0, -0.5) + drive(1);
+    }
+    return proven;
+  }
+  /// m: what the cubics between points leave where an acceleration begins.
+  static constexpr double kCubics = 2e-4;
+};
+
+// Both motions are compared at the same moment. At the same stamp E would leave its line by up to τ Δv: 0.17 m.
+TEST_P(SlipOfOtherClocks, TheLineIsStraight) {
+  body_.noise = 0;
+  for (int i = 0; i < 1000; ++i) {
+    body_.step(i < 200 ? 1.0 : i < 400 ? -0.5 : 0, 0, i < 300 ? 0.5 : i < 600 ? -0.5 : 0);
+    const MotionDifference::Point now = body_.detector.difference().now();
+    ASSERT_NEAR(now.path_difference.x, 0, kCubics) << now.time;
+    ASSERT_NEAR(now.path_difference.y, 0, kCubics) << now.time;
+    ASSERT_NEAR(now.turn_difference, 0, kCubics) << now.time;
+  }
+}
+
+TEST_P(SlipOfOtherClocks, AnAccelerationIsNoSlip) {
+  EXPECT_EQ(start_and_stop(), 0);
+}
+
+// The points of before are compared by the offset of now.
+TEST_P(SlipOfOtherClocks, AnOffsetThatIsLearnedIsNoSlip) {
+  body_.detector.set_clock_offset(0);
+  drive(0.5, 1.0);
+  drive(20);
+  body_.detector.set_clock_offset(GetParam() * SlidingBody::kStep);
+  EXPECT_EQ(drive(5), 0);
+}
+
+// A slide that ends while the robot brakes: what the IMU measured before is compared with wheels that come later.
+TEST_P(SlipOfOtherClocks, BehindASlideTheLineIsStraight) {
+  body_.noise = 0;
+  drive(1, 1.0);
+  for (int i = 0; i < 60; ++i) body_.step(-1.0);
+  const MotionDifference::Point end = body_.detector.difference().now();
+  body_.detector.restart_on_line({0.1, 0});
+  for (int i = 0; i < 100; ++i) {
+    body_.step(-1.0);
+    const MotionDifference::Point now = body_.detector.difference().now();
+    ASSERT_NEAR(now.path_difference.x - end.path_difference.x, 0, kCubics) << now.time;
+    ASSERT_NEAR(now.path_difference.y - end.path_difference.y, 0, kCubics) << now.time;
+    const MotionDifference::Point past = body_.detector.difference().before(end.time - 0.3);
+    ASSERT_NEAR(past.path_difference.x - end.path_difference.x, 0.1 * (past.time - end.time), kCubics);
+  }
+}
+
+// The wheels' slip is known when their readings are, and compared when those of the IMU are.
+TEST_P(SlipOfOtherClocks, ASpinIsProvenWithinTheNextSpan) {
+  learn();
+  body_.left = body_.right = 0.5;
+  const double later = std::abs(GetParam()) * SlidingBody::kStep;
+  EXPECT_LE(time_to_proof(SlipResidual::kAlong, 1), kNext + later);
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, SlipOfOtherClocks, testing::Values(-20, -7, -1, 0, 3, 14, 34));
+
 class SlipOfAFarImu : public SlipFixture {
  protected:
   SlipOfAFarImu() : SlipFixture({.imu_x = 0.4, .imu_y = -0.2}) {}

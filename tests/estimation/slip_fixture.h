@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "estimation/slip/slip_correction.h"
 #include "estimation/slip/slip_detector.h"
@@ -28,6 +30,7 @@ class SlidingBody {
   double noise = 0;              ///< m/s²/√Hz, of the accelerometer
   double error = 0;              ///< m/s², of the accelerometer ahead
   int gap = 1;                   ///< steps between two readings of the wheels
+  int late = 0;                  ///< steps by which the wheels' stamps are late; < 0: early
   double yaw = 0, x = 0, y = 0;  ///< the truth: rad, m
 
  private:
@@ -73,7 +76,7 @@ class SlidingBody {
       left_ = right_ = turned_ = 0;
     }
     read_ = sample.both_sides_read;
-    return detector.step(sample);
+    return detector.step(stamped(sample));
   }
 
   bool read() const { return read_; }
@@ -81,8 +84,25 @@ class SlidingBody {
   double wheel_speed() const { return speed + (left + right) / 2; }
 
  private:
+  /// With the stamps of the sensors' clocks.
+  MotionDifference::Sample stamped(const MotionDifference::Sample& now) {
+    samples_.push_back(now);
+    const auto before = [&](int steps) {
+      return static_cast<int>(samples_.size()) > steps ? samples_[samples_.size() - 1 - static_cast<std::size_t>(steps)]
+                                                       : MotionDifference::Sample{.dt = kStep, .both_sides_read = true};
+    };
+    MotionDifference::Sample sample = before(std::max(0, -late));
+    const MotionDifference::Sample wheels = before(std::max(0, late));
+    sample.path = wheels.path;
+    sample.right_minus_left = wheels.right_minus_left;
+    sample.distance = wheels.distance;
+    sample.both_sides_read = wheels.both_sides_read;
+    return sample;
+  }
+
   std::mt19937 random_;
   std::normal_distribution<double> normal_{0, 1};
+  std::vector<MotionDifference::Sample> samples_;
   double left_ = 0, right_ = 0, turned_ = 0;
   int steps_ = 0;
   bool read_ = false;

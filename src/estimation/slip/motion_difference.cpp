@@ -1,34 +1,42 @@
 #include "estimation/slip/motion_difference.h"
 
+#include <algorithm>
+
 namespace robot_control {
 
 void MotionDifference::restart() noexcept {
   count_ = 0;
-  now_ = {.yaw = now_.yaw};
-  inertial_path_ = wheel_path_ = {};
+  const double yaw = now_.inertial.yaw;
+  now_ = {};
+  now_.inertial.yaw = yaw;
   path_begin_ = 0;
 }
 
 void MotionDifference::restart_on_line(const Planar& slope) noexcept {
-  const Planar velocity = now_.velocity;
-  const double yaw_rate = now_.yaw_rate;
-  restart();
-  now_.velocity = velocity;
-  now_.yaw_rate = yaw_rate;
-  constexpr std::size_t kPast = 34;  // points: twice the longest span, and its tolerance
-  for (std::size_t i = kPast; i-- > 0;) {
-    Point point = now_;
-    point.time = -static_cast<double>(i) * Tuning::kPointInterval;
-    point.path_difference = slope * point.time;
-    points_[count_++] = point;
+  path_begin_ = time();
+  if (empty()) return;
+  const Point end = last();
+  const std::size_t last_record = last_index();
+  for (std::size_t i = oldest(); i <= last_record; ++i) {
+    const Point point = difference(record(i));
+    const Planar on_line = end.path_difference + slope * (point.time - end.time);
+    Record& moved = records_[i % kPoints];
+    moved.wheel_path = moved.wheel_path + on_line - point.path_difference;
+    moved.right_minus_left += end.turn_difference - point.turn_difference;
   }
-  wheel_path_ = -lever_;
 }
 
 void MotionDifference::restart_at_rest(double yaw, const Vector3& up) noexcept {
-  lever_ = lever(yaw, up);
-  now_ = {.yaw = yaw};
-  restart_on_line({});
+  restart();
+  now_.inertial.yaw = yaw;
+  now_.inertial.lever = lever(yaw, up);
+  now_.wheel_path = -now_.inertial.lever;
+  constexpr std::size_t kPast = 34;  // points: twice the longest span, and its tolerance
+  for (std::size_t i = kPast; i-- > 0;) {
+    Record& record = records_[count_++];
+    record = now_;
+    record.inertial.time = -static_cast<double>(i) * Tuning::kPointInterval;
+  }
 }
 
 /// Nose up, an IMU above the contacts moves backwards.
@@ -39,27 +47,47 @@ Planar MotionDifference::lever(double yaw, const Vector3& up) const noexcept {
 
 bool MotionDifference::step(const Sample& sample) noexcept {
   const Planar acceleration = rotated({sample.acceleration[0], sample.acceleration[1]}, sample.yaw - sample.turned / 2);
-  inertial_path_ = inertial_path_ + (now_.velocity + acceleration * sample.dt / 2) * sample.dt;
-  wheel_path_ = wheel_path_ + sample.path;
-  lever_ = lever(sample.yaw, sample.up);
-  now_.time += sample.dt;
-  now_.velocity = now_.velocity + acceleration * sample.dt;
-  now_.yaw = sample.yaw;
-  now_.yaw_rate = sample.yaw_rate;
+  InertialMotion& inertial = now_.inertial;
+  inertial.time += sample.dt;
+  inertial.path = inertial.path + (inertial.velocity + acceleration * sample.dt / 2) * sample.dt;
+  inertial.lever = lever(sample.yaw, sample.up);
+  inertial.velocity = inertial.velocity + acceleration * sample.dt;
+  inertial.yaw = sample.yaw;
+  inertial.yaw_rate = sample.yaw_rate;
+  now_.wheel_path = now_.wheel_path + sample.path;
+  now_.right_minus_left += sample.right_minus_left;
   now_.distance += sample.distance;
-  now_.turn_difference += sample.right_minus_left - params_.wheel_base * sample.turned;
-  now_.path_difference = wheel_path_ + lever_ - inertial_path_;
-  const bool early = count_ > 0 && now_.time - last().time < Tuning::kPointInterval * (1 - 1e-9);
+  const bool early = count_ > 0 && time() - record(count_ - 1).inertial.time < Tuning::kPointInterval * (1 - 1e-9);
   if (!sample.both_sides_read || early) return false;
-  points_[count_++ % kPoints] = now_;
+  records_[count_++ % kPoints] = now_;
   return true;
 }
 
-const MotionDifference::Point& MotionDifference::before(double time) const noexcept {
-  const std::size_t oldest = count_ > kPoints ? count_ - kPoints : 0;
+std::size_t MotionDifference::index_before(double time) const noexcept {
   std::size_t i = count_ - 1;
-  while (i > oldest && points_[i % kPoints].time > time + 1e-9) --i;
-  return points_[i % kPoints];
+  while (i > oldest() && record(i).inertial.time > time + 1e-9) --i;
+  return i;
+}
+
+MotionDifference::Point MotionDifference::before(double time) const noexcept {
+  return difference(record(std::min(index_before(time), last_index())));
+}
+
+InertialMotion MotionDifference::inertial_at(double time) const noexcept {
+  if (empty()) return interpolated(now_.inertial, now_.inertial, time);
+  const std::size_t i = index_before(time);
+  return interpolated(record(i).inertial, i + 1 < count_ ? record(i + 1).inertial : now_.inertial, time);
+}
+
+MotionDifference::Point MotionDifference::difference(const Record& record) const noexcept {
+  const InertialMotion inertial = inertial_at(record.inertial.time - clock_offset_);
+  return {.time = record.inertial.time,
+          .path_difference = record.wheel_path + inertial.lever - inertial.path,
+          .turn_difference = record.right_minus_left - params_.wheel_base * inertial.yaw,
+          .distance = record.distance,
+          .yaw = inertial.yaw,
+          .velocity = inertial.velocity,
+          .yaw_rate = inertial.yaw_rate};
 }
 
 }  // namespace robot_control

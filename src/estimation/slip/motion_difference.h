@@ -1,17 +1,25 @@
 #pragma once
 /// The motion by wheels and gyro minus the motion by the accelerometer, without the state of a filter.
 ///
-///   E = path by wheels and gyro + lever of the IMU − ∬ acceleration dt²        path_difference: m, odom axes
-///   W = right − left − B ψ                                                     turn_difference: m
+///   E(t) = path by wheels and gyro + (lever of the IMU − ∬ acceleration dt²)(t − τ)   path_difference: m, odom axes
+///   W(t) = right − left − B ψ(t − τ)                                                  turn_difference: m
 ///
 /// The path is that of the middle of the wheels; the acceleration is the IMU's, gravity removed; the lever leads from
-/// the middle of the wheels to the IMU and turns with the yaw ψ, which is the gyro's; B is the wheel base. While no
-/// wheel slips E is a straight line, whose slope is the speed at the beginning, which the integral does not contain,
-/// and W is a constant. Time begins at 0 with every restart.
+/// the middle of the wheels to the IMU and turns with the yaw ψ, which is the gyro's; B is the wheel base. τ is the
+/// clock offset: what wheels report with the stamp t was so at t − τ (planar/planar_core.h), and both are compared at
+/// the same moment. Compared at the same stamp, E contained −τ times the velocity, and whenever that changes by Δv the
+/// robot would seem to slip by τ Δv. While no wheel slips E is a straight line, whose slope is the speed at the
+/// beginning, which the integral does not contain, and W is a constant. Time begins at 0 when the robot was at rest and
+/// when there is no past.
+///
+/// τ is learned in motion, so the points keep the two motions, and every difference is formed by the present τ: none
+/// compares two values of τ. Between two points the inertial motion is interpolated. Where the wheels are early, τ < 0,
+/// the last point is the last one for which t − τ has passed: what the IMU will report is not known.
 
 #include <array>
 #include <cstddef>
 
+#include "estimation/slip/inertial_motion.h"
 #include "estimation/tuning.h"
 #include "estimation/values.h"
 
@@ -29,11 +37,11 @@ struct SlipParams {
 class MotionDifference {
  public:
   struct Point {
-    double time = 0;             ///< s
+    double time = 0;             ///< s, stamp of the wheels
     Planar path_difference{};    ///< m, odom axes: E
     double turn_difference = 0;  ///< m: W
     double distance = 0;         ///< m, always growing
-    double yaw = 0;              ///< rad
+    double yaw = 0;              ///< rad, like all that follows at time − τ
     Planar velocity{};           ///< m/s, odom axes: integral of the acceleration since the restart
     double yaw_rate = 0;         ///< rad/s
   };
@@ -56,34 +64,51 @@ class MotionDifference {
   explicit MotionDifference(const SlipParams& params) noexcept : params_(params) {}
 
   void restart() noexcept;  ///< without any point
-  /// With points in the past on a straight line of E of that slope, m/s, odom axes: slip is noticed at once.
+  /// The past of the wheels is laid on a straight line of E of that slope, m/s, odom axes, and on a constant W, and the
+  /// path until now is not to be corrected any more: a slide ended.
   void restart_on_line(const Planar& slope) noexcept;
   /// The robot was at rest until now.
   void restart_at_rest(double yaw, const Vector3& up) noexcept;
   /// The pose was set: the path until now is not to be corrected any more.
-  void begin_path() noexcept { path_begin_ = now_.time; }
+  void begin_path() noexcept { path_begin_ = time(); }
   double path_begin() const noexcept { return path_begin_; }  ///< s
+  /// s: τ. During a slide it must not change: the slide keeps differences.
+  void set_clock_offset(double offset) noexcept { clock_offset_ = offset; }
 
   /// True: a point was added.
   bool step(const Sample& sample) noexcept;
 
-  const Point& now() const noexcept { return now_; }
+  double time() const noexcept { return now_.inertial.time; }  ///< s, of the last step
   bool empty() const noexcept { return count_ == 0; }
-  const Point& last() const noexcept { return points_[(count_ - 1) % kPoints]; }
-  const Point& before(double time) const noexcept;  ///< the newest point that is not later, else the oldest
+  Point now() const noexcept { return waits() ? last() : difference(now_); }  ///< the newest difference that is known
+  Point last() const noexcept { return difference(record(last_index())); }    ///< the newest point that is known
+  Point before(double time) const noexcept;  ///< the newest point that is not later, else the oldest
 
  private:
   static constexpr std::size_t kPoints = 64;
 
+  /// Both motions until `inertial.time`.
+  struct Record {
+    InertialMotion inertial;
+    Planar wheel_path{};          ///< m, odom axes
+    double right_minus_left = 0;  ///< m
+    double distance = 0;          ///< m
+  };
+
   Planar lever(double yaw, const Vector3& up) const noexcept;
+  bool waits() const noexcept { return clock_offset_ < -Tuning::kCarriedOn; }  ///< for the IMU
+  const Record& record(std::size_t i) const noexcept { return records_[i % kPoints]; }
+  std::size_t oldest() const noexcept { return count_ > kPoints ? count_ - kPoints : 0; }
+  std::size_t last_index() const noexcept { return index_before(waits() ? time() + clock_offset_ : time()); }
+  std::size_t index_before(double time) const noexcept;  ///< of the newest record that is not later, else the oldest
+  InertialMotion inertial_at(double time) const noexcept;
+  Point difference(const Record& record) const noexcept;
 
   SlipParams params_;
-  std::array<Point, kPoints> points_{};  ///< ring, at least Tuning::kPointInterval apart
+  std::array<Record, kPoints> records_{};  ///< ring, at least Tuning::kPointInterval apart
   std::size_t count_ = 0;
-  Point now_;
-  Planar inertial_path_;  ///< m, odom axes
-  Planar wheel_path_;     ///< m, odom axes
-  Planar lever_;          ///< m, odom axes
+  Record now_;
+  double clock_offset_ = 0;
   double path_begin_ = 0;
 };
 

@@ -12,8 +12,8 @@ double squared_norm(const Planar& v) noexcept {
 }  // namespace
 
 PathCorrection SlipCorrection::begin(const MotionDifference& difference, double span, const Input& input) noexcept {
-  const Point& onset = difference.before(difference.last().time - 0.9 * span);
-  const Point& older = difference.before(onset.time - std::max(Tuning::kLineTime, span));
+  const Point onset = difference.before(difference.last().time - 0.9 * span);
+  const Point older = difference.before(onset.time - std::max(Tuning::kLineTime, span));
   if (!(onset.time > older.time)) return {};
   active_ = true;
   timed_out_ = false;
@@ -33,7 +33,7 @@ PathCorrection SlipCorrection::begin(const MotionDifference& difference, double 
 }
 
 PathCorrection SlipCorrection::step(const MotionDifference& difference, const Input& input) noexcept {
-  const Point& now = difference.now();
+  const Point now = difference.now();
   const Planar earlier = total_;
   PathCorrection correction = correct(now, input);
   correction.variance +=
@@ -122,7 +122,8 @@ void SlipCorrection::renew_line(const Point& to, const Input& input, const Diffe
 /// Of the path since the last correction.
 PathCorrection SlipCorrection::correct(const Point& to, const Input& input) noexcept {
   const double dt = to.time - corrected_.time;
-  if (!(dt > 0)) return {};
+  if (to.time <= path_begin_) corrected_ = to;
+  if (!(dt > 0) || to.time <= path_begin_) return {};
   const double yaw = (to.yaw + corrected_.yaw) / 2;
   const Planar off_line = rotated(to.path_difference - corrected_.path_difference - line_.slope() * dt, -yaw);
   const double slipped = contacts_.slipped(off_line.x, to.turn_difference - corrected_.turn_difference);
@@ -144,7 +145,7 @@ std::pair<double, double> SlipCorrection::speed_bounds(double wheel_speed) const
 
 void SlipCorrection::begin_path(const MotionDifference& difference) noexcept {
   if (!active_) return;
-  path_begin_ = difference.now().time;
+  path_begin_ = difference.time();
   corrected_ = difference.now();
   total_ = {};
 }

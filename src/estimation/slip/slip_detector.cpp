@@ -9,16 +9,16 @@
 namespace robot_control {
 
 void SlipDetector::forget_judgement() noexcept {
-  levels_.restart();
   proven_span_ = {};
   nis_.fill(-1);
   explaining_levels_ = {};
   gravity_error_ = {};
-  gravity_compared_at_ = 0;
+  gravity_compared_at_ = difference_.time();
 }
 
 void SlipDetector::restart() noexcept {
   difference_.restart();
+  levels_.restart();
   forget_judgement();
 }
 
@@ -29,6 +29,7 @@ void SlipDetector::restart_on_line(const Planar& slope) noexcept {
 
 void SlipDetector::restart_at_rest(double yaw, const Vector3& up) noexcept {
   difference_.restart_at_rest(yaw, up);
+  levels_.restart();
   forget_judgement();
 }
 
@@ -41,7 +42,7 @@ void SlipDetector::judge(const SlipUncertainty& uncertainty, bool learns) noexce
   if (tilt.known) speed_ = tilt.speed();
   for (const Channel channel : kChannels) judge_channel(channel, residuals, uncertainty);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    levels_.learn(difference_.now().time, i, residuals[i], uncertainty, !learns);
+    levels_.learn(difference_.time(), i, residuals[i], uncertainty, !learns);
   }
   compare_gravity(tilt, learns);
 }
@@ -75,7 +76,7 @@ void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
 /// Its noise is that of the residual alone: gravity's own uncertainty is what it reduces.
 void SlipDetector::compare_gravity(const SlipResidual& residual, bool learns) noexcept {
   gravity_error_.known = false;
-  const double interval = difference_.now().time - gravity_compared_at_;
+  const double interval = difference_.time() - gravity_compared_at_;
   if (!residual.known || !learns || interval < residual.span) return;
   const double squared = square(residual.span);
   const double deviation = levels_.deviation(ResidualLevels::kTiltSpan, SlipResidual::kAlong, residual, {});
@@ -84,7 +85,7 @@ void SlipDetector::compare_gravity(const SlipResidual& residual, bool learns) no
                     .across = -residual.value[SlipResidual::kAcross] / squared,
                     .deviation = deviation / squared,
                     .interval = interval};
-  gravity_compared_at_ = difference_.now().time;
+  gravity_compared_at_ = difference_.time();
 }
 
 void SlipDetector::learn_false_proof() noexcept {

@@ -25,6 +25,7 @@ class SlipDetector {
   void restart_on_line(const Planar& slope) noexcept;
   void restart_at_rest(double yaw, const Vector3& up) noexcept;
   void begin_path() noexcept { difference_.begin_path(); }
+  void set_clock_offset(double offset) noexcept { difference_.set_clock_offset(offset); }  ///< s; not in a slide
   /// True: a point was added, which may be judged.
   bool step(const MotionDifference::Sample& sample) noexcept { return difference_.step(sample); }
   /// At a point. `learns`: no slide is going on.

@@ -6,10 +6,10 @@
 namespace robot_control {
 
 SlipResidual slip_residual(const MotionDifference& difference, double span) noexcept {
-  const MotionDifference::Point& end = difference.last();
-  const MotionDifference::Point& middle = difference.before(end.time - 0.9 * span);
+  const MotionDifference::Point end = difference.last();
+  const MotionDifference::Point middle = difference.before(end.time - 0.9 * span);
   const double late = end.time - middle.time;
-  const MotionDifference::Point& first = difference.before(middle.time - 0.9 * late);
+  const MotionDifference::Point first = difference.before(middle.time - 0.9 * late);
   const double early = middle.time - first.time;
   SlipResidual residual;
   residual.known = late > 0.8 * span && late < 1.6 * span && early > 0.8 * late && early < 1.6 * late;

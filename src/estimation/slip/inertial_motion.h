@@ -1,0 +1,21 @@
+#pragma once
+/// The motion by gyro and accelerometer at one time, and between two of them.
+
+#include "estimation/values.h"
+
+namespace robot_control {
+
+struct InertialMotion {
+  double time = 0;      ///< s
+  Planar path{};        ///< m, odom axes: ∬ acceleration dt² of the IMU since the restart
+  Planar lever{};       ///< m, odom axes: from the middle of the wheels to the IMU
+  Planar velocity{};    ///< m/s, odom axes: integral of the acceleration since the restart
+  double yaw = 0;       ///< rad
+  double yaw_rate = 0;  ///< rad/s
+};
+
+/// Path and yaw by the cubic through values and derivatives of both (Hermite), the rest by a line; outside of both at
+/// the velocities of the nearer one. `from` is not the later one.
+InertialMotion interpolated(const InertialMotion& from, const InertialMotion& to, double time) noexcept;
+
+}  // namespace robot_control
