@@ -48,7 +48,6 @@ struct Tuning {
   static constexpr double kUnlearnedJitter = 0.005;  ///< s, of time stamps, likewise
   static constexpr double kLineTime = 0.4;       ///< s, over which the slope of E before a slide is taken; recordings
   static constexpr double kLineGain = 0.5;       ///< of a decision, in the line that a rolling side renews; recordings
-  static constexpr double kNearerSide = 1.5;     ///< tolerances, by which a side may be off and roll; recordings
   static constexpr double kRollingTime = 0.15;   ///< s, for which all wheels roll when a slide ends; recordings
   static constexpr double kStandingTime = 0.25;  ///< s, for which a robot stands when a slide ends; recordings
   static constexpr double kLongestSlide = 6.0;   ///< s, without a side that rolls; recordings

@@ -11,11 +11,12 @@ class SlipCorrectionTest : public SlipFixture {
   SlipCorrectionTest() { learn(); }
 
   SlipCorrection::Input input() const {
-    return {.noise = body_.detector.acceleration_noise(1e-6),
-            .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong),
-            .turn_slope_deviation = body_.detector.slope_deviation(SlipResidual::kTurn),
-            .wheel_speed = body_.wheel_speed(),
-            .sensors_as_specified = as_specified_};
+    return {
+        .noise = body_.detector.acceleration_noise(1e-6),
+        .path_slope_deviation = std::max(path_slope_deviation_, body_.detector.slope_deviation(SlipResidual::kAlong)),
+        .turn_slope_deviation = body_.detector.slope_deviation(SlipResidual::kTurn),
+        .wheel_speed = body_.wheel_speed(),
+        .sensors_as_specified = as_specified_};
   }
   void add(const PathCorrection& correction) {
     corrected_ = corrected_ + correction.shift;
@@ -61,6 +62,7 @@ class SlipCorrectionTest : public SlipFixture {
 
   SlipCorrection correction_;
   bool as_specified_ = true;
+  double path_slope_deviation_ = 0;  ///< m/s, at least
   Planar corrected_;
   double variance_ = 0;  ///< m²
 };
@@ -104,6 +106,20 @@ TEST_F(SlipCorrectionTest, TheOtherSideGivesThePathOfASpinOfOne) {
   EXPECT_LT(error(), wheels_error() / 50);
 }
 
+// Where E is compared with a line by a poor slope, slip may pass for rolling: the path is as uncertain as that slope.
+TEST_F(SlipCorrectionTest, ASideThatMayRollLeavesThePathInDoubt) {
+  constexpr double kPoor = 0.3;  // m/s
+  body_.left = 0.05;
+  for (int i = 0; i < 100 && !correction_.active(); ++i) go(SlidingBody::kStep);
+  ASSERT_TRUE(correction_.active());
+  body_.left = 0.55;
+  body_.right = 0.45;
+  path_slope_deviation_ = kPoor;
+  go(1.0);
+  ASSERT_GT(error(), 0.3) << "it is taken for rolling";
+  EXPECT_LT(error(), 2.5 * std::sqrt(variance_));
+}
+
 class SlipBounds : public SlipCorrectionTest, public testing::WithParamInterface<double> {
  protected:
   static constexpr double kSlack = 0.021;  // m/s, of the bounds, and rounding
@@ -122,6 +138,31 @@ TEST_P(SlipBounds, ThePathStaysBetweenRestAndTheWheels) {
     ASSERT_GT(path, -kSlack * time - 1e-3) << i;
     ASSERT_LT(path, (body_.wheel_speed() + kSlack) * time + 1e-3) << i;
   }
+}
+
+// The wheels come to rest with the body, and the line is renewed: what is undone stays within these bounds, too.
+TEST_P(SlipBounds, WhatIsUndoneLeavesThePathBetweenRestAndTheWheels) {
+  constexpr double kProving = 0.1 * 0.7;  // m: the speed of the end is taken for that of the whole span that proved it
+  const double began = body_.wheels().x;
+  spin(0.7);
+  body_.error = GetParam();
+  const double fastest = body_.wheel_speed() + kSlack;
+  double time = Tuning::kResidualSpans.back();  // s since it began, at most
+  const auto goes = [&](double ahead) {
+    time += SlidingBody::kStep;
+    go(SlidingBody::kStep, ahead);
+    const double path = body_.wheels().x + corrected_.x - began;
+    EXPECT_GT(path, -kSlack * time - kProving) << time;
+    EXPECT_LT(path, fastest * time + kProving) << time;
+  };
+  while (time < 4) goes(0);
+  while (body_.speed > 0) {
+    body_.left = body_.right = body_.left * (1 - 1 / (body_.speed / SlidingBody::kStep));
+    goes(-1);
+  }
+  body_.speed = body_.left = body_.right = body_.error = 0;
+  for (int i = 0; i < 200 && correction_.active(); ++i) goes(0);
+  EXPECT_FALSE(correction_.active());
 }
 
 // What is published as the speed is bounded likewise.
@@ -219,6 +260,16 @@ TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsCorrectedByASlideThat
     go(SlidingBody::kStep);
   }
   EXPECT_LE(std::hypot(corrected_.x, corrected_.y), 0.5 * Tuning::kPointInterval * 1.1);
+}
+
+// One side alone that slips by u moves E by u/2 and W by u.
+TEST(SlideContacts, BothSlipWhereOneAloneDoesNotExplainIt) {
+  constexpr SlideContacts::Tolerance kTolerance{.path = 0.25, .turn = 0.02, .bend = 1};
+  SlideContacts contacts;
+  contacts.judge({.along = 0.3, .turn = 0.03}, {}, kTolerance);
+  EXPECT_TRUE(contacts.both_slip());
+  contacts.judge({.along = 0.3, .turn = 0.6}, {}, kTolerance);
+  EXPECT_TRUE(contacts.slips[1] && !contacts.slips[0]);
 }
 
 TEST_F(SlipCorrectionTest, TheEndLeavesNoExcess) {

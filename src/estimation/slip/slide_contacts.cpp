@@ -9,14 +9,9 @@ namespace robot_control {
 
 void SlideContacts::judge(const DifferenceSlope& excess, const DifferenceSlope& bend,
                           const Tolerance& tolerance) noexcept {
-  const std::size_t nearer = std::abs(excess.side(0)) < std::abs(excess.side(1)) ? 0 : 1;
   for (const std::size_t i : {0U, 1U}) slips[i] = std::abs(excess.side(i)) > tolerance.path;
-  if (std::abs(excess.turn) > tolerance.turn) {  // one side at least slips, and perhaps one alone
-    if (!slips[0] && !slips[1]) {
-      slips[std::abs(excess.side(0)) > std::abs(excess.side(1)) ? 0 : 1] = true;
-    } else if (both_slip() && std::abs(excess.side(nearer)) < Tuning::kNearerSide * tolerance.path) {
-      slips[nearer] = false;
-    }
+  if (std::abs(excess.turn) > tolerance.turn && !slips[0] && !slips[1]) {  // one side at least slips
+    slips[std::abs(excess.side(0)) > std::abs(excess.side(1)) ? 0 : 1] = true;
   }
   for (const std::size_t i : {0U, 1U}) slips[i] = slips[i] || std::abs(bend.side(i)) > tolerance.bend;
   sideways = std::abs(excess.across) > tolerance.path || std::abs(bend.across) > tolerance.bend;

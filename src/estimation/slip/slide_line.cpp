@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace robot_control {
 
@@ -12,25 +11,16 @@ void SlideLine::begin(const MotionDifference::Point& older, const MotionDifferen
   slope_ = (onset.path_difference - older.path_difference) / time;
   begin_ = onset.time;
   deviation_ = std::sqrt(square(slope_deviation) + square(noise.slow * time / 2) + square(noise.white) * time / 3);
-  taken_ = 0;
 }
 
 void SlideLine::renew(const Planar& change, double deviation) noexcept {
   slope_ = slope_ + change;
   deviation_ = deviation;
-  taken_ = 0;
 }
 
 double SlideLine::speed_deviation(double time, const AccelerationNoise& noise) const noexcept {
   const double t = std::max(0.0, time - begin_);
   return std::sqrt(square(deviation_) + square(noise.slow * t) + square(noise.white) * t);
-}
-
-double SlideLine::take_variance(double time, const AccelerationNoise& noise, bool counts) noexcept {
-  const double t = time - begin_;
-  const double total = square(deviation_ * t) + square(noise.slow * t * t / 2) + square(noise.white) * t * t * t / 3;
-  const double before = std::exchange(taken_, std::max(taken_, total));
-  return counts ? std::max(0.0, total - before) : 0;
 }
 
 }  // namespace robot_control

@@ -1,7 +1,7 @@
 #pragma once
 /// The straight line that E (motion_difference.h) follows without slip, carried on through a slide, and its error.
 ///
-///   speed error²(t) = σ² + (slow t)² + white² t        path error²(t) = (σ t)² + (slow t²/2)² + white² t³/3
+///   speed error²(t) = σ² + (slow t)² + white² t
 ///
 /// t: time since which it is carried on by the accelerometer alone; σ: standard deviation of its slope at that time.
 
@@ -24,14 +24,11 @@ class SlideLine {
   const Planar& slope() const noexcept { return slope_; }                              ///< m/s, odom axes
   double begin_time() const noexcept { return begin_; }                                ///< s
   double speed_deviation(double time, const AccelerationNoise& noise) const noexcept;  ///< m/s
-  /// m²: variance of the path that was added since the last call; `counts`: the path follows the line.
-  double take_variance(double time, const AccelerationNoise& noise, bool counts) noexcept;
 
  private:
   Planar slope_;
   double begin_ = 0;
   double deviation_ = 0;  ///< m/s: σ
-  double taken_ = 0;      ///< m²
 };
 
 }  // namespace robot_control

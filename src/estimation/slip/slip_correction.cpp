@@ -19,6 +19,8 @@ PathCorrection SlipCorrection::begin(const MotionDifference& difference, double 
   timed_out_ = false;
   since_end_ = rolling_time_ = standing_time_ = turn_slope_ = 0;
   total_ = {};
+  path_deviation_ = 0;
+  carried_on_ = {};
   contacts_.slip_all();
   line_.begin(older, onset, input.noise, input.path_slope_deviation);
   path_slope_ = line_.slope();
@@ -39,15 +41,16 @@ PathCorrection SlipCorrection::step(const MotionDifference& difference, const In
   correction.variance +=
       square(Tuning::kCorrectionDeviation) * std::max(0.0, squared_norm(total_) - squared_norm(earlier));
   if (now.time - decided_.time < 2 * Tuning::kPointInterval * (1 - 1e-9)) return correction;
-  const double carried_on = now.time - std::max(line_.begin_time(), path_begin_);
+  const double time = now.time - std::max(line_.begin_time(), path_begin_);
   const bool both_slipped = contacts_.both_slip();
   const Planar slope = line_.slope();
   decide(now, input);
   if (both_slipped && !contacts_.both_slip()) {  // the error of the line has moved the path since it was carried on
-    const Planar shift = (line_.slope() - slope) * carried_on;
+    const Planar shift = undo(line_.slope() - slope, time, now.yaw);
     correction.shift = correction.shift + shift;
     total_ = total_ + shift;
   }
+  if (line_.begin_time() == now.time) carried_on_ = {};
   const double longest = input.sensors_as_specified ? Tuning::kLongestSlide : Tuning::kLongestShakenSlide;
   timed_out_ = now.time - line_.begin_time() > longest;
   if (timed_out_ && !input.sensors_as_specified) {
@@ -130,12 +133,30 @@ PathCorrection SlipCorrection::correct(const Point& to, const Input& input) noex
   const double rolled = input.wheel_speed * dt;
   const auto [low, high] = speed_bounds(input.wheel_speed);
   const double farthest = std::max(-low, high) * dt;
-  const double along = rolled - std::clamp(rolled - slipped, low * dt, high * dt);
-  const double across = std::clamp(contacts_.sideways ? off_line.y : 0, -farthest, farthest);
-  const Planar shift = -rotated({along, across}, yaw);
+  const Planar off{rolled - std::clamp(rolled - slipped, low * dt, high * dt),
+                   std::clamp(contacts_.sideways ? off_line.y : 0, -farthest, farthest)};
+  carried_on_.rolled += rolled;
+  carried_on_.slipped = carried_on_.slipped + off;
+  carried_on_.lowest += low * dt;
+  carried_on_.highest += high * dt;
+  carried_on_.farthest += farthest;
+  const Planar shift = -rotated(off, yaw);
+  const double deviation = std::hypot(line_.speed_deviation(to.time, input.noise), input.path_slope_deviation);
+  const double before = path_deviation_;
+  path_deviation_ += std::min(deviation, high - low) * dt;
   corrected_ = to;
   total_ = total_ + shift;
-  return {shift, line_.take_variance(to.time, input.noise, contacts_.both_slip())};
+  return {shift, square(path_deviation_) - square(before)};
+}
+
+/// m, odom axes: of a path that followed a line whose slope was wrong by that, m/s, odom axes, for `time` s.
+Planar SlipCorrection::undo(const Planar& slope_error, double time, double yaw) noexcept {
+  const Planar before = carried_on_.slipped;
+  const Planar slipped = before - rotated(slope_error, -yaw) * time;
+  const CarriedOn& c = carried_on_;
+  carried_on_.slipped = {c.rolled - std::clamp(c.rolled - slipped.x, c.lowest, c.highest),
+                         std::clamp(slipped.y, -c.farthest, c.farthest)};
+  return rotated(before - carried_on_.slipped, yaw);
 }
 
 std::pair<double, double> SlipCorrection::speed_bounds(double wheel_speed) const noexcept {
@@ -148,6 +169,7 @@ void SlipCorrection::begin_path(const MotionDifference& difference) noexcept {
   path_begin_ = difference.time();
   corrected_ = difference.now();
   total_ = {};
+  carried_on_ = {};
 }
 
 void SlipCorrection::end() noexcept {

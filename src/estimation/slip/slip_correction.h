@@ -4,7 +4,12 @@
 /// From the onset on, the line that E followed before is carried on (slide_line.h, motion_difference.h). What E leaves
 /// it by is slip, and is taken off the path. Where one side rolls (slide_contacts.h), that side gives the path instead,
 /// together with W, and renews the line by kLineGain. The speed stays between zero, that of the onset, and that of the
-/// wheels. A correction has a standard deviation of kCorrectionDeviation times itself, besides that of the line.
+/// wheels. What a renewed line undoes of the correction leaves the path within the same bounds.
+///
+/// In a slide the speed is as uncertain as the line and the slope that is compared with it, and no more than its bounds
+/// are apart, whether a side is taken to roll or not: a slope within a wide tolerance does not show that one rolls. The
+/// errors of all decisions are alike, so the path's standard deviation is the integral of the speed's. A correction has
+/// one of kCorrectionDeviation times itself besides.
 ///
 /// A slide ends when all wheels have rolled for kRollingTime; when wheels and gyro have stood still for kStandingTime
 /// and the body does not brake, as friction would brake it, which shows that the robot is at rest; or after
@@ -64,11 +69,20 @@ class SlipCorrection {
  private:
   using Point = MotionDifference::Point;
 
+  /// m, base axes, since the line is carried on: what the wheels rolled, what was taken off it, and the bounds of the
+  /// rest.
+  struct CarriedOn {
+    double rolled = 0;
+    Planar slipped{};
+    double lowest = 0, highest = 0, farthest = 0;
+  };
+
   void decide(const Point& to, const Input& input) noexcept;
   SlideContacts::Tolerance tolerance(const Input& input) const noexcept;
   bool stands(const Point& to, const Input& input) const noexcept;
   void renew_line(const Point& to, const Input& input, const DifferenceSlope& excess) noexcept;
   PathCorrection correct(const Point& to, const Input& input) noexcept;
+  Planar undo(const Planar& slope_error, double time, double yaw) noexcept;
   std::pair<double, double> speed_bounds(double wheel_speed) const noexcept;  ///< m/s, along
 
   bool active_ = false;
@@ -86,7 +100,9 @@ class SlipCorrection {
   double rolling_time_ = 0, standing_time_ = 0;  ///< s
   double onset_speed_ = 0;
   double excess_speed_ = 0, lateral_speed_ = 0;
-  Planar total_;  ///< m, odom axes, of this slide
+  Planar total_;               ///< m, odom axes, of this slide
+  double path_deviation_ = 0;  ///< m, of this slide
+  CarriedOn carried_on_;
 };
 
 }  // namespace robot_control
