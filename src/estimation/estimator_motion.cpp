@@ -112,7 +112,7 @@ void Estimator::watch_slip(double dt, double turned) noexcept {
 void Estimator::follow_slide() noexcept {
   correct(slip_correction_.step(slip_detector_.difference(), correction_input()));
   if (slip_correction_.active()) return;
-  if (!slip_correction_.timed_out()) return slip_detector_.restart_on_line(slip_correction_.line_slope());
+  if (!slip_correction_.given_up()) return slip_detector_.restart_on_line(slip_correction_.line_slope());
   if (slip_correction_.undone()) slip_detector_.learn_false_proof();
   slip_detector_.restart();
 }

@@ -186,7 +186,7 @@ TEST_F(SlipCorrectionTest, EndsWhenTheWheelsAgreeWithTheBody) {
   body_.left = body_.right = 0;
   EXPECT_LT(go(2), 0.5);
   EXPECT_FALSE(correction_.active());
-  EXPECT_FALSE(correction_.timed_out());
+  EXPECT_FALSE(correction_.given_up());
   EXPECT_EQ(correction_.reasons(), 0u);
 }
 
@@ -222,7 +222,7 @@ TEST_F(SlipCorrectionTest, EndsAfterTheLongestTime) {
   spin(0.5);
   EXPECT_NEAR(go(20), Tuning::kLongestSlide, 0.3);
   EXPECT_FALSE(correction_.active());
-  EXPECT_TRUE(correction_.timed_out());
+  EXPECT_TRUE(correction_.given_up());
   EXPECT_GT(std::hypot(corrected_.x, corrected_.y), 1);
 }
 
@@ -231,7 +231,7 @@ TEST_F(SlipCorrectionTest, OnAShakenRobotItUndoesWhatItCorrected) {
   as_specified_ = false;
   spin(0.5);
   EXPECT_NEAR(go(20), Tuning::kLongestShakenSlide, 0.3);
-  EXPECT_TRUE(correction_.timed_out());
+  EXPECT_TRUE(correction_.given_up());
   EXPECT_NEAR(corrected_.x, 0, 1e-12);
   EXPECT_NEAR(corrected_.y, 0, 1e-12);
   EXPECT_GT(std::sqrt(variance_), 0.5) << "it may have been one";
@@ -246,7 +246,7 @@ TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsUndone) {
   body_.detector.begin_path();
   correction_.begin_path(body_.detector.difference());
   go(20);
-  ASSERT_TRUE(correction_.timed_out());
+  ASSERT_TRUE(correction_.given_up());
   EXPECT_NEAR(corrected_.x, before.x, 1e-12);
   EXPECT_NEAR(corrected_.y, before.y, 1e-12);
 }
@@ -260,6 +260,18 @@ TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsCorrectedByASlideThat
     go(SlidingBody::kStep);
   }
   EXPECT_LE(std::hypot(corrected_.x, corrected_.y), 0.5 * Tuning::kPointInterval * 1.1);
+}
+
+// Nothing drove it as fast as that: the accelerometer is wrong.
+TEST_F(SlipCorrectionTest, SidewaysFasterThanAllThatDroveItRefutesTheLine) {
+  go(0.3, 0, 1.0);
+  ASSERT_TRUE(correction_.active());
+  EXPECT_LT(go(2, 0, 1.0), 1);
+  EXPECT_TRUE(correction_.given_up());
+  EXPECT_TRUE(correction_.undone());
+  EXPECT_NEAR(corrected_.x, 0, 1e-12);
+  EXPECT_NEAR(corrected_.y, 0, 1e-12);
+  EXPECT_GT(std::sqrt(variance_), 0.1) << "it may have been one";
 }
 
 // One side alone that slips by u moves E by u/2 and W by u.

@@ -16,7 +16,7 @@ PathCorrection SlipCorrection::begin(const MotionDifference& difference, double 
   const Point older = difference.before(onset.time - std::max(Tuning::kLineTime, span));
   if (!(onset.time > older.time)) return {};
   active_ = true;
-  timed_out_ = false;
+  timed_out_ = refuted_ = false;
   since_end_ = rolling_time_ = standing_time_ = turn_slope_ = 0;
   total_ = {};
   path_deviation_ = 0;
@@ -53,11 +53,11 @@ PathCorrection SlipCorrection::step(const MotionDifference& difference, const In
   if (line_.begin_time() == now.time) carried_on_ = {};
   const double longest = input.sensors_as_specified ? Tuning::kLongestSlide : Tuning::kLongestShakenSlide;
   timed_out_ = now.time - line_.begin_time() > longest;
-  if (timed_out_ && !input.sensors_as_specified) {
+  if (refuted_ || (timed_out_ && !input.sensors_as_specified)) {
     correction = {-earlier, squared_norm(total_)};
     undone_for_ = Tuning::kUndoneTime;
   }
-  if (rolling_time_ >= Tuning::kRollingTime || standing_time_ >= Tuning::kStandingTime || timed_out_) end();
+  if (rolling_time_ >= Tuning::kRollingTime || standing_time_ >= Tuning::kStandingTime || given_up()) end();
   return correction;
 }
 
@@ -85,6 +85,7 @@ void SlipCorrection::decide(const Point& to, const Input& input) noexcept {
   const double speed = input.wheel_speed - contacts_.slipped(excess.along, excess.turn);
   excess_speed_ = input.wheel_speed - std::clamp(speed, low, high);
   const double fastest = std::max(-low, high);
+  refuted_ = contacts_.sideways && std::abs(excess.across) - fastest > tolerance(input).path;
   lateral_speed_ = contacts_.sideways ? std::clamp(-excess.across, -fastest, fastest) : 0;
   reasons_ = contacts_.reasons(excess, input.wheel_speed);
   decided_ = to;

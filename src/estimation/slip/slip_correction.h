@@ -14,7 +14,8 @@
 /// A slide ends when all wheels have rolled for kRollingTime; when wheels and gyro have stood still for kStandingTime
 /// and the body does not brake, as friction would brake it, which shows that the robot is at rest; or after
 /// kLongestSlide without a side that rolls. Where the accelerometer shakes, the latter is kLongestShakenSlide, and the
-/// whole correction is undone then: the slip was probably none.
+/// whole correction is undone then: the slip was probably none. So it is, at once, where the line is refuted: where the
+/// body would slide sideways faster than it was and than the wheels are, by more than kSignificant deviations.
 
 #include <algorithm>
 #include <cstdint>
@@ -58,7 +59,7 @@ class SlipCorrection {
   double since_end() const noexcept { return since_end_; }                   ///< s
   std::uint64_t reasons() const noexcept { return active_ ? reasons_ : 0; }  ///< SlipReason
   const SlideContacts& contacts() const noexcept { return contacts_; }
-  bool timed_out() const noexcept { return timed_out_; }    ///< the last slide, without a side that rolled
+  bool given_up() const noexcept { return timed_out_ || refuted_; }  ///< the last slide, before its end
   bool undone() const noexcept { return undone_for_ > 0; }  ///< a correction was, Tuning::kUndoneTime ago at most
   const Planar& line_slope() const noexcept { return line_.slope(); }  ///< m/s, odom axes
   /// m/s, base axes: how much faster the wheels are than the ground, and how fast the robot slides to the left.
@@ -87,6 +88,7 @@ class SlipCorrection {
 
   bool active_ = false;
   bool timed_out_ = false;
+  bool refuted_ = false;
   double undone_for_ = 0;  ///< s, for which that is still reported
   double since_end_ = 1e9;
   std::uint64_t reasons_ = 0;
