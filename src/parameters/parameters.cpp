@@ -60,10 +60,13 @@ class TreeReader {
       blocks.emplace(block.name);
       for (const Key& key : block.keys) paths.insert(path_of(block, key));
     }
-    // Keys inside an unexpected or unknown map are reported with that map.
+    // Keys inside an unexpected or unknown map are reported with that map. Those that a server holds below a key whose
+    // value the file gives are in no map.
     const auto reported_with_its_map = [&](const std::string& path) {
       const std::string map = path.substr(0, path.rfind('.'));
-      return map.find('.') != std::string::npos && tree_.entries.contains(map) && rule_of_group(map).empty();
+      const auto entry = tree_.entries.find(map);
+      return map.find('.') != std::string::npos && entry != tree_.entries.end() &&
+             entry->second.kind == Entry::Kind::kMap && rule_of_group(map).empty();
     };
     for (const BlockEntry& block : tree_.blocks) {
       if (blocks.contains(block.name)) continue;

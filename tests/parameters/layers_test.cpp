@@ -42,6 +42,15 @@ TEST_F(Layers, AFileMayHoldOnlyTheKeysThatItChanges) {
   EXPECT_EQ(parameters.urdf, shipped.urdf);
 }
 
+/// `rosparam set /diff_drive_controller/max_linear_speed/limit 0.3`.
+TEST_F(Layers, AKeyBelowAValueIsUnknownWhereverTheValueStands) {
+  for (const char* key : {"diff_drive_controller.max_linear_speed", "robot.rate", "safety_monitor.latch_file"}) {
+    const std::string path = std::string(key) + ".limit";
+    EXPECT_THAT(refusal("robot: {}\n", {{path, "0.3", "/server"}}), HasSubstr(path + " = 0.3: unknown key [/server]"));
+  }
+  EXPECT_THAT(refusal("robot:\n  rate: {limit: 0.3}\n"), Not(HasSubstr("unknown key"))) << "the map is the problem";
+}
+
 TEST_F(Layers, AMapMayHoldOnlyTheKeysThatItChanges) {
   const Parameters parameters = read("safety_monitor:\n  tilt: {limit: 0.3}\n");
   EXPECT_EQ(*parameters.safety.tilt.limit, 0.3);
