@@ -92,6 +92,40 @@ TEST(Overlays, LeaveOutAnEmptyText) {
   EXPECT_EQ(overlays[0].path, "robot.rate");
 }
 
+std::string refusal_of(const XmlRpc::XmlRpcValue& value) {
+  try {
+    return text_parameter(value, "/node/config", "the path of a YAML file");
+  } catch (const ParameterError& error) {
+    return error.what();
+  }
+}
+
+// A list in ~config is no reason to drive with the limits of the installed file.
+TEST(ATextOfTheServer, OfAnotherTypeIsRefusedWithItsValueAndTheRemedy) {
+  EXPECT_EQ(refusal_of(XmlRpc::XmlRpcValue()), "");
+  EXPECT_EQ(refusal_of(std::string("my.yaml")), "my.yaml");
+  XmlRpc::XmlRpcValue list;
+  list[0] = 1;
+  list[1] = std::string("a");
+  EXPECT_EQ(refusal_of(list),
+            "/node/config = [1, \"a\"]: must be a text, the path of a YAML file; set it, or remove it: "
+            "`rosparam delete /node/config`");
+  EXPECT_NE(refusal_of(5).find("/node/config = 5: must be a text"), std::string::npos);
+  EXPECT_NE(refusal_of(true).find("/node/config = true: must be a text"), std::string::npos);
+  XmlRpc::XmlRpcValue tree;
+  tree["a"] = 1;
+  EXPECT_NE(refusal_of(tree).find("/node/config is a group of parameters: must be a text"), std::string::npos);
+}
+
+// rospy takes 1 and "false" for true, roscpp for nothing: some nodes would wait for /clock, others not.
+TEST(SimulatedTime, IsTrueOrFalseAndNothingElse) {
+  EXPECT_FALSE(truth_parameter(XmlRpc::XmlRpcValue(), "/use_sim_time"));
+  EXPECT_FALSE(truth_parameter(XmlRpc::XmlRpcValue(false), "/use_sim_time"));
+  EXPECT_TRUE(truth_parameter(XmlRpc::XmlRpcValue(true), "/use_sim_time"));
+  EXPECT_THROW(truth_parameter(XmlRpc::XmlRpcValue(1), "/use_sim_time"), ParameterError);
+  EXPECT_THROW(truth_parameter(XmlRpc::XmlRpcValue("false"), "/use_sim_time"), ParameterError);
+}
+
 TEST(Overlays, PassAScalarInPlaceOfABlockOnToTheSchema) {
   XmlRpc::XmlRpcValue scalar(7);
   const std::vector<Overlay> overlays = overlays_of(scalar, "robot", "/robot");

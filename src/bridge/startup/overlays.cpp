@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "files/message_text.h"
 #include "parameters/parameters_text.h"
 
 namespace robot_control {
@@ -30,6 +31,13 @@ std::string text_of(XmlRpc::XmlRpcValue value) {
   }
 }
 
+ParameterError wrong_type(const XmlRpc::XmlRpcValue& value, const std::string& name, const std::string& rule) {
+  const bool group = value.getType() == XmlRpc::XmlRpcValue::TypeStruct;
+  const std::string shown = group ? " is a group of parameters" : " = " + printable(text_of(value));
+  return ParameterError(name + shown + ": must be " + rule + "; set it, or remove it: " + "`rosparam delete " + name +
+                        "`");
+}
+
 bool is_empty_text(XmlRpc::XmlRpcValue value) {
   return value.getType() == XmlRpc::XmlRpcValue::TypeString && static_cast<std::string>(value).empty();
 }
@@ -50,6 +58,18 @@ std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::str
     overlays.insert(overlays.end(), inner.begin(), inner.end());
   }
   return overlays;
+}
+
+std::string text_parameter(const XmlRpc::XmlRpcValue& value, const std::string& name, const std::string& what) {
+  if (!value.valid()) return "";
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeString) throw wrong_type(value, name, "a text, " + what);
+  return static_cast<std::string>(XmlRpc::XmlRpcValue(value));
+}
+
+bool truth_parameter(const XmlRpc::XmlRpcValue& value, const std::string& name) {
+  if (!value.valid()) return false;
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeBoolean) throw wrong_type(value, name, "true or false");
+  return static_cast<bool>(XmlRpc::XmlRpcValue(value));
 }
 
 std::set<std::string> set_by_launch(const char* const* environment) {

@@ -24,6 +24,11 @@ namespace robot_control {
 std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::string& block,
                                  const std::string& server_name, const std::vector<std::string>& ignored = {});
 
+/// What is set on the server as `name`, empty where nothing is: a text, or true or false. Throws ParameterError where
+/// it is anything else; ros::param::get() would return as if nothing were set. `what` it is: "the path of a YAML file".
+std::string text_parameter(const XmlRpc::XmlRpcValue& value, const std::string& name, const std::string& what);
+bool truth_parameter(const XmlRpc::XmlRpcValue& value, const std::string& name);
+
 /// Names of environment variables in which a launch file lists the paths that it overrides itself, between spaces:
 /// "robot.clock robot.wait_for_nodes". They reach the nodes of that launch alone, unlike parameters, which stay.
 inline constexpr std::string_view kSetByLaunch = "ROBOT_CONTROL_SET_BY_";

@@ -22,18 +22,28 @@ std::string installed_config() {
   return ros::package::getPath("robot_control") + "/config/robot_params.yaml";
 }
 
+constexpr const char* kYamlPath = "the path of a YAML file";
+
+XmlRpc::XmlRpcValue on_server(const std::string& name) {
+  XmlRpc::XmlRpcValue value;
+  ros::param::get(name, value);
+  return value;
+}
+
+std::string server_text(const std::string& name, const std::string& what) {
+  return text_parameter(on_server(name), name, what);
+}
+
 /// `~config`, which lies over the installed file, else that one.
 std::string config_path() {
-  std::string path;
-  return ros::param::get("~config", path) ? path : installed_config();
+  const std::string path = server_text(ros::names::resolve("~config"), kYamlPath);
+  return path.empty() ? installed_config() : path;
 }
 
 void append(std::vector<Overlay>& overlays, const std::string& name, const std::string& block,
             const std::vector<std::string>& ignored = {}) {
-  XmlRpc::XmlRpcValue tree;
   const std::string resolved = ros::names::resolve(name);
-  if (!ros::param::get(resolved, tree)) return;
-  const std::vector<Overlay> found = overlays_of(tree, block, resolved, ignored);
+  const std::vector<Overlay> found = overlays_of(on_server(resolved), block, resolved, ignored);
   overlays.insert(overlays.end(), found.begin(), found.end());
 }
 
@@ -41,16 +51,13 @@ std::vector<Overlay> server_overlays(const std::string& node) {
   std::vector<Overlay> overlays;
   append(overlays, "robot", "robot");
   append(overlays, ros::this_node::getName(), node, {"config", "urdf"});
-  if (std::string urdf; ros::param::get("~urdf", urdf) && !urdf.empty()) {
-    overlays.push_back(overlays_of(urdf, "robot.urdf", ros::names::resolve("~urdf")).front());
-  }
+  append(overlays, "~urdf", "robot.urdf");
   return overlays;
 }
 
 RobotDescription description(const Parameters& parameters, const std::vector<Overlay>& overlays, std::string& unread) {
   const std::string name = ros::names::resolve("robot_description");
-  std::string published;
-  ros::param::get(name, published);
+  const std::string published = server_text(name, "that of a URDF");
   std::string asked_for;  // the last one holds
   for (const Overlay& overlay : overlays) {
     if (overlay.path == "robot.urdf") asked_for = overlay.origin;
@@ -89,8 +96,16 @@ std::string host_name() {
 }
 
 void fill_setup(const std::string& node, Setup& setup) {
-  const std::string path = config_path();
-  const std::vector<Overlay> overlays = server_overlays(node);
+  std::string path;
+  std::vector<Overlay> overlays;
+  bool use_sim_time = false;
+  try {
+    path = config_path();
+    overlays = server_overlays(node);
+    use_sim_time = truth_parameter(on_server("/use_sim_time"), "/use_sim_time");
+  } catch (const ParameterError& error) {
+    throw SetupError(error.what());
+  }
   setup.overrides = override_lines(overlays, path);
   setup.unexpected_overrides = override_lines(overlays, path, set_by_launch(environ));
   std::string problems;
@@ -99,14 +114,14 @@ void fill_setup(const std::string& node, Setup& setup) {
   } catch (const ParameterError& error) {
     throw SetupError(error.what());  // without parameters nothing else can be judged
   }
-  bool use_sim_time = false;
-  ros::param::get("/use_sim_time", use_sim_time);
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
   try {
     setup.robot = read_robot(description(setup.parameters, overlays, setup.unread_description), setup.parameters.robot);
     std::string& base_frame = setup.parameters.report.base_frame;
     if (base_frame.empty()) base_frame = setup.robot.base_link;
   } catch (const RobotError& error) {
+    add(problems, error.what());
+  } catch (const ParameterError& error) {
     add(problems, error.what());
   }
   if (!problems.empty()) throw SetupError(problems);
@@ -124,8 +139,8 @@ Parameters parameters_of(const std::string& node) {
   std::vector<Overlay> overlays;
   append(overlays, "robot", "robot");
   append(overlays, node, node, {"config", "urdf"});
-  std::string path;
-  if (!ros::param::get(ros::names::resolve(node + "/config"), path)) path = config_path();
+  std::string path = server_text(ros::names::resolve(node + "/config"), kYamlPath);
+  if (path.empty()) path = config_path();
   return read_parameters(path, overlays, installed_config());
 }
 
