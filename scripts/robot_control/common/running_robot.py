@@ -13,6 +13,7 @@ import rospy
 
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
 from robot_control.common.ros_node import begin_node
+from robot_control.common.server_values import server_text, server_tree
 from robot_control.common.settings import Settings
 from robot_control.common.topic_sender import Signals
 from robot_control.installed_files import share_file
@@ -35,6 +36,7 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
 
     Raises:
         RefusedError: there is no robot that could be driven.
+        ServerValueError: the server holds one of them in another type.
     """
     if not rosgraph.is_master_online():
         raise RefusedError(
@@ -46,10 +48,10 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
         raise RefusedError(
             "the robot runs in simulated time, where a wall-clock second is many: use clock wall, " + in_simulated_time
         )
-    path = rospy.get_param(f"{node}/config", share_file(DEFAULTS))
-    own = {key: value for key, value in rospy.get_param(node, {}).items() if key not in ("config", "urdf")}
-    values = [*leaves({"robot": rospy.get_param("robot", {})}), *leaves({node: own})]
-    described = rospy.get_param("robot_description", "")
+    path = server_text(f"{node}/config", "the path of a YAML file") or share_file(DEFAULTS)
+    own = {key: value for key, value in server_tree(node).items() if key not in ("config", "urdf")}
+    values = [*leaves({"robot": server_tree("robot")}), *leaves({node: own})]
+    described = server_text("robot_description", "that of a URDF")
     with tempfile.TemporaryDirectory(prefix=f"{tool}-") as folder:
         if described and "robot.urdf" not in dict(values):
             (Path(folder) / "robot.urdf").write_text(described)

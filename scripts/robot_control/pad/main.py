@@ -14,6 +14,7 @@ from sensor_msgs.msg import Joy
 from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_node import running_node
+from robot_control.common.server_values import ServerValueError, server_tree
 from robot_control.common.topic_sender import Signals
 from robot_control.pad.device import PACKAGE, Device, open_device
 from robot_control.pad.law import Pad, PadParameters
@@ -31,7 +32,10 @@ class ParameterError(ValueError):
 
 def parameters() -> PadParameters:
     """The private ROS parameters of this node over the defaults. Raises ParameterError with all problems."""
-    given = rospy.get_param("~", {}) or {}
+    try:
+        given = server_tree("~")
+    except ServerValueError as error:
+        raise ParameterError(str(error)) from error
     problems = [f"~{name}: unknown" for name in sorted(set(given) - set(PadParameters.names()))]
     values: dict[str, Any] = {}
     for name in PadParameters.names():

@@ -17,6 +17,7 @@ import rospy
 
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
+from robot_control.common.server_values import ServerValueError, server_text
 from robot_control.common.topic_sender import ended_by_signals
 
 LOOK = 0.2
@@ -51,10 +52,10 @@ def program() -> str:
 
 
 def await_description() -> str:
-    """Empty: a signal came first."""
+    """Empty: a signal came first. Raises ServerValueError: it is no text."""
     with ended_by_signals() as signals:
         while signals.going_on():
-            description = str(rospy.get_param("robot_description", ""))
+            description = server_text("robot_description", "that of a URDF")
             if description:
                 return description
             time.sleep(LOOK)
@@ -67,7 +68,10 @@ def main() -> None:
     require_master()
     begin_node(PROGRAM)
     own, name = rospy.resolve_name("~robot_description"), rospy.resolve_name("robot_description")
-    description = await_description()
+    try:
+        description = await_description()
+    except ServerValueError as error:
+        sys.exit(f"state_publisher.py: {error}")
     if not description:
         return
     rospy.set_param(own, without_root_inertia(description))

@@ -5,9 +5,8 @@ from __future__ import annotations
 import tempfile
 from typing import Any
 
-import rospy
-
 from robot_control._robot_control import ParameterError, RobotError
+from robot_control.common.server_values import ServerValueError, server_text, server_tree
 from robot_control.inspect.description import Description, describe
 from robot_control.view.scene import Wheel
 
@@ -24,11 +23,11 @@ def _wheel(wheel: dict[str, Any]) -> Wheel:
 
 def running_wheels() -> dict[str, Wheel]:
     """Of robot_description, read as the robot's nodes read it; none while it is not there, or cannot be driven."""
-    robot = {key: value for key, value in rospy.get_param("robot", {}).items() if value != "" and key != "urdf"}
-    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-        file.write(rospy.get_param("robot_description", ""))
-        file.flush()
-        try:
+    try:
+        robot = {key: value for key, value in server_tree("robot").items() if value != "" and key != "urdf"}
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+            file.write(server_text("robot_description", "that of a URDF"))
+            file.flush()
             return wheels_of(describe(file.name, {"robot": robot}))
-        except (RobotError, ParameterError):
-            return {}
+    except (RobotError, ParameterError, ServerValueError):
+        return {}
