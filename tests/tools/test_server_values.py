@@ -1,6 +1,7 @@
 """What any node may have set on the parameter server is refused by name, value and remedy, without a traceback."""
 
 import contextlib
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -31,6 +32,22 @@ def test_nothing_and_an_empty_text_are_no_value(server):
         server.update(unset)
         assert server_text("a", "the path of a file") == ""
         assert server_tree("a") == {}
+
+
+def test_an_empty_text_below_a_name_is_no_parameter(server):
+    server["a"] = {"b": "", "c": {"d": "", "e": 0}, "f": False}
+    assert server_tree("a") == {"c": {"e": 0}, "f": False}
+
+
+def test_a_tool_reads_the_parameters_of_a_launch_whose_arguments_were_not_given(server, monkeypatch):
+    monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
+    monkeypatch.setattr(running_robot, "begin_node", lambda *_, **__: None)
+    server["robot"] = {"bus": "", "clock": "wall", "command_script": "", "urdf": ""}
+    server["robot_description"] = "<robot/>"
+    with running_robot.running_settings("tool", "controller", "", "") as settings:
+        values = dict(settings.values)
+        assert values.keys() == {"robot.clock", "robot.urdf"}
+        assert Path(values["robot.urdf"]).read_text() == "<robot/>"
 
 
 @pytest.mark.parametrize("value", NO_TEXT)

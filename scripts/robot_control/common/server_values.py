@@ -26,7 +26,10 @@ def server_text(name: str, rule: str) -> str:
 
 
 def server_tree(name: str) -> dict[str, Any]:
-    """All parameters below `name`, by their names; none where nothing or "" is set.
+    """All parameters below `name`, by their names; none where nothing is set.
+
+    An empty text counts as nothing, as for the nodes: launch files set every argument, and the one that was not given
+    is "".
 
     Raises:
         ServerValueError: a single value is set as `name`.
@@ -34,11 +37,19 @@ def server_tree(name: str) -> dict[str, Any]:
     value = rospy.get_param(name, "") or {}
     if not isinstance(value, dict):
         raise _wrong_type(name, value, "a group of parameters")
-    return value
+    return _without_empty_texts(value)
+
+
+def _without_empty_texts(tree: dict[str, Any]) -> dict[str, Any]:
+    return {
+        key: _without_empty_texts(value) if isinstance(value, dict) else value
+        for key, value in tree.items()
+        if value != ""
+    }
 
 
 def _wrong_type(name: str, value: object, rule: str) -> ServerValueError:
-    full = rospy.resolve_name(name)
+    full = rospy.resolve_name(name).rstrip("/")
     return ServerValueError(
         f"{full} = {printable(str(value))}: must be {rule}; set it, or remove it: `rosparam delete {full}`"
     )

@@ -24,7 +24,7 @@ def _wheel(wheel: dict[str, Any]) -> Wheel:
 def running_wheels() -> dict[str, Wheel]:
     """Of robot_description, read as the robot's nodes read it; none while it is not there, or cannot be driven."""
     try:
-        robot = {key: value for key, value in server_tree("robot").items() if value != "" and key != "urdf"}
+        robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
             file.write(server_text("robot_description", "that of a URDF"))
             file.flush()
