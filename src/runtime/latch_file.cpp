@@ -72,7 +72,8 @@ std::string body(const LatchRecord& record) {
 
 LatchRecord read_latch(const std::string& path) {
   std::error_code ignored;
-  if (std::filesystem::status(path, ignored).type() == std::filesystem::file_type::not_found) return {};
+  // Of the link, not of its target: a link to nothing may lead to a disk that is not mounted.
+  if (std::filesystem::symlink_status(path, ignored).type() == std::filesystem::file_type::not_found) return {};
   const InputFile file = read_input_file(path, LatchFile::kLargest);
   return file.problem.empty() ? parse_latch(file.text) : unreadable();
 }

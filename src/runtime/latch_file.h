@@ -8,7 +8,7 @@
 ///
 /// An absent file is no latch. Everything else that is not exactly such a record counts as a latch with the cause
 /// kCauseLatchUnreadable: another format, an unknown cause, a wrong checksum, a file larger than kLargest, no regular
-/// file, no permission. After a release the file says `causes: []`.
+/// file, a link to nothing, no permission. After a release the file says `causes: []`.
 ///
 /// Written by an ordinary thread as files/output_file.h says: whole or not at all, synchronised, through a symbolic
 /// link. Missing folders are made. What is no regular file is never written to. A failure is kept in `problem` and

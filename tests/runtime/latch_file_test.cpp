@@ -110,6 +110,15 @@ TEST_F(LatchFileTest, FollowsASymbolicLink) {
   EXPECT_EQ(found().causes, kStops);
 }
 
+TEST_F(LatchFileTest, ALinkToNothingIsALatchForItsDiskMayNotBeMounted) {
+  path = folder.path() / "link";
+  std::filesystem::create_symlink(folder.path() / "not_mounted/latch", path);
+  EXPECT_EQ(found().causes, std::uint64_t{kCauseLatchUnreadable});
+  std::filesystem::create_directories(folder.path() / "not_mounted");
+  keep(0);
+  EXPECT_EQ(found().causes, 0u) << "after a reset, once it is there";
+}
+
 TEST(LatchPath, OfAFolderIsAFileNamedAfterHostAndNamespace) {
   EXPECT_EQ(latch_path("/var/stop", "arm", "/robot2"), "/var/stop");
   EXPECT_EQ(latch_path("/var/stops/", "arm", "/"), "/var/stops/latch.arm");
