@@ -268,9 +268,13 @@ class Robot:
                 raise AssertionError(f"not within {LIMIT:g} s of driving: {what}; causes: {self.causes}")
             waits = self.status is not None and self.status.awaiting_zero_request
             self.send(*((0.0, 0.0) if waits else (linear, angular)))
-            if self.state == SafetyStatus.STOPPED and self.causes and self.causes <= STALL_CAUSES:
-                self.release()
+            self.release_after_a_stall()
             time.sleep(0.02)
+
+    def release_after_a_stall(self) -> None:
+        """Where the robot was stopped by nothing but what a stalling machine latches."""
+        if self.state == SafetyStatus.STOPPED and self.causes and self.causes <= STALL_CAUSES:
+            self.release()
 
     def await_rest(self) -> None:
         """Sends zero until the wheels stand."""

@@ -31,7 +31,7 @@ class TeleopTest(RobotTestCase):
         self.robot.await_rest()
         terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0], *arguments])
         self.addCleanup(terminal.end)
-        wait_for("its screen", lambda: "It may move" in terminal.screen)
+        wait_for("its screen", lambda: "It may move" in terminal.screen, every=self.robot.release_after_a_stall)
         return terminal
 
     def drive(self) -> None:

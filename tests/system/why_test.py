@@ -8,7 +8,7 @@ import time
 import rospy
 import rostest
 from std_srvs.srv import SetBool
-from system_support import LIMIT, LOOP, MONITOR, PLANT, Program, RobotTestCase, wait_for
+from system_support import LIMIT, LOOP, MONITOR, PLANT, Program, RobotTestCase, again_after_a_stall, wait_for
 
 
 def answer(*arguments: str, **environment: str) -> tuple[int, str]:
@@ -108,6 +108,7 @@ class WhyTest(RobotTestCase):
         finally:
             pause(False)
 
+    @again_after_a_stall
     def test_live_and_not_on_a_terminal_it_prints_what_changes_and_nothing_else(self) -> None:
         self.robot.await_rest()
         program = Program("why.py")
