@@ -63,7 +63,7 @@ def again_after_a_stall(case: Callable[[Any], None]) -> Callable[[Any], None]:
 
 
 def wait_for(
-    what: str, condition: Callable[[], bool], limit: float = LIMIT, every: Callable[[], None] | None = None
+    what: str, condition: Callable[[], bool], limit: float = LIMIT, every: Callable[[], object] | None = None
 ) -> None:
     """Polls until the condition holds; `every` is called at each look. Fails naming `what`."""
     end = time.monotonic() + limit
@@ -271,10 +271,12 @@ class Robot:
             self.release_after_a_stall()
             time.sleep(0.02)
 
-    def release_after_a_stall(self) -> None:
-        """Where the robot was stopped by nothing but what a stalling machine latches."""
-        if self.state == SafetyStatus.STOPPED and self.causes and self.causes <= STALL_CAUSES:
+    def release_after_a_stall(self) -> bool:
+        """Where the robot was stopped by nothing but what a stalling machine latches. True: it was."""
+        stalled = self.state == SafetyStatus.STOPPED and bool(self.causes) and self.causes <= STALL_CAUSES
+        if stalled:
             self.release()
+        return stalled
 
     def await_rest(self) -> None:
         """Sends zero until the wheels stand."""
