@@ -94,6 +94,18 @@ TEST_F(EStopLevelsTest, FromBeforeARestartAreNotEndedBySilence) {
   EXPECT_FALSE(levels_.stopped());
 }
 
+TEST_F(EStopLevelsTest, FromBeforeARestartAreNotEndedByAButtonThatIsPressedAndReleased) {
+  levels_.hold();
+  levels_.receive("/panel", kTrue);
+  levels_.receive("/panel", kFalse);
+  levels_.settle({"/panel"});
+  EXPECT_TRUE(levels_.stopped()) << "/gate said true before, and has left";
+  EXPECT_THAT(levels_.publishers(), ElementsAre(testing::HasSubstr("unknown publisher")));
+  levels_.receive("/rostopic_1", kFalse);
+  levels_.settle({"/panel"});
+  EXPECT_FALSE(levels_.stopped());
+}
+
 TEST_F(EStopLevelsTest, UnderEverNewNamesTakeBoundedMemoryAndNoneIsLost) {
   for (int i = 0; i < 5000; ++i) levels_.receive("/panel_" + std::to_string(i), kTrue);
   EXPECT_LE(levels_.publishers().size(), 1001u);

@@ -22,7 +22,7 @@ bool EStopLevels::remember(const std::string& publisher) {
 void EStopLevels::receive(const std::string& publisher, bool stop) {
   const bool first = remember(publisher);
   const bool further = !known_.contains(publisher);
-  if (!further) received_.insert(publisher);
+  if (!further && received_.insert(publisher).second && !stop) first_was_false_ = true;
   if (stop) {
     levels_.insert_or_assign(further ? kFurther : publisher, false);
     return;
@@ -41,7 +41,7 @@ void EStopLevels::settle(const std::vector<std::string>& present) {
     remember(publisher);
     if (!received_.contains(publisher)) silent_.push_back(publisher);
   }
-  if (silent_.empty() && !received_.empty() && levels_.empty()) held_ = false;
+  if (silent_.empty() && first_was_false_ && levels_.empty()) held_ = false;
 }
 
 std::vector<std::string> EStopLevels::publishers() const {

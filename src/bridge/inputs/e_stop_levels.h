@@ -11,8 +11,8 @@
 /// nothing. A level is no latch: what it stopped is released by e_stop_reset alone.
 ///
 /// After a restart of safety_monitor it is not known whose level was true (`hold`). The topic then stays true until the
-/// next reset request at which every publisher that is there has sent a message since the restart, at least one did,
-/// and no level is true.
+/// next reset request at which every publisher that is there has sent a message since the restart, the first message of
+/// one since then was false, and no level is true: who said true may have left.
 
 #include <map>
 #include <set>
@@ -46,6 +46,7 @@ class EStopLevels {
   std::set<std::string> known_;         ///< publishers that were seen, by a message or by `settle`
   std::set<std::string> received_;      ///< publishers of which a message was received
   bool held_ = false;
+  bool first_was_false_ = false;  ///< the first message that was received of some publisher
   std::vector<std::string> silent_;  ///< of those that were there at the last `settle`, not in received_
 };
 
