@@ -46,7 +46,7 @@ class EStopLevels {
   std::set<std::string> known_;         ///< publishers that were seen, by a message or by `settle`
   std::set<std::string> received_;      ///< publishers of which a message was received
   bool held_ = false;
-  bool first_was_false_ = false;  ///< the first message that was received of some publisher
+  bool first_was_false_ = false;     ///< the first message that was received of some publisher
   std::vector<std::string> silent_;  ///< of those that were there at the last `settle`, not in received_
 };
 
