@@ -119,7 +119,7 @@ void Estimator::follow_slide() noexcept {
 
 void Estimator::judge_slip() noexcept {
   if (!slip_correction_.active()) slip_detector_.set_clock_offset(core_.offset());
-  const bool learns = !slip_correction_.active() && slip_correction_.since_end() > Tuning::kCalm;
+  const bool learns = !slip_correction_.active() && slip_correction_.since_end() > Tuning::kSettling;
   slip_detector_.judge({.acceleration_variance = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
                         .wheel_base = core_.deviation(PlanarCore::kBase),
                         .clock_offset = core_.deviation(PlanarCore::kOffset),
@@ -157,7 +157,7 @@ void Estimator::compare_turns(double dt) noexcept {
   comparison_.time += dt;
   comparison_.left += wheels_.left();
   comparison_.right += wheels_.right();
-  if (slip_correction_.active() || (parameters_.slip_detection && slip_correction_.since_end() < Tuning::kCalm))
+  if (slip_correction_.active() || (parameters_.slip_detection && slip_correction_.since_end() < Tuning::kSettling))
     comparison_.open = false;
   if (!wheels_.both_received() || (comparison_.open && comparison_.time < Tuning::kBlock)) return;
   if (!imu_.gyro() || gyro_turn_.silent()) return;

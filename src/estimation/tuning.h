@@ -32,7 +32,7 @@ struct Tuning {
   static constexpr double kQuietAcceleration = 0.1;  ///< m/s², mean of a window of a robot that does not slide; faults
   static constexpr std::uint64_t kSlidingWindows = 6;  ///< in a row; then the tilt is wrong, and it rests; faults
   static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: it is the gyro's bias; faults
-  static constexpr double kCalm = 0.5;           ///< s after a slide in which nothing is learned; recordings
+  static constexpr double kSettling = 0.5;       ///< s after a slide in which nothing is learned; recordings
   static constexpr double kBatch = 0.3;      ///< of the usual gap between readings, below which they came in a batch;
                                              ///< recordings
   static constexpr double kGapFading = 0.9;  ///< of the largest gap per reading; recordings, of stamps with jitter

@@ -52,7 +52,7 @@ void ResidualLevels::learn(double time, std::size_t span, const SlipResidual& re
     const double share = 1.0 / static_cast<double>(count_[span][SlipResidual::kAlong] + 1);
     usual_speed_ += std::max(Tuning::kUsualSpeedShare, share) * (residual.speed() - usual_speed_);
   }
-  for (const Channel channel : {SlipResidual::kAlong, SlipResidual::kAcross, SlipResidual::kTurn}) {
+  for (const Channel channel : SlipResidual::kEach) {
     const double nominal = nominal_deviation(channel, residual, uncertainty);
     learn_level(span, channel, std::abs(residual.value[channel]) / nominal / Tuning::kNormal90);
   }

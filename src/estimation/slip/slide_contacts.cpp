@@ -10,7 +10,7 @@ namespace robot_control {
 void SlideContacts::judge(const DifferenceSlope& excess, const DifferenceSlope& bend,
                           const Tolerance& tolerance) noexcept {
   for (const std::size_t i : {0U, 1U}) slips[i] = std::abs(excess.side(i)) > tolerance.path;
-  if (std::abs(excess.turn) > tolerance.turn && !slips[0] && !slips[1]) {  // one side at least slips
+  if (std::abs(excess.turn) > tolerance.turn && both_roll()) {  // one side at least slips
     slips[std::abs(excess.side(0)) > std::abs(excess.side(1)) ? 0 : 1] = true;
   }
   for (const std::size_t i : {0U, 1U}) slips[i] = slips[i] || std::abs(bend.side(i)) > tolerance.bend;

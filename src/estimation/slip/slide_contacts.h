@@ -35,7 +35,8 @@ struct SlideContacts {
   void judge(const DifferenceSlope& excess, const DifferenceSlope& bend, const Tolerance& tolerance) noexcept;
 
   bool both_slip() const noexcept { return slips[0] && slips[1]; }
-  bool all_roll() const noexcept { return !slips[0] && !slips[1] && !sideways; }
+  bool both_roll() const noexcept { return !slips[0] && !slips[1]; }
+  bool all_roll() const noexcept { return both_roll() && !sideways; }
   /// Of excess slopes or distances of both sides together and of their turn: the excess of the middle of the wheels,
   /// by which the wheels are ahead of the ground. One side that rolls shows it without the accelerometer.
   double slipped(double along, double turn) const noexcept;

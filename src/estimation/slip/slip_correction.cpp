@@ -115,8 +115,7 @@ bool SlipCorrection::stands(const Point& to, const Input& input) const noexcept 
 
 /// Towards the slope that a rolling side shows.
 void SlipCorrection::renew_line(const Point& to, const Input& input, const DifferenceSlope& excess) noexcept {
-  const bool both_roll = !contacts_.slips[0] && !contacts_.slips[1];
-  const double along = both_roll ? excess.along : excess.side(contacts_.slips[0] ? 1 : 0);
+  const double along = contacts_.both_roll() ? excess.along : excess.side(contacts_.slips[0] ? 1 : 0);
   const Planar change{Tuning::kLineGain * along, contacts_.sideways ? 0 : Tuning::kLineGain * excess.across};
   line_.renew(rotated(change, (to.yaw + decided_.yaw) / 2),
               input.path_slope_deviation + input.noise.slow * (to.time - decided_.time));

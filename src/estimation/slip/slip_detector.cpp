@@ -40,7 +40,7 @@ void SlipDetector::judge(const SlipUncertainty& uncertainty, bool learns) noexce
   }
   const SlipResidual& tilt = residuals[ResidualLevels::kTiltSpan];
   if (tilt.known) speed_ = tilt.speed();
-  for (const Channel channel : kChannels) judge_channel(channel, residuals, uncertainty);
+  for (const Channel channel : SlipResidual::kEach) judge_channel(channel, residuals, uncertainty);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     levels_.learn(difference_.time(), i, residuals[i], uncertainty, !learns);
   }
@@ -64,9 +64,11 @@ void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
   const bool proven = shortest + 1 < residuals.size();
   proven_span_[channel] = proven ? residuals[shortest].span : 0;
   for (std::size_t i = 0; proven && i < residuals.size(); ++i) {
-    const double nominal = residuals[i].known ? levels_.nominal_deviation(channel, residuals[i], uncertainty) : 1;
-    explaining_levels_[i][channel] =
-        residuals[i].known ? std::abs(residuals[i].value[channel]) / nominal / Tuning::kProof : 0;
+    const SlipResidual& residual = residuals[i];
+    explaining_levels_[i][channel] = 0;
+    if (!residual.known) continue;
+    const double nominal = levels_.nominal_deviation(channel, residual, uncertainty);
+    explaining_levels_[i][channel] = std::abs(residual.value[channel]) / nominal / Tuning::kProof;
   }
   constexpr std::size_t kLevel = ResidualLevels::kLevelSpan;
   if (residuals[0].known) slope_deviation_[channel] = deviation[0] / residuals[0].span;

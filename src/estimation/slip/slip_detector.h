@@ -15,8 +15,6 @@ namespace robot_control {
 class SlipDetector {
  public:
   using Channel = SlipResidual::Channel;
-  static constexpr std::array<Channel, SlipResidual::kChannels> kChannels{SlipResidual::kAlong, SlipResidual::kAcross,
-                                                                          SlipResidual::kTurn};
 
   SlipDetector() = default;
   explicit SlipDetector(const SlipParams& params) noexcept : difference_(params), levels_(params) {}

@@ -21,6 +21,7 @@ namespace robot_control {
 
 struct SlipResidual {
   enum Channel : std::size_t { kAlong, kAcross, kTurn, kChannels };
+  static constexpr std::array<Channel, kChannels> kEach{kAlong, kAcross, kTurn};
 
   bool known = false;                     ///< there were points for both spans
   double span = 0;                        ///< s: t₂ − t₁
