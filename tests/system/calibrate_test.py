@@ -13,7 +13,7 @@ import rostest
 import yaml
 from geometry_msgs.msg import Twist
 from robot_control.msg import SafetyStatus
-from system_support import ESTIMATOR, PLANT, STALL_CAUSES, Program, RobotTestCase, init_test_node, nightly, wait_for
+from system_support import ESTIMATOR, PLANT, Program, RobotTestCase, init_test_node, nightly, wait_for
 
 HIDDEN = {"left_radius_error": 0.012, "right_radius_error": 0.004, "wheel_base_error": 0.02}
 SHORT = ("--truth", "--yes", "--distance=1", "--repeats=1", "--side=1", "--runs=1", "--speed=0.5", "--turn-speed=1.2")
@@ -66,9 +66,7 @@ class CalibrateTest(RobotTestCase):
             with self.started(*SHORT) as program:
                 if program.wait(150.0) == 0:
                     return program.output
-            stalled = self.robot.state == SafetyStatus.STOPPED and self.robot.causes <= STALL_CAUSES
-            self.assertTrue(stalled, program.output)
-            self.robot.release()
+            self.assertTrue(self.robot.release_after_a_stall(), program.output)
         raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times: {program.output}")
 
     @nightly

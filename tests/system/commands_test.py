@@ -12,7 +12,7 @@ import rospy
 import rostest
 from commands_support import CommandDesk
 from losses_support import JumpingClock
-from system_support import CONTROLLER, LIMIT, STALL_CAUSES, Program, RobotTestCase, wait_for
+from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
 
 HOUR = 3600.0
 """s"""
@@ -51,7 +51,7 @@ class CommandsTest(RobotTestCase):
 
         def look() -> None:
             send()
-            if self.robot.causes and self.robot.causes <= STALL_CAUSES:
+            if self.robot.stalled:
                 self.robot.release()
 
         wait_for(what, condition, every=look)
@@ -103,7 +103,7 @@ class CommandsTest(RobotTestCase):
         # Messages under way at a jump are refused; the command before them stands.
         self.drive_stamped()
         slowest = self.slowest_over_jumps()
-        if self.robot.causes and self.robot.causes <= STALL_CAUSES:
+        if self.robot.stalled:
             self.drive_stamped()
             slowest = self.slowest_over_jumps()
         self.assertGreater(slowest, 0.4)

@@ -14,7 +14,7 @@ import rostest
 import yaml
 from geometry_msgs.msg import Twist
 from robot_control.msg import SafetyStatus
-from system_support import CONTROLLER, PLANT, STALL_CAUSES, Program, RobotTestCase, init_test_node, nightly, wait_for
+from system_support import CONTROLLER, PLANT, Program, RobotTestCase, init_test_node, nightly, wait_for
 
 FRICTION = 0.1  # N·m, hidden in the plant
 BEGINNING = 60.0
@@ -71,9 +71,7 @@ class IdentifyTest(RobotTestCase):
                 code = program.wait(120.0)
                 if code == 0:
                     return program.output
-            stalled = self.robot.state == SafetyStatus.STOPPED and self.robot.causes <= STALL_CAUSES
-            self.assertTrue(stalled, program.output)
-            self.robot.release()
+            self.assertTrue(self.robot.release_after_a_stall(), program.output)
         raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times: {program.output}")
 
     def test_measures_the_robot_and_writes_what_its_controller_takes(self) -> None:
@@ -130,7 +128,7 @@ class IdentifyTest(RobotTestCase):
                 if program.running:
                     yield program
                     return
-            self.assertTrue(self.robot.causes and self.robot.causes <= STALL_CAUSES, program.output)
+            self.assertTrue(self.robot.stalled, program.output)
             self.robot.release()
         raise AssertionError(f"stopped by a stalling machine {ATTEMPTS} times")
 

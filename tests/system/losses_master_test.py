@@ -7,7 +7,7 @@ import rospy
 import rostest
 from losses_support import FAST, FULL_SPEED, KEPT, Master
 from std_srvs.srv import Trigger
-from system_support import LOOP, STALL_CAUSES, RobotTestCase, wait_for
+from system_support import LOOP, RobotTestCase, wait_for
 
 MASTER = Master()
 ATTEMPTS = 3
@@ -35,7 +35,7 @@ class LossesMasterTest(RobotTestCase):
         MASTER.kill()
         for _ in range(ATTEMPTS):
             slowest = self.slowest()
-            if not robot.causes or not robot.causes <= STALL_CAUSES:
+            if not robot.stalled:
                 break
             wait_for("a release", lambda: bool(reset().success), every=lambda: robot.send(0.0, 0.0))
             wait_for("1 m/s again", lambda: robot.speed > FAST, every=lambda: robot.send(FULL_SPEED, 0.0))

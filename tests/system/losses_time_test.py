@@ -16,7 +16,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from losses_support import FAST, FULL_SPEED, KEPT, JumpingClock
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from system_support import STALL_CAUSES, RobotTestCase, wait_for
+from system_support import RobotTestCase, wait_for
 
 SPELL = 0.4
 """s between two jumps."""
@@ -54,7 +54,7 @@ class LossesTimeTest(RobotTestCase):
         stamps: list[float] = []
         subscriber = rospy.Subscriber("odom", Odometry, lambda m: stamps.append(m.header.stamp.to_sec()))
         slowest = self.slowest_during(jump)
-        if self.robot.causes and self.robot.causes <= STALL_CAUSES:
+        if self.robot.stalled:
             self.robot.drive_until("1 m/s again", lambda: self.robot.speed > FAST, FULL_SPEED, 0.0)
             slowest = self.slowest_during(jump)
         subscriber.unregister()

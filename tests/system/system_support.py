@@ -273,10 +273,10 @@ class Robot:
 
     def release_after_a_stall(self) -> bool:
         """Where the robot was stopped by nothing but what a stalling machine latches. True: it was."""
-        stalled = self.state == SafetyStatus.STOPPED and bool(self.causes) and self.causes <= STALL_CAUSES
-        if stalled:
-            self.release()
-        return stalled
+        if self.state != SafetyStatus.STOPPED or not self.stalled:
+            return False
+        self.release()
+        return True
 
     def await_rest(self) -> None:
         """Sends zero until the wheels stand."""
@@ -291,6 +291,11 @@ class Robot:
     @property
     def causes(self) -> set[str]:
         return set() if self.status is None else set(self.status.causes)
+
+    @property
+    def stalled(self) -> bool:
+        """Stopped by nothing but what a machine that stood still latches by itself."""
+        return bool(self.causes) and self.causes <= STALL_CAUSES
 
     @property
     def speed(self) -> float:
@@ -359,7 +364,7 @@ class RobotTestCase(unittest.TestCase):
 
     def stalled(self) -> bool:
         """Whether the robot was stopped by what a machine that stood still latches by itself."""
-        return bool(self.robot.causes) and self.robot.causes <= STALL_CAUSES
+        return self.robot.stalled
 
 
 def repository() -> Path:

@@ -13,7 +13,7 @@ import rospy
 
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
 from robot_control.common.ros_node import begin_node
-from robot_control.common.server_values import server_text, server_tree
+from robot_control.common.server_values import server_description, server_text, server_tree
 from robot_control.common.settings import Settings
 from robot_control.common.topic_sender import Signals
 from robot_control.installed_files import share_file
@@ -51,7 +51,7 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
     path = server_text(f"{node}/config", "the path of a YAML file") or share_file(DEFAULTS)
     own = {key: value for key, value in server_tree(node).items() if key not in ("config", "urdf")}
     values = [*leaves({"robot": server_tree("robot")}), *leaves({node: own})]
-    described = server_text("robot_description", "that of a URDF")
+    described = server_description()
     with tempfile.TemporaryDirectory(prefix=f"{tool}-") as folder:
         if described and "robot.urdf" not in dict(values):
             (Path(folder) / "robot.urdf").write_text(described)

@@ -25,6 +25,15 @@ def server_text(name: str, rule: str) -> str:
     return value
 
 
+def server_description() -> str:
+    """The robot_description; "" where none is set.
+
+    Raises:
+        ServerValueError: it is of another type.
+    """
+    return server_text("robot_description", "that of a URDF")
+
+
 def server_tree(name: str) -> dict[str, Any]:
     """All parameters below `name`, by their names; none where nothing is set.
 

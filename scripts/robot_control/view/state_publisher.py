@@ -17,7 +17,7 @@ import rospy
 
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
-from robot_control.common.server_values import ServerValueError, server_text
+from robot_control.common.server_values import ServerValueError, server_description
 from robot_control.common.topic_sender import ended_by_signals
 
 LOOK = 0.2
@@ -55,7 +55,7 @@ def await_description() -> str:
     """Empty: a signal came first. Raises ServerValueError: it is no text."""
     with ended_by_signals() as signals:
         while signals.going_on():
-            description = server_text("robot_description", "that of a URDF")
+            description = server_description()
             if description:
                 return description
             time.sleep(LOOK)

@@ -6,7 +6,7 @@ import tempfile
 from typing import Any
 
 from robot_control._robot_control import ParameterError, RobotError
-from robot_control.common.server_values import ServerValueError, server_text, server_tree
+from robot_control.common.server_values import ServerValueError, server_description, server_tree
 from robot_control.inspect.description import Description, describe
 from robot_control.view.scene import Wheel
 
@@ -26,7 +26,7 @@ def running_wheels() -> dict[str, Wheel]:
     try:
         robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-            file.write(server_text("robot_description", "that of a URDF"))
+            file.write(server_description())
             file.flush()
             return wheels_of(describe(file.name, {"robot": robot}))
     except (RobotError, ParameterError, ServerValueError):
