@@ -164,6 +164,22 @@ TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
   EXPECT_LT((values_of(core_) - values_of(free)).norm(), 1e-12);
 }
 
+// A gyro that is off by 0.05 rad/s: the wheels alone prove it, and the path is corrected. Of wheels of two sizes as
+// well as these nothing else is known.
+TEST_F(CoreUpdateTest, BlocksProveABiasOnARobotThatNeverRests) {
+  constexpr double kBias = 0.05;
+  PlanarCore core{PlanarCoreParams{.ratio_deviation = 0.001}};
+  core.hold_corrections();
+  for (int block = 0; block < 20; ++block) {
+    core.begin_block(kBias);
+    core.turn_by_gyro(kBias * 1.0, 1.0);
+    core.roll(0.5 * std::cos(core.pose().yaw), 0.5 * std::sin(core.pose().yaw), kBias);
+    core.end_block(0.5, 0.5, kBias, 1.0);
+  }
+  EXPECT_NEAR(core.bias(), kBias, 0.005);
+  EXPECT_LT(std::abs(core.pose().yaw), 0.2) << "1 rad without a correction";
+}
+
 // A rest of 1 s shows a bias to 2.44e-4 rad/s; that a gyro has any bias of the prior's 0.05 rather than the one that
 // the path was driven by is the likelier where it is beyond √(2 ln(0.05/2.44e-4)) = 3.3 of these.
 TEST_F(CoreUpdateTest, APathIsNotCorrectedByABiasThatIsNotProven) {
