@@ -12,10 +12,10 @@
 /// one of kCorrectionDeviation times itself besides.
 ///
 /// A slide ends when all wheels have rolled for kRollingTime; when wheels and gyro have stood still as long and the
-/// body does not brake, as friction would brake it, which shows that the robot is at rest; or after kLongestSlide
-/// without a side that rolls. Where the accelerometer shakes, the latter is kLongestShakenSlide, and the whole
-/// correction is undone then: the slip was probably none. So it is, at once, where the line is refuted: where the body
-/// would slide sideways faster than it was and than the wheels are, by more than kSignificant deviations.
+/// body brakes by no more than kSignificant slow errors of the accelerometer, as a robot at rest; or after
+/// kLongestSlide without a side that rolls. Where the accelerometer shakes, the latter is kLongestShakenSlide, and the
+/// whole correction is undone then: the slip was probably none. So it is, at once, where the line is refuted: where the
+/// body would slide sideways faster than it was and than the wheels are, by more than kSignificant deviations.
 
 #include <algorithm>
 #include <cstdint>
