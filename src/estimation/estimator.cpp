@@ -52,7 +52,7 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
   for (const std::size_t i : {0U, 1U}) gyro_bias_[i] = {bias[i], square(parameters.gyro_bias_initial)};
   core_.set_bias(bias[2], parameters.gyro_bias_initial);
   core_.set_calibration(parameters.calibration);
-  core_.hold_corrections(true);
+  core_.hold_corrections();
   place({0, 0, 0});
   fresh_ = *this;
 }
@@ -84,7 +84,6 @@ void Estimator::resume(const StateFrame& last) noexcept {
   place({last.pose_odom.position[0], last.pose_odom.position[1], yaw_of(last.pose_odom.orientation)});
   core_.set_pose_covariance(covariance_of_middle(last));
   core_.replace_bias();
-  core_.hold_corrections(false);
   yaw_rate_ = last.twist_base.angular[2];
   wheels_.set_speed(last.twist_base.linear[0] - yaw_rate_ * geometry_.axle_y, yaw_rate_);
   wheel_odometry_ = last.wheels;
@@ -153,7 +152,6 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   if (pose_set_) {
     place(*pose_set_);
     open_window_ = last_window_ = {};
-    slope_shortening_ = 0;
     slip_detector_.begin_path();
     slip_correction_.begin_path(slip_detector_.difference());
   }

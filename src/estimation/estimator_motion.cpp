@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "estimation/estimator.h"
 #include "estimation/values.h"
@@ -70,9 +69,6 @@ std::array<double, 2> Estimator::tyres_creep(double distance) const noexcept {
 void Estimator::advance_path(const WheelSides::Travel& travel) noexcept {
   const Vector3& up = tilt_.up();
   const double level = travel.distance * std::sqrt(std::max(0.0, 1 - up[0] * up[0]));
-  const double shortening = slope_shortening_ + std::abs(travel.distance - level);
-  core_.shift(0, 0, square(Tuning::kCorrectionDeviation) * (square(shortening) - square(slope_shortening_)));
-  slope_shortening_ = shortening;
   const std::array<double, 2> creep = tyres_creep(travel.distance);
   const double along = level - creep[0];
   const auto path = [&](double yaw) { return rotated({along, -creep[1]}, yaw); };
@@ -113,7 +109,6 @@ void Estimator::follow_slide() noexcept {
   correct(slip_correction_.step(slip_detector_.difference(), correction_input()));
   if (slip_correction_.active()) return;
   if (!slip_correction_.given_up()) return slip_detector_.restart_on_line(slip_correction_.line_slope());
-  if (slip_correction_.undone()) slip_detector_.learn_false_proof();
   slip_detector_.restart();
 }
 

@@ -97,7 +97,6 @@ void Estimator::learn_at_rest() noexcept {
 /// `mean` rad/s over `window` s.
 void Estimator::learn_gyro_bias(const Vector3& mean, double window) noexcept {
   if (!rested_ && !moved_) core_.replace_bias();
-  core_.hold_corrections(false);
   gyro_noise_.add(mean[2], window);
   core_.set_gyro_noise(gyro_noise_.density());
   const double noise = square(parameters_.gyro_noise) / window;

@@ -44,10 +44,9 @@ class EstimatorState {
   Tilt tilt_;                              ///< and the accelerometer's bias
   std::array<BiasEstimate, 2> gyro_bias_;  ///< rad/s, about x and y
   GyroNoise gyro_noise_;
-  double yaw_rate_ = 0;          ///< rad/s, of this step
-  double height_ = 0;            ///< m
-  double distance_ = 0;          ///< m, always growing
-  double slope_shortening_ = 0;  ///< m, of it, by slopes
+  double yaw_rate_ = 0;  ///< rad/s, of this step
+  double height_ = 0;    ///< m
+  double distance_ = 0;  ///< m, always growing
   TurnComparison comparison_;
 
   // What is published beside them.

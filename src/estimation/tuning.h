@@ -22,7 +22,6 @@ struct Tuning {
   static constexpr double kOffsetWalk = 2e-3;           ///< s/√s, walk of the clock offset; recordings
   static constexpr double kAccelerometerAtRest = 0.03;  ///< m/s², rocking and a motor's hum in a mean; recordings
   static constexpr double kTiltWalk = 2e-3;  ///< rad/√s: rough ground, and 0.02 m/s² that change within 1 s; recordings
-  static constexpr double kTiltWalkWithoutGyro = 0.02;  ///< rad/√s, while the gyro's x and y do not count; faults
   static constexpr double kSlowTime = 3.0;  ///< s, in which slow errors of the accelerometer change; recordings
   static constexpr double kMountedGyro =
       2;  ///< noise of a gyro on a robot over its data sheet's; recordings: 1.5 … 1.9
@@ -42,15 +41,10 @@ struct Tuning {
   static constexpr double kPathSlip = 2e-3;  ///< m/√m, slip of wheels that roll, in the path difference; recordings
   static constexpr double kWindUp = 1.6e-3;  ///< rad/√(rad/s), of treads and gears in a turn that changes; recordings
   static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error: 2 mrad of tilt; recordings
-  static constexpr double kUnlearnedWhite = 0.065;   ///< m/s²/√Hz, noise before a level is learned; recordings: the
-                                                     ///< roughest of skid steers, a vacuum cleaner and a car
-  static constexpr double kUnlearnedSlow = 0.2;      ///< m/s², likewise
-  static constexpr double kUnlearnedJitter = 0.005;  ///< s, of time stamps, likewise
-  static constexpr double kLineTime = 0.4;       ///< s, over which the slope of E before a slide is taken; recordings
-  static constexpr double kLineGain = 0.5;       ///< of a decision, in the line that a rolling side renews; recordings
-  static constexpr double kRollingTime = 0.15;   ///< s, for which all wheels roll when a slide ends; recordings
-  static constexpr double kStandingTime = 0.25;  ///< s, for which a robot stands when a slide ends; recordings
-  static constexpr double kLongestSlide = 6.0;   ///< s, without a side that rolls; recordings
+  static constexpr double kFirstLevel = 10;          ///< of residuals, before one is learned: it shakes; recordings
+  static constexpr double kLineGain = 0.5;      ///< of a decision, in the line that a rolling side renews; recordings
+  static constexpr double kRollingTime = 0.15;  ///< s, of rolling or of standing that ends a slide; recordings
+  static constexpr double kLongestSlide = 6.0;  ///< s, without a side that rolls; recordings
   static constexpr double kLongestShakenSlide = 1.5;   ///< s, likewise, where the accelerometer shakes; recordings
   static constexpr double kCorrectionDeviation = 0.5;  ///< of a correction of the path; recordings
 
@@ -59,14 +53,12 @@ struct Tuning {
   static constexpr double kSignificant = 3;  ///< deviations; the three-sigma rule
   static constexpr double kHuber = 2;        ///< deviations, by which an innovation pulls at most; P. J. Huber, 1964
   static constexpr double kGate = 6;         ///< deviations, beyond which an innovation is not used
-  static constexpr double kProvenBias = 5;   ///< deviations, beyond which a bias that no rest has shown is learned
   static constexpr double kSignificantTurn = 10;  ///< deviations, from which on a block's turn shows the wheel base:
                                                   ///< below, the noise that rate and innovation share would drive it
   static constexpr double kLevelMemory = 0.05;    ///< 1/blocks, of the correlation of innovations: 20 blocks
   static constexpr double kStampMemory = 50;      ///< readings, of the stamps' jitter: its deviation is known to 10 %
   static constexpr double kNoisePrior = 4;        ///< windows that kMountedGyro is worth: 1 s
   static constexpr double kProof = 5;             ///< deviations that prove slip: 1 of 1.7 million normal residuals
-  static constexpr double kSupport = 3;           ///< deviations of that of the next longer span; the three-sigma rule
   static constexpr double kNormal90 = 1.645;      ///< deviations, 90 % quantile of |normal|
   static constexpr std::uint64_t kFirstResiduals = 8;  ///< whose largest is the first level: their 90 % quantile
   static constexpr double kQuantileStep = 0.5;         ///< of the logarithm of a level: 1.6 up, 1/1.05 down
@@ -76,15 +68,13 @@ struct Tuning {
 
   static constexpr std::array<double, 4> kResidualSpans{0.1, 0.2, 0.4, 0.8};  ///< s: T of slip_residual.h
   static constexpr double kPointInterval = 0.05;  ///< s between two points of the differences: half the shortest T
-  static constexpr double kCarriedOn = 0.01;      ///< s, for which an inertial motion is carried on: 0.05 mm at 1 m/s²
   static constexpr double kUndoneTime = 5.0;      ///< s, for which an undone correction is reported
   static constexpr double kBlock = 1.0;           ///< s, between two comparisons of wheels and gyro; of the confidences
   static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings: as long as a command lives (hal/gate.h)
   static constexpr double kShortestHold = 0.02;   ///< s, for which a sample of an IMU holds at least: 50 Hz
-  static constexpr double kLongestHold = 0.2;     ///< s, at most; a gyro's gap is bridged by a line up to that
+  static constexpr double kLongestHold = 0.2;     ///< s, at most; of a gap of a gyro or of a wheel that is bridged
   static constexpr double kSlowAccelerometer = 0.03;  ///< s between samples, beyond which motion is not resolved
   static constexpr double kLongestGap = 0.5;          ///< s, usual gap between readings of a wheel at most
-  static constexpr double kForgotten = 0.1;           ///< s, after which a wheel's published speed begins again
 
   // Limits of what is possible or stated. None was tuned.
 
@@ -105,7 +95,6 @@ struct Tuning {
   static constexpr double kPlanarVariance = 1e-4;  ///< m², rad²: 1 cm, 0.6°, of z, roll and pitch on an even floor
   static constexpr double kSpeedShare = 0.02;      ///< of an encoder's quantum, what the tracking loop leaves of it
   static constexpr double kLeastSlip = 0.02;       ///< m/s, and rad/s at rest: slower slip counts as none
-  static constexpr double kLeastBraking = 0.15;    ///< m/s², of a body that slides: friction of 0.015, less than ice
   static constexpr double kSlowestComparison = 0.01;  ///< m/s: of slower wheels nothing is learned
   static constexpr double kUnknownBias = 2e-3;        ///< rad/s, 7° in a minute: a heading that is called degraded
 };

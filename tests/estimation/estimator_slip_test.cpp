@@ -116,7 +116,8 @@ TEST_F(EstimatorSlipTest, SlidingSidewaysIsNamed) {
   EXPECT_GT(flagged(500), 450);
   EXPECT_TRUE(names(kSlipSideways));
   EXPECT_EQ(state_.confidence[kLateralContact], 0);
-  EXPECT_LT(position_error(), raw_error() / 5);
+  const double late = 0.25 * Tuning::kPointInterval;  // m: 0.25 m/s, and the path is corrected once per point
+  EXPECT_LT(position_error(), raw_error() / 5 + late);
 }
 
 // The wheels jump by 1 m/s, which no real wheel does; the first verdict comes within the shortest span.

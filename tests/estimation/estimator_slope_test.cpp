@@ -66,21 +66,6 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
   }
 }
 
-// The doubt about what slopes took off the way grows with the way since then.
-TEST_P(EstimatorSlopeTest, APoseThatWasSetOwesNothingToTheSlopeBefore) {
-  RollingRobot robot(model_);
-  Estimator estimator(parameters_, model_, kPeriod);
-  climb(robot, estimator);
-  const auto doubt = [&] {
-    estimator.set_pose({0, 0, 0});
-    for (int i = 0; i < 2000; ++i) step(robot, estimator, kSpeed);
-    return state_.pose_covariance[0] + state_.pose_covariance[7];
-  };
-  const double first = doubt();
-  for (int i = 0; i < 20000; ++i) step(robot, estimator, kSpeed);
-  EXPECT_LE(doubt(), 1.01 * first);
-}
-
 TEST_P(EstimatorSlopeTest, ARestartKeepsTheHeight) {
   RollingRobot robot(model_);
   Estimator estimator(parameters_, model_, kPeriod);

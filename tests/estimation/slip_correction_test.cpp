@@ -213,7 +213,7 @@ TEST_F(SlipCorrectionTest, ItLastsWhileFrictionStillBendsE) {
 TEST_F(SlipCorrectionTest, AfterAStandTheLineIsThatOfNoSpeed) {
   slide_to_a_stand();
   ASSERT_LT(go(2), 0.6);
-  const MotionDifference::Point& now = body_.detector.difference().now();
+  const MotionDifference::Point& now = body_.detector.difference().last();
   EXPECT_NEAR(now.velocity.x + correction_.line_slope().x, 0, 1e-12);
   EXPECT_NEAR(now.velocity.y + correction_.line_slope().y, 0, 1e-12);
 }
@@ -260,6 +260,21 @@ TEST_F(SlipCorrectionTest, NothingFromBeforeThePoseWasSetIsCorrectedByASlideThat
     go(SlidingBody::kStep);
   }
   EXPECT_LE(std::hypot(corrected_.x, corrected_.y), 0.5 * Tuning::kPointInterval * 1.1);
+}
+
+// Between two points of the differences.
+TEST_F(SlipCorrectionTest, NothingFromBeforeAPoseThatIsSetInASlideIsCorrected) {
+  body_.left = body_.right = 0.5;
+  go(0.52);
+  ASSERT_TRUE(correction_.active());
+  corrected_ = {};
+  body_.detector.begin_path();
+  const double begin = body_.detector.difference().time();
+  correction_.begin_path(body_.detector.difference());
+  go(Tuning::kPointInterval - SlidingBody::kStep);
+  const double since = body_.detector.difference().last().time - begin;
+  ASSERT_GT(since, 0.3 * Tuning::kPointInterval);
+  EXPECT_NEAR(std::hypot(corrected_.x, corrected_.y), 0.5 * since, 0.05 * since);
 }
 
 // Nothing drove it as fast as that: the accelerometer is wrong.

@@ -59,7 +59,7 @@ TEST(TiltTest, IsBoundedHoweverTheAccelerometerCorrectsIt) {
 TEST(TiltTest, ItsVarianceIsBoundedHoweverLongNothingCorrectsIt) {
   Tilt tilt;
   for (int i = 0; i < 100000; ++i) {
-    tilt.turn({}, 1.0, false);
+    tilt.turn({}, 10.0, false);
     if (i % 100 == 0) tilt.correct(0, 0, 1.0, 1e6);
   }
   for (const int axis : {0, 1}) EXPECT_LE(tilt.covariance(axis, axis), Tuning::kSteepest * Tuning::kSteepest);

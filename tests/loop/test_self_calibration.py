@@ -40,8 +40,10 @@ def test_a_robot_that_rested_learns_its_wheels(seconds, deviation, seed):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_robot_that_never_rested_claims_nothing_of_its_wheels(seed):
-    """60 ms are no rest: the state says that the bias is not known, and the deviation stays that of new tyres."""
+    """60 ms are no rest: the state says that the bias is not known, the deviation stays that of new tyres, and the
+    ratio within a part of it.
+    """
     end = wander(rest=60, seconds=60, seed=seed)
     assert int(end["estimate_flags"]) & DEGRADED
-    assert end["radius_ratio"] == 1.0
     assert end["radius_ratio_deviation"] > 0.009
+    assert end["radius_ratio"] == pytest.approx(1.0, abs=0.4 * end["radius_ratio_deviation"])

@@ -131,7 +131,7 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   const bool used = std::abs(normalised) <= Tuning::kGate;
   if (used) {
     correct(ph / s, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
-    if (!holds_ || square(held_[kBias]) > square(Tuning::kProvenBias) * covariance_(kBias, kBias)) release();
+    release();
   }
   noise_.learn(normalised, parts, s);
   walk(mean, rolled, dt);
@@ -154,15 +154,6 @@ void PlanarCore::correct(Vector gain, const Vector& ph, double s, double innovat
   held_ += innovation * gain;
   const Matrix half = gain * (s / 2 * gain - ph).transpose();
   covariance_ += half + half.transpose();
-}
-
-void PlanarCore::hold_corrections(bool holds) noexcept {
-  holds_ = holds;
-  if (holds) {
-    bias_uncertain_ = true;
-  } else {
-    release();
-  }
 }
 
 /// The Bayes factor of a bias that could be any against the one that the path was driven by.
@@ -189,7 +180,7 @@ void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
   if (keeps_pose) gain.segment<4>(kX).setZero();
   correct(gain, ph, s, mean - bias() - held_[kBias]);
   consider_rest(gain, variance);
-  if (!holds_) release();
+  release();
 }
 
 /// The error of a rest's mean beyond that of the data sheet is considered: it enters kRestBias as it entered the bias.

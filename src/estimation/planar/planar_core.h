@@ -74,11 +74,12 @@ class PlanarCore {
   void shift(double x, double y, double variance) noexcept;  ///< m, m²
   void add_yaw_variance(double variance) noexcept { covariance_(kYaw, kYaw) += variance; }
 
-  /// While it holds, corrections of the blocks are kept apart and do not reach pose and calibration, unless the bias is
-  /// proven: before the first rest a gyro's bias and wheels of two sizes look the same, and the plain odometry is the
-  /// pose. Its covariance covers them.
-  void hold_corrections(bool holds) noexcept;
+  /// From now on corrections of pose and bias are held back until the bias is proven; the covariance covers them. Those
+  /// of clock offset and calibration are not: before the first rest a gyro's bias and wheels of two sizes look the
+  /// same, and the plain odometry is the pose.
+  void hold_corrections() noexcept { bias_uncertain_ = true; }
   /// The robot has not moved by the bias it began with: nothing of the path depends on it.
+  /// What is held back is released by the next block or rest.
   void replace_bias() noexcept { bias_uncertain_ = false; }
 
   /// The travel of both sides is read: a block begins.
@@ -127,9 +128,8 @@ class PlanarCore {
   Matrix covariance_ = Matrix::Zero();
   Vector held_ = Vector::Zero();  ///< corrections that are held back
   WheelNoise noise_;
-  double anchor_rate_ = 0;  ///< rad/s, at the beginning of the block
-  double gyro_noise_;       ///< rad/s/√Hz, learned
-  bool holds_ = false;
+  double anchor_rate_ = 0;       ///< rad/s, at the beginning of the block
+  double gyro_noise_;            ///< rad/s/√Hz, learned
   bool bias_uncertain_ = false;  ///< the path was driven by a bias that no rest has shown yet
 };
 

@@ -74,7 +74,6 @@ MotionDifference::Point MotionDifference::before(double time) const noexcept {
 }
 
 InertialMotion MotionDifference::inertial_at(double time) const noexcept {
-  if (empty()) return interpolated(now_.inertial, now_.inertial, time);
   const std::size_t i = index_before(time);
   return interpolated(record(i).inertial, i + 1 < count_ ? record(i + 1).inertial : now_.inertial, time);
 }

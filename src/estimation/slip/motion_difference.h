@@ -14,7 +14,8 @@
 ///
 /// τ is learned in motion, so the points keep the two motions, and every difference is formed by the present τ: none
 /// compares two values of τ. Between two points the inertial motion is interpolated. Where the wheels are early, τ < 0,
-/// the last point is the last one for which t − τ has passed: what the IMU will report is not known.
+/// the last point is the last one for which t − τ has passed: what the IMU will report is not known. Such a
+/// point is judged when the next one is added.
 
 #include <array>
 #include <cstddef>
@@ -80,8 +81,8 @@ class MotionDifference {
 
   double time() const noexcept { return now_.inertial.time; }  ///< s, of the last step
   bool empty() const noexcept { return count_ == 0; }
-  Point now() const noexcept { return waits() ? last() : difference(now_); }  ///< the newest difference that is known
-  Point last() const noexcept { return difference(record(last_index())); }    ///< the newest point that is known
+  /// The newest point that is known; there must be one.
+  Point last() const noexcept { return difference(record(last_index())); }
   Point before(double time) const noexcept;  ///< the newest point that is not later, else the oldest
 
  private:
@@ -96,7 +97,7 @@ class MotionDifference {
   };
 
   Planar lever(double yaw, const Vector3& up) const noexcept;
-  bool waits() const noexcept { return clock_offset_ < -Tuning::kCarriedOn; }  ///< for the IMU
+  bool waits() const noexcept { return clock_offset_ < 0; }  ///< for the IMU
   const Record& record(std::size_t i) const noexcept { return records_[i % kPoints]; }
   std::size_t oldest() const noexcept { return count_ > kPoints ? count_ - kPoints : 0; }
   std::size_t last_index() const noexcept { return index_before(waits() ? time() + clock_offset_ : time()); }

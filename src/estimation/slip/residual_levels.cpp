@@ -4,21 +4,10 @@
 #include <cmath>
 
 namespace robot_control {
-namespace {
-
-constexpr ResidualNoise kUnlearned{.white = Tuning::kUnlearnedWhite,
-                                   .slow = Tuning::kUnlearnedSlow,
-                                   .jitter = Tuning::kUnlearnedJitter,
-                                   .slip = Tuning::kFirstSlip};
-
-}  // namespace
 
 ResidualLevels::ResidualLevels(const SlipParams& params) noexcept
     : params_(params),
-      nominal_{.white = params.accelerometer,
-               .slow = Tuning::kSlowAcceleration,
-               .jitter = 0,
-               .slip = params.wheel_slip_noise} {}
+      nominal_{.white = params.accelerometer, .slow = Tuning::kSlowAcceleration, .slip = params.wheel_slip_noise} {}
 
 double ResidualLevels::nominal_deviation(Channel channel, const SlipResidual& residual,
                                          const SlipUncertainty& uncertainty) const noexcept {
@@ -34,9 +23,7 @@ double ResidualLevels::deviation(std::size_t span, Channel channel, const SlipRe
                                  const SlipUncertainty& uncertainty) const noexcept {
   const double nominal = nominal_deviation(channel, residual, uncertainty);
   const double level = level_[span][channel];
-  const double usual = level == 0
-                           ? std::max(nominal, residual_deviation(channel, residual, kUnlearned, uncertainty, params_))
-                           : at_speed(level, residual.speed()) * nominal;
+  const double usual = (level == 0 ? Tuning::kFirstLevel : at_speed(level, residual.speed())) * nominal;
   const double change =
       channel == SlipResidual::kTurn ? params_.wheel_base * residual.yaw_rate_change : residual.speed_change;
   return std::hypot(usual, uncertainty.clock_offset * change);
@@ -68,17 +55,10 @@ void ResidualLevels::learn_level(std::size_t span, Channel channel, double ratio
   level = std::max(1.0, level * std::exp((ratio > level ? 0.9 : -0.1) * Tuning::kQuantileStep));
 }
 
-void ResidualLevels::raise(const Levels& least) noexcept {
-  for (std::size_t i = 0; i < kSpans; ++i) {
-    for (std::size_t c = 0; c < SlipResidual::kChannels; ++c) level_[i][c] = std::max(level_[i][c], least[i][c]);
-  }
-}
-
 AccelerationNoise ResidualLevels::acceleration_noise(double speed, double variance) const noexcept {
   const double level = level_[kTiltSpan][SlipResidual::kAlong];
-  const double factor = level == 0 ? 1 : at_speed(level, speed);
-  const ResidualNoise& noise = level == 0 ? kUnlearned : nominal_;
-  return {.white = factor * noise.white, .slow = std::sqrt(square(factor * noise.slow) + variance)};
+  const double factor = level == 0 ? Tuning::kFirstLevel : at_speed(level, speed);
+  return {.white = factor * nominal_.white, .slow = std::sqrt(square(factor * nominal_.slow) + variance)};
 }
 
 }  // namespace robot_control

@@ -1,11 +1,11 @@
 #pragma once
 /// How large the residuals of wheels and inertial sensors (slip_residual.h) usually are on this robot and floor.
 ///
-/// Real floors shake an accelerometer thirty times harder than its data sheet says. So each span T of each channel
-/// learns a level: the 90 % quantile of |residual|/σ, over that of a normal distribution, with σ by the data sheets.
-/// It moves by steps of kQuantileStep on its logarithm (H. Robbins, S. Monro, A stochastic approximation method, 1951),
-/// from the largest of the first kFirstResiduals on, and is at least 1. Before that the noise is kUnlearned, that of a
-/// robot that shakes.
+/// Real floors shake an accelerometer ten to forty times harder than its data sheet says. So each span T of each
+/// channel learns a level: the 90 % quantile of |residual|/σ, over that of a normal distribution, with σ by the data
+/// sheets. It moves by steps of kQuantileStep on its logarithm (H. Robbins, S. Monro, A stochastic approximation
+/// method, 1951), from the largest of the first kFirstResiduals on, and is at least 1. Before that it is kFirstLevel,
+/// that of a robot that shakes.
 ///
 /// A robot that drives faster than usual shakes more: what exceeds the sensors' noise grows in proportion to the speed.
 /// The clock offset's uncertainty σ_τ adds (σ_τ speed change)², and (B σ_τ Δω)² in the turn: no offset bends E while
@@ -30,25 +30,19 @@ class ResidualLevels {
   static constexpr std::size_t kLevelSpan = 1;  ///< index of T = 0.2 s, whose level is published
   static constexpr std::size_t kTiltSpan = 2;   ///< index of T = 0.4 s, from which tilt and noise are learned
   using Channel = SlipResidual::Channel;
-  /// Of each span and channel.
-  using Levels = std::array<std::array<double, SlipResidual::kChannels>, kSpans>;
 
   ResidualLevels() = default;
   explicit ResidualLevels(const SlipParams& params) noexcept;
 
   void restart() noexcept { learned_at_ = {}; }  ///< time begins at 0 again; the levels stay
 
-  /// m, standard deviation of a residual by the data sheets, and as learned.
-  double nominal_deviation(Channel channel, const SlipResidual& residual,
-                           const SlipUncertainty& uncertainty) const noexcept;
+  /// m, standard deviation of a residual, as learned.
   double deviation(std::size_t span, Channel channel, const SlipResidual& residual,
                    const SlipUncertainty& uncertainty) const noexcept;
 
   /// At `time`, s; once per span. Where nothing was learned yet it learns although wheels may slip.
   void learn(double time, std::size_t span, const SlipResidual& residual, const SlipUncertainty& uncertainty,
              bool slip) noexcept;
-  /// To these levels at least.
-  void raise(const Levels& least) noexcept;
 
   /// Along, of T = 0.2 s; 0: nothing was compared yet.
   double level() const noexcept { return level_[kLevelSpan][SlipResidual::kAlong]; }
@@ -56,6 +50,12 @@ class ResidualLevels {
   AccelerationNoise acceleration_noise(double speed, double variance) const noexcept;
 
  private:
+  /// Of each span and channel.
+  using Levels = std::array<std::array<double, SlipResidual::kChannels>, kSpans>;
+
+  /// m, standard deviation of a residual by the data sheets.
+  double nominal_deviation(Channel channel, const SlipResidual& residual,
+                           const SlipUncertainty& uncertainty) const noexcept;
   double at_speed(double level, double speed) const noexcept;
   void learn_level(std::size_t span, Channel channel, double ratio) noexcept;
 

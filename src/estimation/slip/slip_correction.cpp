@@ -13,7 +13,7 @@ double squared_norm(const Planar& v) noexcept {
 
 PathCorrection SlipCorrection::begin(const MotionDifference& difference, double span, const Input& input) noexcept {
   const Point onset = difference.before(difference.last().time - 0.9 * span);
-  const Point older = difference.before(onset.time - std::max(Tuning::kLineTime, span));
+  const Point older = difference.before(onset.time - span);
   if (!(onset.time > older.time)) return {};
   active_ = true;
   timed_out_ = refuted_ = false;
@@ -35,7 +35,7 @@ PathCorrection SlipCorrection::begin(const MotionDifference& difference, double 
 }
 
 PathCorrection SlipCorrection::step(const MotionDifference& difference, const Input& input) noexcept {
-  const Point now = difference.now();
+  const Point now = difference.last();
   const Planar earlier = total_;
   PathCorrection correction = correct(now, input);
   correction.variance +=
@@ -57,7 +57,7 @@ PathCorrection SlipCorrection::step(const MotionDifference& difference, const In
     correction = {-earlier, squared_norm(total_)};
     undone_for_ = Tuning::kUndoneTime;
   }
-  if (rolling_time_ >= Tuning::kRollingTime || standing_time_ >= Tuning::kStandingTime || given_up()) end();
+  if (rolling_time_ >= Tuning::kRollingTime || standing_time_ >= Tuning::kRollingTime || given_up()) end();
   return correction;
 }
 
@@ -74,7 +74,7 @@ void SlipCorrection::decide(const Point& to, const Input& input) noexcept {
   const double turn_bend = turn_slope - std::exchange(turn_slope_, turn_slope);
   contacts_.judge(excess, {.along = bend.x, .across = bend.y, .turn = turn_bend}, tolerance(input));
   standing_time_ = stands(to, input) ? standing_time_ + dt : 0;
-  if (standing_time_ >= Tuning::kStandingTime) {
+  if (standing_time_ >= Tuning::kRollingTime) {
     contacts_.roll_all();
     line_.set_slope(-to.velocity);
   } else if (!contacts_.both_slip()) {
@@ -109,8 +109,7 @@ bool SlipCorrection::stands(const Point& to, const Input& input) const noexcept 
   const double speed = velocity.norm();
   const double braking = speed > Tuning::kLeastSlip ? -dot(acceleration, velocity) / speed : acceleration.norm();
   return std::abs(input.wheel_speed) < Tuning::kLeastSlip &&
-         std::abs(to.yaw - decided_.yaw) < Tuning::kLeastSlip * dt &&
-         braking < Tuning::kLeastBraking + Tuning::kSignificant * input.noise.slow;
+         std::abs(to.yaw - decided_.yaw) < Tuning::kLeastSlip * dt && braking < Tuning::kSignificant * input.noise.slow;
 }
 
 /// Towards the slope that a rolling side shows.
@@ -124,12 +123,13 @@ void SlipCorrection::renew_line(const Point& to, const Input& input, const Diffe
 
 /// Of the path since the last correction.
 PathCorrection SlipCorrection::correct(const Point& to, const Input& input) noexcept {
-  const double dt = to.time - corrected_.time;
+  const double dt = to.time - std::max(corrected_.time, path_begin_);
   if (to.time <= path_begin_) corrected_ = to;
-  if (!(dt > 0) || to.time <= path_begin_) return {};
+  if (!(dt > 0)) return {};
+  const double share = dt / (to.time - corrected_.time);  // the pose may have been set since then
   const double yaw = (to.yaw + corrected_.yaw) / 2;
-  const Planar off_line = rotated(to.path_difference - corrected_.path_difference - line_.slope() * dt, -yaw);
-  const double slipped = contacts_.slipped(off_line.x, to.turn_difference - corrected_.turn_difference);
+  const Planar off_line = rotated((to.path_difference - corrected_.path_difference) * share - line_.slope() * dt, -yaw);
+  const double slipped = contacts_.slipped(off_line.x, (to.turn_difference - corrected_.turn_difference) * share);
   const double rolled = input.wheel_speed * dt;
   const auto [low, high] = speed_bounds(input.wheel_speed);
   const double farthest = std::max(-low, high) * dt;
@@ -167,7 +167,7 @@ std::pair<double, double> SlipCorrection::speed_bounds(double wheel_speed) const
 void SlipCorrection::begin_path(const MotionDifference& difference) noexcept {
   if (!active_) return;
   path_begin_ = difference.time();
-  corrected_ = difference.now();
+  corrected_ = difference.last();
   total_ = {};
   carried_on_ = {};
 }

@@ -11,8 +11,8 @@
 /// errors of all decisions are alike, so the path's standard deviation is the integral of the speed's. A correction has
 /// one of kCorrectionDeviation times itself besides.
 ///
-/// A slide ends when all wheels have rolled for kRollingTime; when wheels and gyro have stood still for kStandingTime
-/// and the body does not brake, as friction would brake it, which shows that the robot is at rest; or after
+/// A slide ends when all wheels have rolled for kRollingTime; when wheels and gyro have stood still as long and the
+/// body brakes by no more than kSignificant slow errors of the accelerometer, as a robot at rest; or after
 /// kLongestSlide without a side that rolls. Where the accelerometer shakes, the latter is kLongestShakenSlide, and the
 /// whole correction is undone then: the slip was probably none. So it is, at once, where the line is refuted: where the
 /// body would slide sideways faster than it was and than the wheels are, by more than kSignificant deviations.
@@ -44,7 +44,8 @@ class SlipCorrection {
 
   /// Slip was proven that began `span` s ago at most.
   PathCorrection begin(const MotionDifference& difference, double span, const Input& input) noexcept;
-  /// Every step in which both sides were read.
+  /// Every step in which both sides were read. The path is corrected once per point of the differences; where the
+  /// wheels are early, a point is known later than it was added.
   PathCorrection step(const MotionDifference& difference, const Input& input) noexcept;
   /// Every step.
   void age(double dt) noexcept {

@@ -1,8 +1,6 @@
 #include "estimation/slip/slip_detector.h"
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "signals/slip_detection.h"
 
@@ -11,7 +9,6 @@ namespace robot_control {
 void SlipDetector::forget_judgement() noexcept {
   proven_span_ = {};
   nis_.fill(-1);
-  explaining_levels_ = {};
   gravity_error_ = {};
   gravity_compared_at_ = difference_.time();
 }
@@ -58,18 +55,11 @@ void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
   };
   std::size_t shortest = 0;
   while (shortest + 1 < residuals.size() &&
-         !(exceeds(shortest, Tuning::kProof) && exceeds(shortest + 1, Tuning::kSupport))) {
+         !(exceeds(shortest, Tuning::kProof) && exceeds(shortest + 1, Tuning::kSignificant))) {
     ++shortest;
   }
   const bool proven = shortest + 1 < residuals.size();
   proven_span_[channel] = proven ? residuals[shortest].span : 0;
-  for (std::size_t i = 0; proven && i < residuals.size(); ++i) {
-    const SlipResidual& residual = residuals[i];
-    explaining_levels_[i][channel] = 0;
-    if (!residual.known) continue;
-    const double nominal = levels_.nominal_deviation(channel, residual, uncertainty);
-    explaining_levels_[i][channel] = std::abs(residual.value[channel]) / nominal / Tuning::kProof;
-  }
   constexpr std::size_t kLevel = ResidualLevels::kLevelSpan;
   if (residuals[0].known) slope_deviation_[channel] = deviation[0] / residuals[0].span;
   nis_[channel] = residuals[kLevel].known ? square(residuals[kLevel].value[channel] / deviation[kLevel]) : -1;
@@ -88,10 +78,6 @@ void SlipDetector::compare_gravity(const SlipResidual& residual, bool learns) no
                     .deviation = deviation / squared,
                     .interval = interval};
   gravity_compared_at_ = difference_.time();
-}
-
-void SlipDetector::learn_false_proof() noexcept {
-  levels_.raise(std::exchange(explaining_levels_, {}));
 }
 
 double SlipDetector::shortest_proven_span() const noexcept {

@@ -2,9 +2,9 @@
 /// Whether wheels slip, by residuals of wheels against gyro and accelerometer (slip_residual.h) over four spans T, each
 /// measured against its usual level (residual_levels.h).
 ///
-/// Slip is proven where a residual exceeds kProof of its deviations and that of the next longer T kSupport: one late
-/// time stamp is as large in every T, and σ grows with T. Without slip the mean of −D/T² along and across is the error
-/// of gravity and bias that the acceleration contains.
+/// Slip is proven where a residual exceeds kProof of its deviations and that of the next longer T kSignificant: one
+/// late time stamp is as large in every T, and σ grows with T. Without slip the mean of −D/T² along and across is the
+/// error of gravity and bias that the acceleration contains.
 
 #include <array>
 
@@ -28,8 +28,6 @@ class SlipDetector {
   bool step(const MotionDifference::Sample& sample) noexcept { return difference_.step(sample); }
   /// At a point. `learns`: no slide is going on.
   void judge(const SlipUncertainty& uncertainty, bool learns) noexcept;
-  /// The slip that was proven last was none: the levels rise to those that explain it.
-  void learn_false_proof() noexcept;
 
   const MotionDifference& difference() const noexcept { return difference_; }
   const ResidualLevels& levels() const noexcept { return levels_; }
@@ -69,7 +67,6 @@ class SlipDetector {
   std::array<double, SlipResidual::kChannels> proven_span_{};
   std::array<double, SlipResidual::kChannels> nis_{-1, -1, -1};
   std::array<double, SlipResidual::kChannels> slope_deviation_{};
-  ResidualLevels::Levels explaining_levels_{};  ///< of the last proof
   GravityError gravity_error_;
   double gravity_compared_at_ = 0;  ///< s
   double speed_ = 0;                ///< m/s

@@ -36,13 +36,11 @@ double residual_deviation(SlipResidual::Channel channel, const SlipResidual& res
     return std::sqrt(4 * square(params.encoder) + 2 * square(noise.slip) * residual.distance +
                      square(base * uncertainty.wheel_base * residual.turned) +
                      square(base * Tuning::kWindUp) * std::abs(residual.yaw_rate_change) +
-                     square(base * uncertainty.gyro_bias * span) +
-                     square(noise.jitter * base * residual.yaw_rate_change));
+                     square(base * uncertainty.gyro_bias * span));
   }
   const double slow = square(noise.slow) + uncertainty.acceleration_variance[channel];
   return std::sqrt(6 * square(params.encoder) + square(noise.white) * span * span * span * 2 / 3 +
-                   slow * square(span * span) + 2 * square(Tuning::kPathSlip) * residual.distance +
-                   6 * square(noise.jitter * residual.speed()));
+                   slow * square(span * span) + 2 * square(Tuning::kPathSlip) * residual.distance);
 }
 
 }  // namespace robot_control

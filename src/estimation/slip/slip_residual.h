@@ -6,11 +6,11 @@
 ///   turn:           V = W₂ − W₁                                       m
 ///
 /// Index 2 is the last point, 1 about T and 0 about 2 T before it. The standard deviations by encoder, accelerometer
-/// (white n and slow a errors), the slip of rolling wheels, time stamps (jitter) and the uncertainties of calibration
-/// (base factor β, gyro bias b) and gravity:
+/// (white n and slow a errors), the slip of rolling wheels and the uncertainties of calibration (base factor β, gyro
+/// bias b) and gravity:
 ///
-///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance + 6 (jitter speed)²
-///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (B σ_b T)² + (jitter B Δω)²
+///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance
+///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (B σ_b T)²
 
 #include <array>
 #include <cstddef>
@@ -39,10 +39,9 @@ SlipResidual slip_residual(const MotionDifference& difference, double span) noex
 
 /// Standard deviations of the errors of a sensor.
 struct ResidualNoise {
-  double white = 0;   ///< m/s²/√Hz: n
-  double slow = 0;    ///< m/s²: a
-  double jitter = 0;  ///< s
-  double slip = 0;    ///< m/√m, of either side, in the turn
+  double white = 0;  ///< m/s²/√Hz: n
+  double slow = 0;   ///< m/s²: a
+  double slip = 0;   ///< m/√m, of either side, in the turn
 };
 
 /// Of what the estimator knows at a point.

@@ -61,7 +61,7 @@ void Tilt::turn(const Vector3& rate, double dt, bool known) noexcept {
   if (stuck_ > Tuning::kStuckGyro) unreliable_ = std::max(unreliable_, Tuning::kUnreliableTurn);
   last_ = rate;
   turned_ += rate[2] * dt;
-  walked_ += square(known ? Tuning::kTiltWalk : Tuning::kTiltWalkWithoutGyro) * dt;
+  walked_ += square(Tuning::kTiltWalk) * dt;
   time_ += dt;
 }
 

@@ -4,7 +4,7 @@
 ///
 /// The speed that an encoder reports is differenced over one period and jumps by a count per period: 1.5 rad/s with
 /// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastestWheel are left out;
-/// after kForgotten without one, the next restarts.
+/// after kLongestHold without one, the next restarts.
 
 #include <algorithm>
 #include <array>
@@ -52,7 +52,7 @@ class WheelVelocities {
       since += dt;
       if (!valid || !std::isfinite(sample.position)) return;
       const double travel = sample.position - angle;
-      if (!known || since > Tuning::kForgotten) {
+      if (!known || since > Tuning::kLongestHold) {
         tracking.restart_from(sample.position, 0);
         known = true;
       } else if (since > 0 && std::abs(travel) <= Tuning::kFastestWheel * since) {
