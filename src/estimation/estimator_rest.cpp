@@ -49,7 +49,7 @@ void Estimator::begin_rest() noexcept {
   wheels_.forget_turn();
   flags_ |= kStateStandstill;
   lasting_flags_ |= kStateStandstill;
-  sliding_windows_ = 0;
+  sliding_time_ = 0;
   if (watch_.bias_changed()) {
     learn_at_rest();
   } else {
@@ -117,10 +117,11 @@ bool Estimator::slides_at_rest() noexcept {
   bool slides = false;
   for (const int axis : {0, 1}) {
     const double deviation = std::sqrt(tilt_.acceleration_variance(axis));
-    slides = slides || std::abs(acceleration[axis]) > Tuning::kQuietAcceleration + Tuning::kSignificant * deviation;
+    slides = slides || std::abs(acceleration[axis]) > Tuning::kSignificant * (Tuning::kAccelerometerAtRest + deviation);
   }
-  if (!slides) sliding_windows_ = 0;
-  return slides && ++sliding_windows_ < Tuning::kSlidingWindows;
+  const bool may_slide = slides && sliding_time_ < Tuning::kLongestShakenSlide;
+  sliding_time_ = slides ? sliding_time_ + parameters_.standstill_time : 0;
+  return may_slide;
 }
 
 }  // namespace robot_control

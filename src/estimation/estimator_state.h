@@ -64,13 +64,13 @@ class EstimatorState {
 
   // Rest.
   RestWatch watch_;
-  bool resting_ = true;                ///< nothing is integrated until a window is not quiet
-  HeldMotion open_window_;             ///< not over yet
-  HeldMotion last_window_;             ///< the one before
-  std::uint64_t sliding_windows_ = 0;  ///< quiet ones in a row in which it seems to slide
-  bool bias_measured_ = false;         ///< a rest was seen in this run
-  bool rested_ = false;                ///< likewise, and it was over
-  bool moved_ = false;                 ///< in this run
+  bool resting_ = true;         ///< nothing is integrated until a window is not quiet
+  HeldMotion open_window_;      ///< not over yet
+  HeldMotion last_window_;      ///< the one before
+  double sliding_time_ = 0;     ///< s, of quiet windows in a row in which it seems to slide
+  bool bias_measured_ = false;  ///< a rest was seen in this run
+  bool rested_ = false;         ///< likewise, and it was over
+  bool moved_ = false;          ///< in this run
 
   // The run.
   bool began_ = false;                   ///< a cycle was seen

@@ -13,23 +13,17 @@ namespace robot_control {
 struct Tuning {
   // Measured or chosen on drives.
 
-  static constexpr double kFirstSlip = 5e-3;   ///< m/√m, slip noise of a side at the start; skid steers, recordings
-  static constexpr double kFirstTwist = 0.05;  ///< rad/√rad, noise of a turn at the start; skid steers, recordings
-  static constexpr double kLevelStep = 0.2;    ///< of the logarithm of these levels per block; recordings
-  static constexpr double kRatioWalk = 0.04;   ///< 1/m, walk of the radius ratio, of the slip noise; recordings
-  static constexpr double kBaseWalk = 0.25;    ///< 1/m, walk of the wheel base, likewise; recordings
+  static constexpr double kFirstSlip = 5e-3;    ///< m/√m, slip noise of a side at the start; skid steers, recordings
+  static constexpr double kFirstScrub = 0.05;   ///< rad/√rad, noise of a turn at the start; skid steers, recordings
+  static constexpr double kFirstTwist = 0.016;  ///< likewise, of one wheel on either side; recordings, vacuum robot
+  static constexpr double kLevelStep = 0.2;     ///< of the logarithm of these levels per block; recordings
+  static constexpr double kCalibrationWalk = 0.04;  ///< 1/m, walk of ratio and base, of the slip noise; recordings
   static constexpr double kOffset = 0.08;  ///< s, deviation of the clock offset at the start; recordings: 0.03 … 0.17
   static constexpr double kOffsetWalk = 2e-3;           ///< s/√s, walk of the clock offset; recordings
   static constexpr double kAccelerometerAtRest = 0.03;  ///< m/s², rocking and a motor's hum in a mean; recordings
-  static constexpr double kTiltWalk = 2e-3;  ///< rad/√s: rough ground, and 0.02 m/s² that change within 1 s; recordings
-  static constexpr double kSlowTime = 3.0;  ///< s, in which slow errors of the accelerometer change; recordings
-  static constexpr double kMountedGyro =
-      2;  ///< noise of a gyro on a robot over its data sheet's; recordings: 1.5 … 1.9
-  static constexpr double kTipping = 0.5;  ///< rad/s about x and y, beyond which a gyro is taken to fail; faults
-  static constexpr double kUnreliableTurn = 0.005;   ///< rad by that, from which on the gyro is not trusted; faults
-  static constexpr double kStuckGyro = 0.1;          ///< s of one and the same sample, for a gyro that fails; faults
-  static constexpr double kQuietAcceleration = 0.1;  ///< m/s², mean of a window of a robot that does not slide; faults
-  static constexpr std::uint64_t kSlidingWindows = 6;  ///< in a row; then the tilt is wrong, and it rests; faults
+  static constexpr double kSlowTime = 3.0;   ///< s, in which slow errors of the accelerometer change; recordings
+  static constexpr double kMountedGyro = 2;  ///< noise of a mounted gyro over its data sheet's; recordings: 1.5 … 1.9
+  static constexpr double kTipping = 0.5;    ///< rad/s about x and y, beyond which a gyro is taken to fail; faults
   static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: it is the gyro's bias; faults
   static constexpr double kSettling = 0.5;       ///< s after a slide in which nothing is learned; recordings
   static constexpr double kBatch = 0.3;      ///< of the usual gap between readings, below which they came in a batch;
@@ -40,13 +34,12 @@ struct Tuning {
 
   static constexpr double kPathSlip = 2e-3;  ///< m/√m, slip of wheels that roll, in the path difference; recordings
   static constexpr double kWindUp = 1.6e-3;  ///< rad/√(rad/s), of treads and gears in a turn that changes; recordings
-  static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error: 2 mrad of tilt; recordings
+  static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error, as of 2 mrad of tilt; recordings
   static constexpr double kFirstLevel = 10;          ///< of residuals, before one is learned: it shakes; recordings
   static constexpr double kLineGain = 0.5;      ///< of a decision, in the line that a rolling side renews; recordings
   static constexpr double kRollingTime = 0.15;  ///< s, of rolling or of standing that ends a slide; recordings
   static constexpr double kLongestSlide = 6.0;  ///< s, without a side that rolls; recordings
-  static constexpr double kLongestShakenSlide = 1.5;   ///< s, likewise, where the accelerometer shakes; recordings
-  static constexpr double kCorrectionDeviation = 0.5;  ///< of a correction of the path; recordings
+  static constexpr double kLongestShakenSlide = 1.5;  ///< s, likewise, on a robot that shakes, or at rest; recordings
 
   // Conventions of statistics.
 
@@ -59,10 +52,11 @@ struct Tuning {
   static constexpr double kStampMemory = 50;      ///< readings, of the stamps' jitter: its deviation is known to 10 %
   static constexpr double kNoisePrior = 4;        ///< windows that kMountedGyro is worth: 1 s
   static constexpr double kProof = 5;             ///< deviations that prove slip: 1 of 1.7 million normal residuals
-  static constexpr double kNormal90 = 1.645;      ///< deviations, 90 % quantile of |normal|
-  static constexpr std::uint64_t kFirstResiduals = 8;  ///< whose largest is the first level: their 90 % quantile
-  static constexpr double kQuantileStep = 0.5;         ///< of the logarithm of a level: 1.6 up, 1/1.05 down
-  static constexpr double kUsualSpeedShare = 0.1;      ///< of the speed of one residual in the usual one
+  static constexpr double kCorrectionDeviation = 0.577;  ///< of a correction: slip lies evenly between 0 and its double
+  static constexpr double kNormal90 = 1.645;             ///< deviations, 90 % quantile of |normal|
+  static constexpr std::uint64_t kFirstResiduals = 8;    ///< whose largest is the first level: their 90 % quantile
+  static constexpr double kQuantileStep = 0.5;           ///< of the logarithm of a level: 1.6 up, 1/1.05 down
+  static constexpr double kUsualSpeedShare = 0.1;        ///< of the speed of one residual in the usual one
 
   // Time scales.
 
@@ -72,7 +66,8 @@ struct Tuning {
   static constexpr double kBlock = 1.0;           ///< s, between two comparisons of wheels and gyro; of the confidences
   static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings: as long as a command lives (hal/gate.h)
   static constexpr double kShortestHold = 0.02;   ///< s, for which a sample of an IMU holds at least: 50 Hz
-  static constexpr double kLongestHold = 0.2;     ///< s, at most; of a gap of a gyro or of a wheel that is bridged
+  static constexpr double kLongestHold = 0.2;     ///< s, at most; of one repeated sample of a gyro; of a gap that is
+                                                  ///< bridged, of a gyro or of a wheel
   static constexpr double kSlowAccelerometer = 0.03;  ///< s between samples, beyond which motion is not resolved
   static constexpr double kLongestGap = 0.5;          ///< s, usual gap between readings of a wheel at most
 
@@ -86,6 +81,7 @@ struct Tuning {
   static constexpr double kInitialTilt = 0.1;          ///< rad, deviation at switch-on: the steepest road
   static constexpr double kFloor = 0.01;               ///< rad, of the tilt of two places; twice what DIN 18202 allows
   static constexpr double kLargestOffset = 0.4;        ///< s, twice the largest clock offset of the recordings
+  static constexpr double kLongestDrift = 1.0;         ///< s, on wheels that roll: ice (0.1) stops 1 m/s in that time
   static constexpr double kLeastTwist = 5e-4;          ///< rad/√rad, a hard tyre on a hard floor
   static constexpr double kLargestSlip = 0.05;         ///< m/√m, ten times that of skid steers
   static constexpr double kLargestTwist = 1.0;         ///< rad/√rad, nothing is known of a turn

@@ -123,7 +123,7 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
 });
 
 inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
-    {kDegradedPosition, "position", "the correction of a slide was not believable and was undone",
+    {kDegradedPosition, "position", "the correction of a slide was not plausible and was undone",
      "look at the IMU's mounting; a robot that shakes: slip_detection false"},
     {kDegradedHeading, "heading", "the gyro's bias is not known before the first rest", "let the robot rest for a second"},
     {kDegradedSpeed, "speed", "of an earlier version: the accelerometer contradicted the wheels' speed", ""},

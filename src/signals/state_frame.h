@@ -40,7 +40,7 @@ enum StateFlag : std::uint64_t {
 
 /// Bits of StateFrame::degraded: what the pose does without.
 enum DegradedReason : std::uint64_t {
-  kDegradedPosition = 1u << 0,  ///< The correction of a slide: not believable, undone (slip/slip_correction.h).
+  kDegradedPosition = 1u << 0,  ///< The correction of a slide: not plausible, undone (slip/slip_correction.h).
   kDegradedHeading = 1u << 1,   ///< The gyro's bias: the robot moves before its first rest.
   kDegradedSpeed = 1u << 2,     ///< No longer set; in earlier logs.
   kDegradedTilt = 1u << 3,      ///< No longer set; in earlier logs.

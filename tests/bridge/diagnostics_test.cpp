@@ -110,7 +110,7 @@ TEST_F(StateReport, WarnsOfAPoseThatDoesWithoutACorrection) {
   state_.flags = kStateValid | kStateDegraded;
   state_.degraded = kDegradedPosition;
   EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
-  EXPECT_THAT(report().message().message, HasSubstr("the correction of a slide was not believable"));
+  EXPECT_THAT(report().message().message, HasSubstr("the correction of a slide was not plausible"));
   EXPECT_EQ(value_of(report(), "degraded"), "position");
   EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("look at the IMU's mounting"));
 }

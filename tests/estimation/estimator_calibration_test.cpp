@@ -1,6 +1,8 @@
 // What is learned of wheels, and what for.
 
 #include "estimation/estimator_fixture.h"
+#include "estimation/estimator_setup.h"
+#include "robot/bodies/rigid_bodies.h"
 #include "support/constants.h"
 
 namespace robot_control {
@@ -75,6 +77,17 @@ TEST(EstimatorCalibration, TheWheelBaseStaysWhereNothingTurns) {
   }
   EXPECT_NEAR(state.calibration.wheel_base_factor, 1, 0.003);
   EXPECT_GT(state.calibration.wheel_base_deviation, 0.02);
+}
+
+TEST(EstimatorCalibration, ATurnScattersLessWhereItDragsNoWheel) {
+  RobotModel robot = two_wheeler();
+  EXPECT_EQ(first_twist(robot), Tuning::kFirstScrub) << "there may be other wheels";
+  robot.bodies = std::make_shared<RigidBodies>();
+  EXPECT_EQ(first_twist(robot), Tuning::kFirstTwist);
+  robot.wheels[0].centre_base[0] = 1e-16;  // as a long chain of joints rounds it
+  EXPECT_EQ(first_twist(robot), Tuning::kFirstTwist);
+  robot.wheel_base_multiplier = 1.5;
+  EXPECT_EQ(first_twist(robot), Tuning::kFirstScrub);
 }
 
 TEST(EstimatorCalibration, StartsWithWhatIsGiven) {

@@ -120,6 +120,21 @@ TEST_F(EstimatorSlipTest, SlidingSidewaysIsNamed) {
   EXPECT_LT(position_error(), raw_error() / 5 + late);
 }
 
+// The body leans by 2°: the accelerometer shows a slide without end. What one drift adds to the path is undone.
+TEST_F(EstimatorSlipTest, ABodyThatLeansDoesNotDriftAway) {
+  constexpr double kLeans = 0.34;  // m/s²
+  robot_.accelerometer_bias.y() += kLeans;
+  double farthest = 0;
+  bool degraded = false;
+  for (int i = 0; i < 20000; ++i) {
+    drive(0.5, 0, 1);
+    farthest = std::max(farthest, position_error());
+    degraded = degraded || has(kStateDegraded);
+  }
+  EXPECT_TRUE(degraded);
+  EXPECT_LT(farthest, kLeans * square(Tuning::kLongestDrift));
+}
+
 // The wheels jump by 1 m/s, which no real wheel does; the first verdict comes within the shortest span.
 TEST_F(EstimatorSlipTest, IsFoundWithinTheShortestSpan) {
   robot_.tread = {1.5, 1.5};

@@ -5,7 +5,7 @@
 namespace robot_control {
 
 PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
-    : params_(params), noise_(params.slip_least), gyro_noise_(params.gyro_noise) {
+    : params_(params), noise_(params.slip_least, params.first_twist), gyro_noise_(params.gyro_noise) {
   covariance_(kOffset, kOffset) = square(params.clock_offset);
   covariance_(kBias, kBias) = square(params.gyro_bias_initial);
   covariance_(kRatio, kRatio) = square(params.ratio_deviation);
@@ -144,8 +144,9 @@ void PlanarCore::walk(double mean, double rolled, double dt) noexcept {
     if (covariance_(i, i) > 0) covariance_(i, i) += variance;
   };
   grow(kOffset, square(Tuning::kOffsetWalk) * dt);
-  grow(kRatio, square(Tuning::kRatioWalk * slip()) * std::abs(mean));
-  grow(kBase, square(Tuning::kBaseWalk * slip()) * rolled / 2);
+  const double calibration = square(Tuning::kCalibrationWalk * slip());
+  grow(kRatio, calibration * std::abs(mean));
+  grow(kBase, calibration * rolled / 2);
 }
 
 /// P ← (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, with s = hᵀ P h + r.

@@ -33,15 +33,16 @@ struct PlanarPose {
 };
 
 struct PlanarCoreParams {
-  double wheel_base = 0.5;                ///< m, effective
-  double gyro_noise = 2.44e-4;            ///< rad/s/√Hz
-  double gyro_bias_walk = 8.7e-6;         ///< rad/s/√s
-  double gyro_bias_initial = 0.05;        ///< rad/s
-  double gyro_scale = 5.8e-4;             ///< standard deviation
-  double encoder = 4.4e-5;                ///< m, of one reading
-  double slip_least = 8e-5;               ///< m/√m, of the best floor
-  double ratio_deviation = 0.01;          ///< 0: held
-  double wheel_base_deviation = 0.03;     ///< 0: held
+  double wheel_base = 0.5;                   ///< m, effective
+  double gyro_noise = 2.44e-4;               ///< rad/s/√Hz
+  double gyro_bias_walk = 8.7e-6;            ///< rad/s/√s
+  double gyro_bias_initial = 0.05;           ///< rad/s
+  double gyro_scale = 5.8e-4;                ///< standard deviation
+  double encoder = 4.4e-5;                   ///< m, of one reading
+  double slip_least = 8e-5;                  ///< m/√m, of the best floor
+  double first_twist = Tuning::kFirstScrub;  ///< rad/√rad, noise of a turn at the start
+  double ratio_deviation = 0.01;             ///< 0: held
+  double wheel_base_deviation = 0.03;        ///< 0: held
   double icr_deviation = 0;               ///< m, of the instantaneous centre of rotation along x; 0: between two wheels
   double clock_offset = Tuning::kOffset;  ///< s, standard deviation; 0: held
 };

@@ -26,8 +26,9 @@ class WheelNoise {
     double slips = 0, twists = 0;
   };
 
-  /// m/√m, of the best floor.
-  explicit WheelNoise(double least = 0) noexcept : least_(least), slip_(std::max(Tuning::kFirstSlip, least)) {}
+  /// `least_slip`: m/√m, of the best floor; `first_twist`: rad/√rad.
+  WheelNoise(double least_slip, double first_twist) noexcept
+      : least_(least_slip), slip_(std::max(Tuning::kFirstSlip, least_slip)), twist_(first_twist) {}
 
   /// `rolled`: m, of both sides, `angle`: rad, `wheel_base`: m.
   Variances variances(double rolled, double angle, double wheel_base) const noexcept {
@@ -54,7 +55,7 @@ class WheelNoise {
  private:
   double least_;
   double slip_;
-  double twist_ = Tuning::kFirstTwist;
+  double twist_;
   double last_ = 0, correlation_ = 0, power_ = 1;  ///< of the normalised innovations
 };
 

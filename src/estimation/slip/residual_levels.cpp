@@ -5,25 +5,16 @@
 
 namespace robot_control {
 
-ResidualLevels::ResidualLevels(const SlipParams& params) noexcept
-    : params_(params),
-      nominal_{.white = params.accelerometer, .slow = Tuning::kSlowAcceleration, .slip = params.wheel_slip_noise} {}
-
-double ResidualLevels::nominal_deviation(Channel channel, const SlipResidual& residual,
-                                         const SlipUncertainty& uncertainty) const noexcept {
-  return residual_deviation(channel, residual, nominal_, uncertainty, params_);
-}
-
 double ResidualLevels::at_speed(double level, double speed) const noexcept {
+  if (level == 0) return Tuning::kFirstLevel;
   const double faster = std::max(1.0, speed / std::max(Tuning::kSlowestComparison, usual_speed_));
   return std::sqrt(1 + (square(level) - 1) * square(faster));
 }
 
 double ResidualLevels::deviation(std::size_t span, Channel channel, const SlipResidual& residual,
                                  const SlipUncertainty& uncertainty) const noexcept {
-  const double nominal = nominal_deviation(channel, residual, uncertainty);
-  const double level = level_[span][channel];
-  const double usual = (level == 0 ? Tuning::kFirstLevel : at_speed(level, residual.speed())) * nominal;
+  const double usual =
+      at_speed(level_[span][channel], residual.speed()) * residual_deviation(channel, residual, uncertainty, params_);
   const double change =
       channel == SlipResidual::kTurn ? params_.wheel_base * residual.yaw_rate_change : residual.speed_change;
   return std::hypot(usual, uncertainty.clock_offset * change);
@@ -40,7 +31,7 @@ void ResidualLevels::learn(double time, std::size_t span, const SlipResidual& re
     usual_speed_ += std::max(Tuning::kUsualSpeedShare, share) * (residual.speed() - usual_speed_);
   }
   for (const Channel channel : SlipResidual::kEach) {
-    const double nominal = nominal_deviation(channel, residual, uncertainty);
+    const double nominal = residual_deviation(channel, residual, uncertainty, params_);
     learn_level(span, channel, std::abs(residual.value[channel]) / nominal / Tuning::kNormal90);
   }
 }
@@ -56,9 +47,9 @@ void ResidualLevels::learn_level(std::size_t span, Channel channel, double ratio
 }
 
 AccelerationNoise ResidualLevels::acceleration_noise(double speed, double variance) const noexcept {
-  const double level = level_[kTiltSpan][SlipResidual::kAlong];
-  const double factor = level == 0 ? Tuning::kFirstLevel : at_speed(level, speed);
-  return {.white = factor * nominal_.white, .slow = std::sqrt(square(factor * nominal_.slow) + variance)};
+  const double factor = at_speed(level_[kTiltSpan][SlipResidual::kAlong], speed);
+  return {.white = factor * params_.accelerometer,
+          .slow = std::sqrt(square(factor * Tuning::kSlowAcceleration) + variance)};
 }
 
 }  // namespace robot_control

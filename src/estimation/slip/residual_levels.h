@@ -32,7 +32,7 @@ class ResidualLevels {
   using Channel = SlipResidual::Channel;
 
   ResidualLevels() = default;
-  explicit ResidualLevels(const SlipParams& params) noexcept;
+  explicit ResidualLevels(const SlipParams& params) noexcept : params_(params) {}
 
   void restart() noexcept { learned_at_ = {}; }  ///< time begins at 0 again; the levels stay
 
@@ -53,14 +53,11 @@ class ResidualLevels {
   /// Of each span and channel.
   using Levels = std::array<std::array<double, SlipResidual::kChannels>, kSpans>;
 
-  /// m, standard deviation of a residual by the data sheets.
-  double nominal_deviation(Channel channel, const SlipResidual& residual,
-                           const SlipUncertainty& uncertainty) const noexcept;
+  /// Of a level that was learned, or 0, at that speed, m/s.
   double at_speed(double level, double speed) const noexcept;
   void learn_level(std::size_t span, Channel channel, double ratio) noexcept;
 
   SlipParams params_;
-  ResidualNoise nominal_;
   Levels level_{};    ///< 0: unknown
   Levels largest_{};  ///< of the first residuals
   std::array<std::array<std::uint64_t, SlipResidual::kChannels>, kSpans> count_{};

@@ -1,7 +1,7 @@
 #pragma once
 /// Which wheels slip in a slide. Without slip E keeps to its line and W to its value (motion_difference.h); a side
 /// rolls, too, if the other one alone explains what they leave them by. Friction bends E even where it is near the
-/// line: then that side slips.
+/// line: then that side slips. A robot may slide sideways on wheels that roll.
 
 #include <array>
 #include <cstdint>
@@ -37,6 +37,7 @@ struct SlideContacts {
   bool both_slip() const noexcept { return slips[0] && slips[1]; }
   bool both_roll() const noexcept { return !slips[0] && !slips[1]; }
   bool all_roll() const noexcept { return both_roll() && !sideways; }
+  bool only_sideways() const noexcept { return both_roll() && sideways; }
   /// Of excess slopes or distances of both sides together and of their turn: the excess of the middle of the wheels,
   /// by which the wheels are ahead of the ground. One side that rolls shows it without the accelerometer.
   double slipped(double along, double turn) const noexcept;

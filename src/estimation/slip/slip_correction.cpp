@@ -16,8 +16,8 @@ PathCorrection SlipCorrection::begin(const MotionDifference& difference, double 
   const Point older = difference.before(onset.time - span);
   if (!(onset.time > older.time)) return {};
   active_ = true;
-  timed_out_ = refuted_ = false;
-  since_end_ = rolling_time_ = standing_time_ = turn_slope_ = 0;
+  given_up_ = false;
+  since_end_ = rolling_time_ = sideways_time_ = standing_time_ = turn_slope_ = 0;
   total_ = {};
   path_deviation_ = 0;
   carried_on_ = {};
@@ -52,12 +52,13 @@ PathCorrection SlipCorrection::step(const MotionDifference& difference, const In
   }
   if (line_.begin_time() == now.time) carried_on_ = {};
   const double longest = input.sensors_as_specified ? Tuning::kLongestSlide : Tuning::kLongestShakenSlide;
-  timed_out_ = now.time - line_.begin_time() > longest;
-  if (refuted_ || (timed_out_ && !input.sensors_as_specified)) {
+  const bool drifts = sideways_time_ > Tuning::kLongestDrift;
+  given_up_ = drifts || now.time - line_.begin_time() > longest;
+  if (drifts || (given_up_ && !input.sensors_as_specified)) {
     correction = {-earlier, squared_norm(total_)};
     undone_for_ = Tuning::kUndoneTime;
   }
-  if (rolling_time_ >= Tuning::kRollingTime || standing_time_ >= Tuning::kRollingTime || given_up()) end();
+  if (rolling_time_ >= Tuning::kRollingTime || standing_time_ >= Tuning::kRollingTime || given_up_) end();
   return correction;
 }
 
@@ -81,11 +82,11 @@ void SlipCorrection::decide(const Point& to, const Input& input) noexcept {
     renew_line(to, input, excess);
   }
   rolling_time_ = contacts_.all_roll() ? rolling_time_ + dt : 0;
+  sideways_time_ = contacts_.only_sideways() ? sideways_time_ + dt : 0;
   const auto [low, high] = speed_bounds(input.wheel_speed);
   const double speed = input.wheel_speed - contacts_.slipped(excess.along, excess.turn);
   excess_speed_ = input.wheel_speed - std::clamp(speed, low, high);
   const double fastest = std::max(-low, high);
-  refuted_ = contacts_.sideways && std::abs(excess.across) - fastest > tolerance(input).path;
   lateral_speed_ = contacts_.sideways ? std::clamp(-excess.across, -fastest, fastest) : 0;
   reasons_ = contacts_.reasons(excess, input.wheel_speed);
   decided_ = to;
@@ -115,8 +116,8 @@ bool SlipCorrection::stands(const Point& to, const Input& input) const noexcept 
 /// Towards the slope that a rolling side shows.
 void SlipCorrection::renew_line(const Point& to, const Input& input, const DifferenceSlope& excess) noexcept {
   const double along = contacts_.both_roll() ? excess.along : excess.side(contacts_.slips[0] ? 1 : 0);
-  const Planar change{Tuning::kLineGain * along, contacts_.sideways ? 0 : Tuning::kLineGain * excess.across};
-  line_.renew(rotated(change, (to.yaw + decided_.yaw) / 2),
+  line_.renew(rotated({Tuning::kLineGain * along, contacts_.sideways ? 0 : Tuning::kLineGain * excess.across},
+                      (to.yaw + decided_.yaw) / 2),
               input.path_slope_deviation + input.noise.slow * (to.time - decided_.time));
   if (!contacts_.sideways) line_.begin_at(to.time);
 }

@@ -14,8 +14,9 @@
 /// A slide ends when all wheels have rolled for kRollingTime; when wheels and gyro have stood still as long and the
 /// body brakes by no more than kSignificant slow errors of the accelerometer, as a robot at rest; or after
 /// kLongestSlide without a side that rolls. Where the accelerometer shakes, the latter is kLongestShakenSlide, and the
-/// whole correction is undone then: the slip was probably none. So it is, at once, where the line is refuted: where the
-/// body would slide sideways faster than it was and than the wheels are, by more than kSignificant deviations.
+/// whole correction is undone then: the slip was probably none. So it is where the robot has slid sideways on wheels
+/// that all roll for longer than kLongestDrift: friction would have stopped it, but the accelerometer of a body that
+/// leans shows a slide without end.
 
 #include <algorithm>
 #include <cstdint>
@@ -60,7 +61,7 @@ class SlipCorrection {
   double since_end() const noexcept { return since_end_; }                   ///< s
   std::uint64_t reasons() const noexcept { return active_ ? reasons_ : 0; }  ///< SlipReason
   const SlideContacts& contacts() const noexcept { return contacts_; }
-  bool given_up() const noexcept { return timed_out_ || refuted_; }  ///< the last slide, before its end
+  bool given_up() const noexcept { return given_up_; }      ///< the last slide, before its end
   bool undone() const noexcept { return undone_for_ > 0; }  ///< a correction was, Tuning::kUndoneTime ago at most
   const Planar& line_slope() const noexcept { return line_.slope(); }  ///< m/s, odom axes
   /// m/s, base axes: how much faster the wheels are than the ground, and how fast the robot slides to the left.
@@ -88,8 +89,7 @@ class SlipCorrection {
   std::pair<double, double> speed_bounds(double wheel_speed) const noexcept;  ///< m/s, along
 
   bool active_ = false;
-  bool timed_out_ = false;
-  bool refuted_ = false;
+  bool given_up_ = false;
   double undone_for_ = 0;  ///< s, for which that is still reported
   double since_end_ = 1e9;
   std::uint64_t reasons_ = 0;
@@ -101,6 +101,7 @@ class SlipCorrection {
   double turn_slope_ = 0;                        ///< m/s, of W, likewise
   double path_begin_ = 0;                        ///< s, since which the path may be corrected
   double rolling_time_ = 0, standing_time_ = 0;  ///< s
+  double sideways_time_ = 0;                     ///< s, on wheels that all roll
   double onset_speed_ = 0;
   double excess_speed_ = 0, lateral_speed_ = 0;
   Planar total_;               ///< m, odom axes, of this slide

@@ -28,18 +28,18 @@ SlipResidual slip_residual(const MotionDifference& difference, double span) noex
   return residual;
 }
 
-double residual_deviation(SlipResidual::Channel channel, const SlipResidual& residual, const ResidualNoise& noise,
+double residual_deviation(SlipResidual::Channel channel, const SlipResidual& residual,
                           const SlipUncertainty& uncertainty, const SlipParams& params) noexcept {
   const double span = residual.span;
   if (channel == SlipResidual::kTurn) {
     const double base = params.wheel_base;
-    return std::sqrt(4 * square(params.encoder) + 2 * square(noise.slip) * residual.distance +
+    return std::sqrt(4 * square(params.encoder) + 2 * square(params.wheel_slip_noise) * residual.distance +
                      square(base * uncertainty.wheel_base * residual.turned) +
                      square(base * Tuning::kWindUp) * std::abs(residual.yaw_rate_change) +
                      square(base * uncertainty.gyro_bias * span));
   }
-  const double slow = square(noise.slow) + uncertainty.acceleration_variance[channel];
-  return std::sqrt(6 * square(params.encoder) + square(noise.white) * span * span * span * 2 / 3 +
+  const double slow = square(Tuning::kSlowAcceleration) + uncertainty.acceleration_variance[channel];
+  return std::sqrt(6 * square(params.encoder) + square(params.accelerometer) * span * span * span * 2 / 3 +
                    slow * square(span * span) + 2 * square(Tuning::kPathSlip) * residual.distance);
 }
 

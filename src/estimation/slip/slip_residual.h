@@ -6,8 +6,8 @@
 ///   turn:           V = W₂ − W₁                                       m
 ///
 /// Index 2 is the last point, 1 about T and 0 about 2 T before it. The standard deviations by encoder, accelerometer
-/// (white n and slow a errors), the slip of rolling wheels and the uncertainties of calibration (base factor β, gyro
-/// bias b) and gravity:
+/// (white n of its data sheet, slow a = kSlowAcceleration), the slip of rolling wheels (wheel_slip_noise in the turn)
+/// and the uncertainties of calibration (base factor β, gyro bias b) and gravity:
 ///
 ///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance
 ///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (B σ_b T)²
@@ -37,13 +37,6 @@ struct SlipResidual {
 /// should be.
 SlipResidual slip_residual(const MotionDifference& difference, double span) noexcept;
 
-/// Standard deviations of the errors of a sensor.
-struct ResidualNoise {
-  double white = 0;  ///< m/s²/√Hz: n
-  double slow = 0;   ///< m/s²: a
-  double slip = 0;   ///< m/√m, of either side, in the turn
-};
-
 /// Of what the estimator knows at a point.
 struct SlipUncertainty {
   std::array<double, 2> acceleration_variance{};  ///< (m/s²)²: σ_g², of gravity and bias, along and across
@@ -52,8 +45,8 @@ struct SlipUncertainty {
   double gyro_bias = 0;                           ///< rad/s: σ_b
 };
 
-/// m
-double residual_deviation(SlipResidual::Channel channel, const SlipResidual& residual, const ResidualNoise& noise,
+/// m, by the data sheets
+double residual_deviation(SlipResidual::Channel channel, const SlipResidual& residual,
                           const SlipUncertainty& uncertainty, const SlipParams& params) noexcept;
 
 }  // namespace robot_control

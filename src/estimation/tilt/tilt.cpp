@@ -58,19 +58,20 @@ void Tilt::turn(const Vector3& rate, double dt, bool known) noexcept {
   now_.bound();
   unreliable_ += std::max(0.0, w.head<2>().norm() - Tuning::kTipping) * dt;
   stuck_ = known && rate == last_ ? stuck_ + dt : 0;
-  if (stuck_ > Tuning::kStuckGyro) unreliable_ = std::max(unreliable_, Tuning::kUnreliableTurn);
+  if (stuck_ > Tuning::kLongestHold) unreliable_ = std::max(unreliable_, Tuning::kFloor);
   last_ = rate;
   turned_ += rate[2] * dt;
-  walked_ += square(Tuning::kTiltWalk) * dt;
   time_ += dt;
 }
 
 void Tilt::age() noexcept {
   now_.turn(turned_);
   auto variances = now_.covariance.diagonal().array();
-  variances.head<2>() = (variances.head<2>() + walked_).min(square(Tuning::kSteepest)).eval();
+  variances.head<2>() = (variances.head<2>() + square(Tuning::kSlowAcceleration / kGravity) * time_)
+                            .min(square(Tuning::kSteepest))
+                            .eval();
   variances.tail<2>() += square(params_.bias_walk / kGravity) * time_;
-  turned_ = walked_ = time_ = 0;
+  turned_ = time_ = 0;
 }
 
 void Tilt::correct(double along, double across, double dt, double deviation) noexcept {
@@ -93,7 +94,7 @@ void Tilt::rest(const Vector3& force, double dt) noexcept {
   age();
   const Eigen::Vector2d sum(force[0] / kGravity, force[1] / kGravity);
   const double noise = (square(params_.accelerometer) / dt + square(Tuning::kAccelerometerAtRest)) / square(kGravity);
-  const bool by_gyro = unreliable_ < Tuning::kUnreliableTurn && !now_.contradicts(sum, noise);
+  const bool by_gyro = unreliable_ < Tuning::kFloor && !now_.contradicts(sum, noise);
   if (!by_gyro && has_rested_) now_ = on_the_floor();
   if (now_.contradicts(sum, noise)) {
     now_.covariance.diagonal().head<2>().array() += now_.innovation(sum).squaredNorm();

@@ -10,8 +10,10 @@
 /// wheels, known to kFloor. Where the rest contradicts that, too, by more than kSignificant deviations, the tilt is
 /// unknown again: what failed on the way turns the tilt, it does not change the bias.
 ///
-/// The gyro is unreliable where it turned the robot over faster than kTipping, by kUnreliableTurn in all, or repeated
-/// one sample for kStuckGyro: a robot on its wheels does neither.
+/// The tilt walks by kSlowAcceleration/g, 2 mrad, per √s.
+///
+/// The gyro is unreliable where it turned the robot over faster than kTipping, by kFloor in all, or repeated one sample
+/// for kLongestHold: a robot on its wheels does neither.
 ///
 /// Bounded by kSteepest: the robot stands on its wheels. The gyro's x and y count after a first rest only, when their
 /// bias is known: a broken axis reads −31 °/s at rest.
@@ -82,13 +84,13 @@ class Tilt {
   TiltParams params_;
   Estimate now_;
   double vertical_ = 0;
-  Estimate rested_;                            ///< at the end of the last rest
-  bool has_rested_ = false;                    ///< there was one
-  double rolled_ = 0;                          ///< rad, since then, by the wheels
-  double unreliable_ = 0;                      ///< rad, likewise, by a gyro that turned the robot over
-  double stuck_ = 0;                           ///< s
-  Vector3 last_{};                             ///< rad/s
-  double turned_ = 0, walked_ = 0, time_ = 0;  ///< rad, rad², s: since the covariance aged
+  Estimate rested_;               ///< at the end of the last rest
+  bool has_rested_ = false;       ///< there was one
+  double rolled_ = 0;             ///< rad, since then, by the wheels
+  double unreliable_ = 0;         ///< rad, likewise, by a gyro that turned the robot over
+  double stuck_ = 0;              ///< s
+  Vector3 last_{};                ///< rad/s
+  double turned_ = 0, time_ = 0;  ///< rad, s: since the covariance aged
 };
 
 }  // namespace robot_control
