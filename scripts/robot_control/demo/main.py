@@ -27,6 +27,8 @@ LINEAR, ANGULAR = 0.5, 0.2
 """m/s, rad/s: what send_cmd.py sends by default; the source article's command."""
 START_LIMIT = 60.0
 """s for master, nodes and first rows, and again for the sender; 3 s and 1 s on an idle machine."""
+REST_TIME = 2.0
+"""s of the robot's clock before it drives: at rest it learns the bias of its gyro, to 0.35 mrad/s in that time."""
 RAMP_TIME = 1.5
 """s between the sender's zero and the end of the log: 0.5 s of ramp at 1 m/s², tripled."""
 END_LIMIT = 20.0
@@ -125,7 +127,9 @@ def _drive(seconds: float, out: Path) -> float:
             out / "launch.log",
         )
         children.append(launch)
-        _wait_until(lambda: _last_row(log) is not None, "cycle", launch)
+        _wait_until(
+            lambda: float((_last_row(log) or {}).get("time", 0)) >= REST_TIME, f"rest of {REST_TIME:g} s", launch
+        )
         print(f"sending {LINEAR} m/s and {ANGULAR} rad/s for {seconds:g} s")
         sender = Child(["rosrun", "robot_control", "send_cmd.py"], out / "send_cmd.log")
         children.append(sender)
