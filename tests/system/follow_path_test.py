@@ -16,8 +16,6 @@ from system_support import Program, RobotTestCase, again_after_a_stall, reposito
 from tf2_msgs.msg import TFMessage
 
 SUCCEEDED, ABORTED, PREEMPTED = GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED
-STAND = 0.01
-"""m/s"""
 
 Points = Sequence[tuple[float, float]]
 
@@ -96,7 +94,7 @@ class FollowPathTest(RobotTestCase):
         self.assertTrue(client.says("driving"), client.feedback[-1:])
 
     def await_rest(self) -> None:
-        wait_for("standstill", lambda: abs(self.robot.speed) < STAND)
+        wait_for("standstill", self.robot.rests)
 
     @staticmethod
     def service(name: str) -> TriggerResponse:
@@ -157,7 +155,7 @@ class FollowPathTest(RobotTestCase):
         self.await_rest()
         wait_for("paused in the feedback", lambda: client.says("paused", "~pause was called"))
         time.sleep(1.0)
-        self.assertLess(abs(self.robot.speed), STAND)
+        self.assertTrue(self.robot.rests())
         self.assertTrue(self.service("resume").success)
         self.assertEqual(client.end()[0], SUCCEEDED)
         self.assertEqual(self.service("resume").message, "no path is driven")
@@ -187,7 +185,7 @@ class FollowPathTest(RobotTestCase):
         self.assertIn("e_stop_trigger was called", refused.end()[1].reason)
         self.robot.release()
         time.sleep(1.0)
-        self.assertLess(abs(self.robot.speed), STAND)
+        self.assertTrue(self.robot.rests())
         goal.begin_at = result.distance
         state, result = Client(goal).end()
         self.assertEqual((state, result.reason), (SUCCEEDED, "done"), self.server.output)
@@ -208,7 +206,7 @@ class FollowPathTest(RobotTestCase):
             state, result = Client(goal).end()
             self.assertEqual(state, ABORTED, words)
             self.assertIn(words, result.reason)
-        self.assertLess(abs(self.robot.speed), STAND)
+        self.assertTrue(self.robot.rests())
 
     @again_after_a_stall
     def test_ten_thousand_points_are_driven(self) -> None:

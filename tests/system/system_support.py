@@ -37,6 +37,10 @@ LIMIT = 30.0
 """s; what takes longer has not happened. On an idle machine nothing here takes longer than 3 s."""
 SEND_PERIOD = 0.1
 """s; a twelfth of cmd_vel_timeout."""
+STANDING = 0.01
+"""m/s"""
+SETTLING = 0.5
+"""s; for 0.3 s after a ramp the estimate still shows single counts of an encoder as 1 cm/s."""
 STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost", "monitor_late", "command_stale", "gate_refuses"}
 """What a machine that stood still for 20 ms may latch by itself."""
 
@@ -185,6 +189,7 @@ class Robot:
         self.wheels: tuple[float, ...] = ()
         self.status: SafetyStatus | None = None
         self.odom_count = 0
+        self._moved_at = -math.inf  # s, monotonic
         self.joints_count = 0
         self._subscribers = [
             rospy.Subscriber(self.name("odom"), Odometry, self._receive_odom),
@@ -280,7 +285,7 @@ class Robot:
 
     def await_rest(self) -> None:
         """Sends zero until the wheels stand."""
-        wait_for("standstill", lambda: abs(self.speed) < 0.01, every=lambda: self.send(0, 0))
+        wait_for("standstill", self.rests, every=lambda: self.send(0, 0))
 
     # what it says
 
@@ -302,6 +307,10 @@ class Robot:
         """m/s, estimated."""
         return math.nan if self.odom is None else self.odom.twist.twist.linear.x
 
+    def rests(self) -> bool:
+        """For SETTLING: not that it passes through zero."""
+        return self.odom is not None and time.monotonic() - self._moved_at > SETTLING
+
     @property
     def distance(self) -> float:
         """m from the origin of odom, estimated."""
@@ -316,6 +325,8 @@ class Robot:
     def _receive_odom(self, message: Odometry) -> None:
         self.odom = message
         self.odom_count += 1
+        if not abs(self.speed) < STANDING:
+            self._moved_at = time.monotonic()
 
     def _receive_joints(self, message: JointState) -> None:
         self.joints = message
