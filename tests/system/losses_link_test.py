@@ -37,8 +37,8 @@ class LossesLinkTest(unittest.TestCase):
     def tearDownClass(cls) -> None:
         if cls.refused:
             return
+        rospy.signal_shutdown("done")  # asks the master, whose address goes with the link
         cls.link.end()
-        rospy.signal_shutdown("done")
         cls.master.kill()
 
     def setUp(self) -> None:
@@ -49,9 +49,13 @@ class LossesLinkTest(unittest.TestCase):
         self.robot = Robot()
 
     def tearDown(self) -> None:
+        # In order: of a sender that dies the master goes on to tell the next controller, which then may miss another.
+        self.link.plug(True)
         for program in self.teleop:
-            program.kill()
-            program.wait()
+            program.send_signal(signal.SIGCONT)
+            program.send_signal(signal.SIGINT)
+        for program in self.teleop:
+            program.wait(LIMIT)
         self.robot.end()
 
     def drive_remotely(self, heartbeat_timeout: float) -> None:
@@ -66,7 +70,7 @@ class LossesLinkTest(unittest.TestCase):
         ]
         end = time.monotonic() + LIMIT
         while not self.robot.speed > FAST:
-            self.assertLess(time.monotonic(), end, f"not at full speed; causes {self.robot.causes}")
+            self.assertLess(time.monotonic(), end, f"not at full speed; {self.robot.status}")
             # What a stalling machine latched is released; teleop goes on, so that takes a pause of it.
             if self.robot.state == SafetyStatus.STOPPED:
                 self.pause_and_release()
