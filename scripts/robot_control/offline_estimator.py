@@ -55,7 +55,8 @@ class Estimator:
         wheel_radius: m, every wheel. With `urdf` it overrides the URDF's.
         wheel_base: m, between the left and the right wheels. With `urdf` it overrides the URDF's. Without `urdf`,
             wheel_radius and wheel_base together are the robot: two wheels, base_link in the middle of their axle, and
-            perhaps others behind them: at the start a turn is taken to scatter as a skid steer's.
+            perhaps others behind them: at the start a turn is taken to scatter as a skid steer's, and before the first
+            rest its wheels do not show the gyro's bias.
         imu_position: (x, y, z) of the IMU in base_link, m; overrides the URDF's.
         imu_orientation: of the IMU in base_link: (roll, pitch, yaw) in rad, turned about the fixed axes x, y, z in
             this order as in a URDF, or a quaternion (x, y, z, w); by their number, three or four. Overrides the

@@ -47,12 +47,13 @@ Estimator::Estimator(const EstimatorParameters& parameters, const RobotModel& ro
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       encoder_(encoder_deviation(parameters, robot)),
       rate_noise_gain_(rate_.noise_gain()),
+      drags_wheels_(drags_wheels(robot)),
       fresh_(*this) {
   const Vector3 bias = in_base(parameters.gyro_bias);
   for (const std::size_t i : {0U, 1U}) gyro_bias_[i] = {bias[i], square(parameters.gyro_bias_initial)};
   core_.set_bias(bias[2], parameters.gyro_bias_initial);
   core_.set_calibration(parameters.calibration);
-  core_.hold_corrections();
+  core_.set_bias_known(false);
   place({0, 0, 0});
   fresh_ = *this;
 }
@@ -83,7 +84,7 @@ void Estimator::resume(const StateFrame& last) noexcept {
   height_ = last.pose_odom.position[2];
   place({last.pose_odom.position[0], last.pose_odom.position[1], yaw_of(last.pose_odom.orientation)});
   core_.set_pose_covariance(covariance_of_middle(last));
-  core_.replace_bias();
+  core_.set_bias_known(true);
   yaw_rate_ = last.twist_base.angular[2];
   wheels_.set_speed(last.twist_base.linear[0] - yaw_rate_ * geometry_.axle_y, yaw_rate_);
   wheel_odometry_ = last.wheels;

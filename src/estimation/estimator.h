@@ -11,7 +11,9 @@
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay, the gyro's bias and the tilt
 /// (tilt/tilt.h) are learned; until the first rest is over the pose is corrected by that bias, too. Every run begins at
-/// rest. A window that turns out not to be quiet is integrated at once, with the one before.
+/// rest. A window that turns out not to be quiet is integrated at once, with the one before. A run that begins in
+/// motion is wheels and gyro until it rests, where a turn drags wheels: no slide is corrected, for the accelerometer's
+/// bias is not known, either, and wheels do not show the gyro's (planar/planar_core.h).
 ///
 /// Samples may come at any rate. One that is not finite or impossible is not used (kStateBadSample, which also states
 /// that encoders are missing in this cycle), and the last one holds: for three times the gap between the last two,
@@ -132,6 +134,7 @@ class Estimator : private EstimatorState {
   Eigen::Matrix3d base_from_imu_;
   double encoder_;          ///< m, deviation of one side's reading
   double rate_noise_gain_;  ///< RateTracker::noise_gain
+  bool drags_wheels_;       ///< estimator_setup.h
   EstimatorState fresh_;    ///< at the beginning of a run
 };
 

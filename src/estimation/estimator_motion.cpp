@@ -126,6 +126,7 @@ void Estimator::judge_slip() noexcept {
   if (slip_correction_.active()) return;
   const SlipDetector::GravityError& gravity = slip_detector_.gravity_error();
   if (const double span = slip_detector_.shortest_proven_span(); span > 0) {
+    if (drags_wheels_ && !bias_measured_) return;
     if (slip_detector_.proven(SlipResidual::kAcross)) ++rejected_[kLateralContact];
     correct(slip_correction_.begin(slip_detector_.difference(), span, correction_input()));
   } else if (gravity.known) {

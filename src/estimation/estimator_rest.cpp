@@ -22,7 +22,12 @@ RestWindow Estimator::watch_rest(double dt) noexcept {
     sample.accelerometer = &force;
   }
   const double noise = square(gyro_noise_.density()) / parameters_.standstill_time;
-  return watch_.step(sample, array(gyro_bias()), array((gyro_bias_variance().array() + noise).sqrt()));
+  if (!core_.bias_known() && !bias_measured_ && moved_) {
+    const double deviation = std::sqrt(2 * noise);
+    return watch_.step(sample, {.deviation = {deviation, deviation, deviation}, .known = false});
+  }
+  const Vector3 deviation = array((gyro_bias_variance().array() + noise).sqrt());
+  return watch_.step(sample, {.value = array(gyro_bias()), .deviation = deviation});
 }
 
 void Estimator::rest(double dt) noexcept {
@@ -96,7 +101,6 @@ void Estimator::learn_at_rest() noexcept {
 
 /// `mean` rad/s over `window` s.
 void Estimator::learn_gyro_bias(const Vector3& mean, double window) noexcept {
-  if (!rested_ && !moved_) core_.replace_bias();
   gyro_noise_.add(mean[2], window);
   core_.set_gyro_noise(gyro_noise_.density());
   const double noise = square(parameters_.gyro_noise) / window;

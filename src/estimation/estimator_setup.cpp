@@ -58,9 +58,8 @@ double icr_deviation(const RobotModel& robot) {
   return (length > 0 ? length : scrubs) / std::sqrt(12.0);
 }
 
-double first_twist(const RobotModel& robot) {
-  const bool two_wheels = robot.bodies && robot.wheels.size() == 2 && robot.wheel_base_multiplier == 1;
-  return two_wheels ? Tuning::kFirstTwist : Tuning::kFirstScrub;
+bool drags_wheels(const RobotModel& robot) {
+  return !robot.bodies || robot.wheels.size() != 2 || robot.wheel_base_multiplier != 1;
 }
 
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot) {
@@ -72,7 +71,7 @@ PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotM
           .gyro_scale = parameters.gyro_scale_deviation,
           .encoder = encoder_deviation(parameters, robot),
           .slip_least = parameters.wheel_slip_noise,
-          .first_twist = first_twist(robot),
+          .drags_wheels = drags_wheels(robot),
           .ratio_deviation = learns * parameters.calibration.radius_ratio_deviation,
           .wheel_base_deviation = learns * parameters.calibration.wheel_base_deviation,
           .icr_deviation = icr_deviation(robot)};

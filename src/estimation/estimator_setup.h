@@ -22,9 +22,9 @@ double encoder_deviation(const EstimatorParameters& parameters, const RobotModel
 /// it. Where the wheels' places are not known, the length between the axles is that which the multiplier of the wheel
 /// base follows from (RobotModel::wheel_base_multiplier).
 double icr_deviation(const RobotModel& robot);
-/// rad/√rad, noise of a turn at the start: less for one wheel on either side than for wheels behind each other or for
-/// tracks, which a turn drags. Where nothing but wheel radius and base is known (no bodies) there may be others.
-double first_twist(const RobotModel& robot);
+/// A turn drags wheels over the floor: those behind each other, and tracks. Where nothing but wheel radius and base is
+/// known (no bodies) there may be such.
+bool drags_wheels(const RobotModel& robot);
 
 /// Without self_calibration ratio and wheel base are known for ever.
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot);

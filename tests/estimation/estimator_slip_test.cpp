@@ -52,6 +52,28 @@ TEST_F(EstimatorSlipTest, AWheelThatSpinsIsNamed) {
   EXPECT_LT(position_error(), raw_error() / 5);
 }
 
+// The accelerometer's bias is not known: what it says of a slide would move the path by metres.
+TEST_F(EstimatorFixture, ASlideBeforeTheFirstRestIsNotCorrected) {
+  robot_.noise = {.gyro = 1e-4, .accelerometer = 1e-3, .counts = 4096};
+  const auto slipping = [&] {
+    int count = 0;
+    drive(0.5, 0, 10000);
+    robot_.tread = {1.0, 1.0};
+    for (int i = 0; i < 1000; ++i) {
+      robot_.go(robot_.motion);
+      observe();
+      count += has(kStateSlip) ? 1 : 0;
+    }
+    robot_.tread = {};
+    return count;
+  };
+  EXPECT_EQ(slipping(), 0);
+  EXPECT_NEAR(x(), state_.wheels.x, 0.02);
+  drive(0.5, 0, 1000);
+  stand(3000);
+  EXPECT_GT(slipping(), 500);
+}
+
 TEST_F(EstimatorSlipTest, AWheelThatIsStuckIsNamed) {
   robot_.tread[0] = 0.0;
   EXPECT_GT(flagged(1000), 900);

@@ -111,7 +111,8 @@ TEST_F(CoreUpdateTest, WhatIsHeldIsNotLearned) {
   EXPECT_EQ(core_.calibration().wheel_base_factor, 1.02);
 }
 
-// Gyro's mean at rest, of variance r: a Kalman update of the bias, and through it of the heading.
+// Gyro's mean at rest, of variance r: a Kalman update. What it would make of the pose beyond what the bias made of it
+// enters the covariance.
 TEST_F(CoreUpdateTest, ARestIsAKalmanUpdateOfTheBias) {
   const CoreMatrix before = core_.covariance();
   const CoreVector x = values_of(core_);
@@ -120,12 +121,15 @@ TEST_F(CoreUpdateTest, ARestIsAKalmanUpdateOfTheBias) {
   CoreVector gain = before.col(PlanarCore::kBias) / (before(PlanarCore::kBias, PlanarCore::kBias) + kVariance);
   gain[PlanarCore::kScale] = 0;
   const double innovation = 0.003 - x[PlanarCore::kBias];
-  const CoreVector change = values_of(core_) - x;
-  for (int i = 0; i < change.size(); ++i) EXPECT_NEAR(change[i], innovation * gain[i], 1e-12) << i;
+  const CoreVector beyond = innovation * gain - (values_of(core_) - x);
+  for (const int i : {PlanarCore::kOffset, PlanarCore::kBias, PlanarCore::kRatio, PlanarCore::kBase}) {
+    EXPECT_NEAR(beyond[i], 0, 1e-12) << i;
+  }
   CoreVector h = CoreVector::Zero();
   h[PlanarCore::kBias] = 1;
   const CoreMatrix left = CoreMatrix::Identity() - gain * h.transpose();
-  const CoreMatrix expected = left * before * left.transpose() + kVariance * gain * gain.transpose();
+  const CoreMatrix expected =
+      left * before * left.transpose() + kVariance * gain * gain.transpose() + beyond * beyond.transpose();
   const CoreMatrix p = core_.covariance();
   for (int i = 0; i < p.rows(); ++i) {
     for (int k = 0; k < p.cols(); ++k) {
@@ -147,7 +151,7 @@ TEST_F(CoreUpdateTest, ASettledRestLeavesThePose) {
 // has the correction that was held back. The calibration is corrected.
 TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
   PlanarCore free = core_;
-  core_.hold_corrections();
+  core_.set_bias_known(false);
   const CoreVector x = values_of(core_);
   for (PlanarCore* core : {&free, &core_}) core->end_block(kWay - 0.07, kWay + 0.07, 0.1, 1.0);
   for (const int i : {PlanarCore::kX, PlanarCore::kY, PlanarCore::kYaw, PlanarCore::kBias}) {
@@ -159,43 +163,76 @@ TEST_F(CoreUpdateTest, CorrectionsThatAreHeldBackAreGivenOutAtOnce) {
   for (const int i : {PlanarCore::kOffset, PlanarCore::kRatio, PlanarCore::kBase}) EXPECT_EQ(held[i], 0) << i;
   const CoreMatrix expected = free.covariance() + held * held.transpose();
   EXPECT_LT((core_.covariance() - expected).cwiseAbs().maxCoeff(), kRounding * expected.cwiseAbs().maxCoeff());
-  core_.replace_bias();
-  for (PlanarCore* core : {&free, &core_}) core->rest(0.003, 1e-6, true);
-  EXPECT_LT((values_of(core_) - values_of(free)).norm(), 1e-12);
 }
 
-// A gyro that is off by 0.05 rad/s: the wheels alone prove it, and the path is corrected. Of wheels of two sizes as
-// well as these nothing else is known.
-TEST_F(CoreUpdateTest, BlocksProveABiasOnARobotThatNeverRests) {
+// A gyro that is off by 0.05 rad/s, and wheels that say so. Those which a turn drags could be of two sizes.
+TEST_F(CoreUpdateTest, OnlyWheelsThatAreNotDraggedShowABias) {
   constexpr double kBias = 0.05;
-  PlanarCore core{PlanarCoreParams{.ratio_deviation = 0.001}};
-  core.hold_corrections();
-  for (int block = 0; block < 20; ++block) {
-    core.begin_block(kBias);
-    core.turn_by_gyro(kBias * 1.0, 1.0);
-    core.roll(0.5 * std::cos(core.pose().yaw), 0.5 * std::sin(core.pose().yaw), kBias);
-    core.end_block(0.5, 0.5, kBias, 1.0);
+  for (const bool drags : {false, true}) {
+    PlanarCore core{PlanarCoreParams{.drags_wheels = drags, .ratio_deviation = 0.001}};
+    core.set_bias_known(false);
+    for (int block = 0; block < 20; ++block) {
+      core.begin_block(kBias);
+      core.turn_by_gyro(kBias * 1.0, 1.0);
+      core.roll(0.5 * std::cos(core.pose().yaw), 0.5 * std::sin(core.pose().yaw), kBias);
+      core.end_block(0.5, 0.5, kBias, 1.0);
+    }
+    EXPECT_NEAR(core.bias(), drags ? 0 : kBias, 0.005) << drags;
+    EXPECT_NEAR(core.pose().yaw, drags ? 20 * kBias : 0, 0.2) << drags;
+    EXPECT_LT(std::abs(core.pose().yaw), 3 * core.deviation(PlanarCore::kYaw)) << drags;
+    EXPECT_EQ(core.bias_known(), !drags);
   }
-  EXPECT_NEAR(core.bias(), kBias, 0.005);
-  EXPECT_LT(std::abs(core.pose().yaw), 0.2) << "1 rad without a correction";
 }
 
-// A rest of 1 s shows a bias to 2.44e-4 rad/s; that a gyro has any bias of the prior's 0.05 rather than the one that
-// the path was driven by is the likelier where it is beyond √(2 ln(0.05/2.44e-4)) = 3.3 of these.
-TEST_F(CoreUpdateTest, APathIsNotCorrectedByABiasThatIsNotProven) {
-  for (const double bias : {2.0 * 2.44e-4, 5.0 * 2.44e-4}) {
+// Blocks in which the wheels turned the other way do not change by how much.
+TEST_F(CoreUpdateTest, TheFirstRestCorrectsThePathByItsBiasAlone) {
+  constexpr double kBias = 0.01;
+  for (const double wheels : {0.0, 0.05}) {
     PlanarCore core{PlanarCoreParams{}};
-    core.hold_corrections();
-    core.turn_by_gyro(0.5, 30.0);
-    core.roll(0.5, 0.5, 0.3);
-    const CoreVector x = values_of(core);
-    core.rest(bias, 2.44e-4 * 2.44e-4, false);
-    const CoreVector moved = values_of(core) - x;
-    const bool proven = bias > 3.3 * 2.44e-4;
-    EXPECT_EQ(moved.norm() > 0, proven) << bias;
-    EXPECT_NEAR(moved[PlanarCore::kYaw], proven ? -30.0 * bias : 0, 30.0 * 1e-6) << bias;
-    EXPECT_GT(core.deviation(PlanarCore::kYaw), proven ? 0 : 30.0 * bias) << "what was not corrected";
+    core.set_bias_known(false);
+    for (int block = 0; block < 30; ++block) {
+      core.begin_block(0);
+      core.turn_by_gyro(0, 1.0);
+      core.roll(0.5, 0, 0);
+      core.end_block(0.5 + wheels, 0.5 - wheels, 0, 1.0);
+    }
+    EXPECT_EQ(core.pose().yaw, 0);
+    core.rest(kBias, 1e-12, false);
+    EXPECT_NEAR(core.bias(), kBias, 1e-5) << wheels;
+    EXPECT_NEAR(core.pose().yaw, -30 * kBias, 1e-3) << wheels;
+    EXPECT_NEAR(core.pose().x, 15, 1e-9) << wheels;
+    EXPECT_NEAR(core.pose().y, -kBias * 0.5 * 30 * 31 / 2, 0.01) << wheels;
+    core.end_block(0.5, 0.5, 0, 1.0);
+    core.rest(0.02, 1e-12, true);
+    EXPECT_NEAR(core.pose().yaw, -30 * kBias, 0.02) << "the path of a bias that was known " << wheels;
   }
+}
+
+// Before the first rest. A yaw that is wrong by δ, σ = 0.5 rad, on all of the way lays it short by 1 − cos δ: 0.196 of
+// it in the mean square.
+TEST_F(CoreUpdateTest, AnUncertainYawShortensThePath) {
+  PlanarCore core{PlanarCoreParams{.slip_least = 1e-9}};
+  core.set_bias_known(false);
+  core.add_yaw_variance(0.25);
+  for (int i = 0; i < 100; ++i) core.roll(0.1, 0, 0);
+  const double along = std::sqrt(core.covariance()(PlanarCore::kX, PlanarCore::kX));
+  EXPECT_NEAR(along, 1.96, 0.25);
+  core.place({});
+  EXPECT_EQ(core.covariance()(PlanarCore::kX, PlanarCore::kX), 0);
+}
+
+// The rest shows that the yaw was as good as known.
+TEST_F(CoreUpdateTest, WhatTheFirstRestShowsOfTheYawIsNoLongerUncertain) {
+  PlanarCore core{PlanarCoreParams{}};
+  core.set_bias_known(false);
+  for (int i = 0; i < 20; ++i) {
+    core.turn_by_gyro(0, 1.0);
+    core.roll(0.5, 0, 0);
+  }
+  const auto along = [&] { return std::sqrt(core.covariance()(PlanarCore::kX, PlanarCore::kX)); };
+  const double before = along();
+  core.rest(0, 1e-8, false);
+  EXPECT_LT(along(), 0.1 * before);
 }
 
 TEST_F(CoreUpdateTest, PlacingForgetsWhatThePoseWasCorrelatedWith) {

@@ -17,8 +17,7 @@ class RestWatchTest : public testing::Test {
   RestWindow step(double rate, double left = 0, double right = 0) {
     const Vector3 gyro{0, 0, rate};
     const Vector3 force{0.1, 0, 9.8};
-    return watch_.step({.dt = kStep, .gyro = &gyro, .accelerometer = &force, .left = left, .right = right}, bias_,
-                       deviation_);
+    return watch_.step({.dt = kStep, .gyro = &gyro, .accelerometer = &force, .left = left, .right = right}, bias_);
   }
   /// The verdict of a whole window at a constant rate.
   RestWindow window(double rate) {
@@ -26,8 +25,7 @@ class RestWatchTest : public testing::Test {
     return step(rate);
   }
   RestWatchParams params_;
-  Vector3 bias_{};
-  Vector3 deviation_{1e-3, 1e-3, 1e-3};
+  RestWatch::Bias bias_{.deviation = {1e-3, 1e-3, 1e-3}};
   RestWatch watch_{params_};
 };
 
@@ -76,7 +74,7 @@ TEST_F(RestWatchTest, ATurnOnWheelsThatStandIsNoRest) {
 }
 
 TEST_F(RestWatchTest, TheRateIsThatBesideTheKnownBias) {
-  bias_ = {0, 0, 0.1};
+  bias_.value = {0, 0, 0.1};
   EXPECT_EQ(window(0.1), RestWindow::kQuiet);
   EXPECT_EQ(window(0), RestWindow::kTurned);
 }
@@ -107,6 +105,17 @@ TEST_F(RestWatchTest, ARateThatChangesIsNone) {
   for (int i = 0; i < 200; ++i) EXPECT_EQ(window(i % 20 < 10 ? 0.3 : 0.32), RestWindow::kTurned) << i;
 }
 
+// The body still swings after a stop, or turns on wheels that stand.
+TEST_F(RestWatchTest, WhereNoBiasIsKnownARestIsSteadyForASecond) {
+  bias_.known = false;
+  for (const double rate : {0.0265, 0.0209, 0.0089, -0.0014, -0.0065, -0.0065, -0.0065}) {
+    EXPECT_EQ(window(rate), RestWindow::kTurned) << rate;
+  }
+  EXPECT_EQ(window(-0.0060), RestWindow::kQuiet);
+  EXPECT_TRUE(watch_.bias_changed());
+  EXPECT_NEAR((*watch_.gyro())[2], -0.0065, 1e-12);
+}
+
 TEST_F(RestWatchTest, AWheelThatMovesBeginsTheTenSecondsAnew) {
   for (int i = 0; i < 38; ++i) window(0.3);
   step(0.3, 1, 1);
@@ -114,8 +123,8 @@ TEST_F(RestWatchTest, AWheelThatMovesBeginsTheTenSecondsAnew) {
 }
 
 TEST_F(RestWatchTest, WithoutGyroTheWheelsDecide) {
-  for (int i = 0; i < kWindow - 1; ++i) watch_.step({.dt = kStep}, bias_, deviation_);
-  EXPECT_EQ(watch_.step({.dt = kStep}, bias_, deviation_), RestWindow::kQuiet);
+  for (int i = 0; i < kWindow - 1; ++i) watch_.step({.dt = kStep}, bias_);
+  EXPECT_EQ(watch_.step({.dt = kStep}, bias_), RestWindow::kQuiet);
   window(0);
   EXPECT_NEAR(watch_.time(), params_.window, 1e-12);
   EXPECT_FALSE(watch_.gyro().has_value());
@@ -125,8 +134,8 @@ TEST_F(RestWatchTest, WithoutGyroTheWheelsDecide) {
 // A gyro that came for less than half of the window has no mean.
 TEST_F(RestWatchTest, AMeanIsThatOfHalfAWindowAtLeast) {
   for (int i = 0; i < 10; ++i) step(5.0);
-  for (int i = 10; i < kWindow - 1; ++i) watch_.step({.dt = kStep}, bias_, deviation_);
-  EXPECT_EQ(watch_.step({.dt = kStep}, bias_, deviation_), RestWindow::kQuiet);
+  for (int i = 10; i < kWindow - 1; ++i) watch_.step({.dt = kStep}, bias_);
+  EXPECT_EQ(watch_.step({.dt = kStep}, bias_), RestWindow::kQuiet);
   window(0);
   EXPECT_FALSE(watch_.gyro().has_value());
 }
@@ -135,7 +144,7 @@ TEST_F(RestWatchTest, AnAccelerometerThatShakesIsNoMotion) {
   const Vector3 gyro{};
   for (int i = 0; i < kWindow; ++i) {
     const Vector3 force{i % 2 == 0 ? 20.0 : -20.0, 0, 9.8};
-    const RestWindow verdict = watch_.step({.dt = kStep, .gyro = &gyro, .accelerometer = &force}, bias_, deviation_);
+    const RestWindow verdict = watch_.step({.dt = kStep, .gyro = &gyro, .accelerometer = &force}, bias_);
     EXPECT_EQ(verdict, i + 1 < kWindow ? RestWindow::kOpen : RestWindow::kQuiet);
   }
 }

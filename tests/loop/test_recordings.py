@@ -9,7 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lab.odometry.field_drive import Errors, field_drive, load
-from lab.odometry.recordings import ABSENT, Recording, aligned_rms, recording, recordings_folder, simple_path
+from lab.odometry.recordings import (
+    ABSENT,
+    Recording,
+    aligned_rms,
+    recording,
+    recordings_folder,
+    simple_path,
+    without_beginning,
+)
 from robot_control import Estimator
 from robot_control.offline_estimator import FLAGS
 
@@ -106,6 +114,31 @@ def test_outdoors_it_is_as_near_to_the_camera_as_the_simple_odometry(drives, nam
         return aligned_rms(seen, np.column_stack(camera))
 
     assert rms(drive.path) <= CAMERA * rms(drive.simple)
+
+
+@needs_recordings
+@pytest.mark.parametrize("begin", [15.0, 32.0, 50.0])
+@pytest.mark.parametrize("name", ["skid_steer_a", "skid_steer_b", "skid_steer_c", "skid_steer_d", "vehicle"])
+def test_a_real_drive_that_begins_in_motion_is_no_worse_than_the_simple_odometry(name, begin):
+    """Beside the simple odometry of the whole, which knows the gyro's bias from a rest before."""
+    whole = recording(name)
+    drive = Drive(without_beginning(whole, begin))
+    first = whole.time.size - drive.drive.time.size
+    reference = simple_path(whole)[first:]
+    back = np.exp(-1j * reference[0, 2])
+    along = ((reference[:, 0] - reference[0, 0]) + 1j * (reference[:, 1] - reference[0, 1])) * back
+    reference = np.column_stack([along.real, along.imag])
+    ours, simple = drive.path - reference, drive.simple[:, :2] - reference
+    late = 0.2  # m: stamps 0.1 s late at 0.9 m/s, at the beginning and now
+
+    def rms(errors: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(np.sum(errors**2, axis=1))))
+
+    assert rms(ours) <= 1.05 * rms(simple) + late
+    assert np.hypot(*ours[-1]) <= 1.05 * np.hypot(*simple[-1]) + late
+    covariance = drive.out["pose_covariance"][:, :2, :2] + late**2 / 4 * np.eye(2)
+    nees = np.einsum("ni,nij,nj->n", ours, np.linalg.inv(covariance), ours)
+    assert np.mean(nees[drive.drive.time > 1] < 5.99) >= 0.9
 
 
 def error_at_the_end(drive: Drive, path: np.ndarray) -> float:

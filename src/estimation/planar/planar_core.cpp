@@ -5,7 +5,9 @@
 namespace robot_control {
 
 PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
-    : params_(params), noise_(params.slip_least, params.first_twist), gyro_noise_(params.gyro_noise) {
+    : params_(params),
+      noise_(params.slip_least, params.drags_wheels ? Tuning::kFirstScrub : Tuning::kFirstTwist),
+      gyro_noise_(params.gyro_noise) {
   covariance_(kOffset, kOffset) = square(params.clock_offset);
   covariance_(kBias, kBias) = square(params.gyro_bias_initial);
   covariance_(kRatio, kRatio) = square(params.ratio_deviation);
@@ -18,16 +20,19 @@ void PlanarCore::forget(int first, int count) noexcept {
   covariance_.middleRows(first, count).setZero();
   covariance_.middleCols(first, count).setZero();
   held_.segment(first, count).setZero();
+  by_bias_.segment(first, count).setZero();
 }
 
 void PlanarCore::place(const PlanarPose& pose) noexcept {
   forget(kX, 4);
+  second_order_.setZero();
   state_.segment<4>(kX) << pose.x, pose.y, pose.yaw, pose.yaw;
 }
 
 void PlanarCore::set_bias(double bias, double deviation) noexcept {
   forget(kBias, 1);
   forget(kRestBias, 1);
+  by_bias_[kBias] = 1;
   state_[kBias] = bias;
   covariance_(kBias, kBias) = square(deviation);
 }
@@ -49,6 +54,7 @@ void PlanarCore::add(int to, double factor, int from) noexcept {
   covariance_.row(to) += factor * covariance_.row(from);
   covariance_.col(to) += factor * covariance_.col(from);
   held_[to] += factor * held_[from];
+  by_bias_[to] += factor * by_bias_[from];
 }
 
 /// The middle of the wheels moves sideways where the centre of rotation is not there.
@@ -88,6 +94,7 @@ void PlanarCore::turn_by_wheels(double left, double right) noexcept {
 void PlanarCore::roll(double x, double y, double rate) noexcept {
   add(kX, -y, kYaw);
   add(kY, x, kYaw);
+  if (!bias_known_) second_order_ += std::min(1.0, std::sqrt(0.75) * covariance(kYaw, kYaw)) * Eigen::Vector2d(x, y);
   add(kX, rate * y, kOffset);
   add(kY, -rate * x, kOffset);
   shift(x, y, square(slip()) / 2 * std::hypot(x, y));
@@ -104,6 +111,7 @@ void PlanarCore::begin_block(double rate) noexcept {
   anchor_rate_ = rate;
   state_[kAnchor] = state_[kYaw];
   held_[kAnchor] = held_[kYaw];
+  by_bias_[kAnchor] = by_bias_[kYaw];
   covariance_.row(kAnchor) = covariance_.row(kYaw);
   covariance_.col(kAnchor) = covariance_.col(kYaw);
 }
@@ -129,9 +137,10 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   const double innovation = right - left + ratio() * mean - b * angle - h.dot(held_);
   const double normalised = innovation / std::sqrt(s);
   const bool used = std::abs(normalised) <= Tuning::kGate;
-  if (used) {
-    correct(ph / s, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
-    release();
+  if (used) correct(ph / s, ph, s, std::clamp(normalised, -Tuning::kHuber, Tuning::kHuber) * std::sqrt(s));
+  if (!bias_known_ && !params_.drags_wheels && bias_proven()) {
+    state_ += std::exchange(held_, Vector::Zero());
+    bias_known_ = true;
   }
   noise_.learn(normalised, parts, s);
   walk(mean, rolled, dt);
@@ -152,7 +161,10 @@ void PlanarCore::walk(double mean, double rolled, double dt) noexcept {
 /// P ← (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, with s = hᵀ P h + r.
 void PlanarCore::correct(Vector gain, const Vector& ph, double s, double innovation) noexcept {
   gain.tail<kConsidered>().setZero();
-  held_ += innovation * gain;
+  const Vector change = innovation * gain;
+  (bias_known_ ? state_ : held_).segment<5>(kX) += change.segment<5>(kX);
+  state_.segment<2>(kRatio) += change.segment<2>(kRatio);
+  state_[kOffset] = std::clamp(state_[kOffset] + change[kOffset], -Tuning::kLargestOffset, Tuning::kLargestOffset);
   const Matrix half = gain * (s / 2 * gain - ph).transpose();
   covariance_ += half + half.transpose();
 }
@@ -163,25 +175,28 @@ bool PlanarCore::bias_proven() const noexcept {
   return square(held_[kBias]) > variance * std::max(1.0, std::log(square(params_.gyro_bias_initial) / variance));
 }
 
-void PlanarCore::release() noexcept {
-  if (!bias_uncertain_ || bias_proven()) {
-    state_ += std::exchange(held_, Vector::Zero());
-    bias_uncertain_ = false;
-  } else {  // the calibration alone
-    for (const int i : {kOffset, kRatio, kBase}) state_[i] += std::exchange(held_[i], 0);
-  }
-  state_[kOffset] = std::clamp(state_[kOffset], -Tuning::kLargestOffset, Tuning::kLargestOffset);
-}
-
 void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
   const Vector ph = covariance_.col(kBias);
   const double s = ph[kBias] + variance;
   Vector gain = ph / s;
   gain.tail<kConsidered>().setZero();
   if (keeps_pose) gain.segment<4>(kX).setZero();
+  const double yaw_variance = covariance(kYaw, kYaw);
+  const bool known = std::exchange(bias_known_, keeps_pose);
   correct(gain, ph, s, mean - bias() - held_[kBias]);
   consider_rest(gain, variance);
-  release();
+  const bool drove = !by_bias_.segment<4>(kX).isZero(0);
+  bias_known_ = known || keeps_pose || !drove || bias_proven();
+  Eigen::Vector4d shift = Eigen::Vector4d::Zero();
+  if (bias_known_) {
+    const double change = std::exchange(held_[kBias], 0);
+    state_[kBias] += change;
+    if (!keeps_pose) shift = change * by_bias_.segment<4>(kX);
+    state_.segment<4>(kX) += shift;
+    held_.segment<4>(kX) -= shift;
+  }
+  if (known || yaw_variance == 0) return;
+  second_order_ *= std::min(1.0, (square(shift[kYaw - kX]) + covariance(kYaw, kYaw)) / yaw_variance);
 }
 
 /// The error of a rest's mean beyond that of the data sheet is considered: it enters kRestBias as it entered the bias.

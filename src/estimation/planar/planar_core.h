@@ -15,6 +15,14 @@
 /// sideways, which wheels and gyro do not see. What the noise of such a gyro adds to the yaw enters ψ₀, too: no block
 /// sees it. An innovation pulls no harder than Huber's bound; beyond kGate deviations it is not used. The walks of ε
 /// and β are in proportion to the slip noise (wheel_noise.h).
+///
+/// Before the first rest b looks like an ε, and that of wheels which a turn drags over the floor changes with load and
+/// floor. Corrections of pose and b are held back, and P is that of a pose without them, until a rest or wheels that
+/// are not dragged prove another b than the path was driven by. The first rest corrects the pose by ∂(x, y, ψ)/∂b
+/// alone.
+///
+/// Until then ψ is wrong by a large δ, in which the covariance is linear. One cause bends the path, which is off by
+/// (1 − cos δ) of its length along besides, √¾ σ_ψ² in the mean square: P_xy += q qᵀ, q = Σ min(1, √¾ σ_ψ²) (dx, dy).
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -33,16 +41,16 @@ struct PlanarPose {
 };
 
 struct PlanarCoreParams {
-  double wheel_base = 0.5;                   ///< m, effective
-  double gyro_noise = 2.44e-4;               ///< rad/s/√Hz
-  double gyro_bias_walk = 8.7e-6;            ///< rad/s/√s
-  double gyro_bias_initial = 0.05;           ///< rad/s
-  double gyro_scale = 5.8e-4;                ///< standard deviation
-  double encoder = 4.4e-5;                   ///< m, of one reading
-  double slip_least = 8e-5;                  ///< m/√m, of the best floor
-  double first_twist = Tuning::kFirstScrub;  ///< rad/√rad, noise of a turn at the start
-  double ratio_deviation = 0.01;             ///< 0: held
-  double wheel_base_deviation = 0.03;        ///< 0: held
+  double wheel_base = 0.5;                ///< m, effective
+  double gyro_noise = 2.44e-4;            ///< rad/s/√Hz
+  double gyro_bias_walk = 8.7e-6;         ///< rad/s/√s
+  double gyro_bias_initial = 0.05;        ///< rad/s
+  double gyro_scale = 5.8e-4;             ///< standard deviation
+  double encoder = 4.4e-5;                ///< m, of one reading
+  double slip_least = 8e-5;               ///< m/√m, of the best floor
+  bool drags_wheels = true;               ///< in a turn, over the floor
+  double ratio_deviation = 0.01;          ///< 0: held
+  double wheel_base_deviation = 0.03;     ///< 0: held
   double icr_deviation = 0;               ///< m, of the instantaneous centre of rotation along x; 0: between two wheels
   double clock_offset = Tuning::kOffset;  ///< s, standard deviation; 0: held
 };
@@ -75,13 +83,10 @@ class PlanarCore {
   void shift(double x, double y, double variance) noexcept;  ///< m, m²
   void add_yaw_variance(double variance) noexcept { covariance_(kYaw, kYaw) += variance; }
 
-  /// From now on corrections of pose and bias are held back until the bias is proven; the covariance covers them. Those
-  /// of clock offset and calibration are not: before the first rest a gyro's bias and wheels of two sizes look the
-  /// same, and the plain odometry is the pose.
-  void hold_corrections() noexcept { bias_uncertain_ = true; }
-  /// The robot has not moved by the bias it began with: nothing of the path depends on it.
-  /// What is held back is released by the next block or rest.
-  void replace_bias() noexcept { bias_uncertain_ = false; }
+  /// Until it is, corrections of pose and bias are held back, and the covariance covers them; those of clock offset and
+  /// calibration are not.
+  void set_bias_known(bool known) noexcept { bias_known_ = known; }
+  bool bias_known() const noexcept { return bias_known_; }
 
   /// The travel of both sides is read: a block begins.
   void begin_block(double rate) noexcept;
@@ -106,7 +111,11 @@ class PlanarCore {
   }
 
   /// Of the state as it is given out: corrections that are held back included.
-  Matrix covariance() const noexcept { return covariance_ + held_ * held_.transpose(); }
+  Matrix covariance() const noexcept {
+    Matrix all = covariance_ + held_ * held_.transpose();
+    all.block<2, 2>(kX, kX) += second_order_ * second_order_.transpose();
+    return all;
+  }
   double covariance(int i, int k) const noexcept { return covariance_(i, k) + held_[i] * held_[k]; }
   double deviation(int i) const noexcept { return std::sqrt(std::max(0.0, covariance(i, i))); }
   double bias_variance() const noexcept { return own_bias_variance() + square(held_[kBias]); }  ///< (rad/s)²
@@ -118,7 +127,6 @@ class PlanarCore {
   void correct(Vector gain, const Vector& ph, double s, double innovation) noexcept;
   void consider_rest(Vector gain, double variance) noexcept;
   void walk(double mean, double rolled, double dt) noexcept;
-  void release() noexcept;
   bool bias_proven() const noexcept;
   double own_bias_variance() const noexcept {  ///< without what is held back
     return covariance_(kBias, kBias) + 2 * covariance_(kBias, kRestBias) + covariance_(kRestBias, kRestBias);
@@ -127,11 +135,13 @@ class PlanarCore {
   PlanarCoreParams params_;
   Vector state_ = Vector::Zero();
   Matrix covariance_ = Matrix::Zero();
-  Vector held_ = Vector::Zero();  ///< corrections that are held back
+  Vector held_ = Vector::Zero();                            ///< corrections that are held back
+  Vector by_bias_ = Vector::Unit(kBias);                    ///< derivative of the pose by the bias that drove it
+  Eigen::Vector2d second_order_ = Eigen::Vector2d::Zero();  ///< m: q
   WheelNoise noise_;
-  double anchor_rate_ = 0;       ///< rad/s, at the beginning of the block
-  double gyro_noise_;            ///< rad/s/√Hz, learned
-  bool bias_uncertain_ = false;  ///< the path was driven by a bias that no rest has shown yet
+  double anchor_rate_ = 0;  ///< rad/s, at the beginning of the block
+  double gyro_noise_;       ///< rad/s/√Hz, learned
+  bool bias_known_ = true;
 };
 
 }  // namespace robot_control

@@ -20,7 +20,7 @@ void RestWatch::reset() noexcept {
   bias_changed_ = false;
 }
 
-RestWindow RestWatch::step(const Sample& sample, const Vector3& bias, const Vector3& deviation) noexcept {
+RestWindow RestWatch::step(const Sample& sample, const Bias& bias) noexcept {
   bias_changed_ = false;
   left_ += sample.left;
   right_ += sample.right;
@@ -33,28 +33,29 @@ RestWindow RestWatch::step(const Sample& sample, const Vector3& bias, const Vect
   time_ += sample.dt;
   if (sample.gyro != nullptr) gyro_.add(*sample.gyro, sample.dt);
   if (sample.accelerometer != nullptr) force_.add(*sample.accelerometer, sample.dt);
-  return time_ < params_.window * (1 - 1e-9) ? RestWindow::kOpen : close(bias, deviation);
+  return time_ < params_.window * (1 - 1e-9) ? RestWindow::kOpen : close(bias);
 }
 
-RestWindow RestWatch::close(const Vector3& bias, const Vector3& deviation) noexcept {
+RestWindow RestWatch::close(const Bias& bias) noexcept {
   Window now{.time = time_, .gyro = {}, .force = {}};
   if (force_.over(time_)) now.force = force_.mean();
   RestWindow verdict = RestWindow::kQuiet;
   if (gyro_.over(time_)) {
     Vector3 mean = gyro_.mean();
     mean[2] -= (right_ - left_) * params_.turn_per_metre / time_;
-    bool same = true;
+    bool same = bias.known;
     bool goes_on = steady_time_ > 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      same = same && std::abs(mean[i] - bias[i]) <= params_.steady + Tuning::kSignificant * deviation[i];
-      goes_on = goes_on && std::abs(mean[i] - steady_gyro_[i]) <= params_.steady;
+      const double noise = Tuning::kSignificant * bias.deviation[i];
+      same = same && std::abs(mean[i] - bias.value[i]) <= params_.steady + noise;
+      goes_on = goes_on && std::abs(mean[i] - steady_gyro_[i]) <= (bias.known ? params_.steady : noise);
     }
     if (!goes_on) {
       steady_time_ = 0;
       steady_gyro_ = mean;
     }
     steady_time_ += time_;
-    bias_changed_ = !same && steady_time_ >= Tuning::kConstantRate;
+    bias_changed_ = !same && steady_time_ >= (bias.known ? Tuning::kConstantRate : Tuning::kBlock * (1 - 1e-9));
     if (!same && !bias_changed_) verdict = RestWindow::kTurned;
     if (same) steady_time_ = 0;
     now.gyro = mean;

@@ -5,7 +5,8 @@
 /// A window is quiet where no side travelled further than `tolerance` from where it was at its beginning (it ends at
 /// once otherwise). Its gyro mean is that of a robot at rest where it is the known bias within `steady` and
 /// kSignificant deviations; or, whatever it is, where it has been the same within `steady` for kConstantRate: nothing
-/// turns a robot so evenly on wheels that stand.
+/// turns a robot so evenly on wheels that stand. Where no rest has shown a bias yet, a body that swings after a stop
+/// could read any: then the means must have been the same within kSignificant deviations for kBlock.
 ///
 /// The readings of wheels may be late, and a robot may begin to move before they say so: the means of a window count
 /// when the next one is quiet, too.
@@ -58,8 +59,13 @@ class RestWatch {
     const Vector3* accelerometer = nullptr;  ///< m/s²
     double left = 0, right = 0;              ///< m, travel in this step
   };
-  /// `bias` and `deviation` rad/s: of the gyro.
-  RestWindow step(const Sample& sample, const Vector3& bias, const Vector3& deviation) noexcept;
+  /// rad/s, of the gyro.
+  struct Bias {
+    Vector3 value{};
+    Vector3 deviation{};  ///< of a window's mean from it; where it is not known, from another window's
+    bool known = true;
+  };
+  RestWindow step(const Sample& sample, const Bias& bias) noexcept;
 
   void reset() noexcept;
 
@@ -79,7 +85,7 @@ class RestWatch {
     std::optional<Vector3> gyro, force;
   };
   void begin() noexcept;
-  RestWindow close(const Vector3& bias, const Vector3& deviation) noexcept;
+  RestWindow close(const Bias& bias) noexcept;
 
   RestWatchParams params_;
   double time_ = 0, left_ = 0, right_ = 0;

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -105,6 +105,15 @@ def recording(name: str) -> Recording:
     with np.load(folder / f"{file}.npz") as data:
         read = {"skid_steer_": _skid_steer, "vacuum_": _vacuum, "outdoor": _outdoor, "vehicle": _vehicle}[kind]
         return read(name, data)
+
+
+def without_beginning(drive: Recording, begin: float) -> Recording:
+    """From `begin` s on, as if it had been switched on there. It has no truth."""
+    rest = drive.time >= begin
+    names = ("left", "right", "gyro", "accel")
+    columns = {name: getattr(drive, name)[rest] for name in names}
+    time = drive.time[rest]
+    return replace(drive, time=time - time[0], rest=0.0, truth=np.empty((0, 3)), **columns)
 
 
 def _strictly_increasing(time: FloatArray) -> FloatArray:
