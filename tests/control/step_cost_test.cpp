@@ -15,6 +15,8 @@ namespace robot_control {
 namespace {
 
 constexpr double kPromisedNs = 200;  // the median on a quiet machine, whose kernel takes 92
+/// Between kinds of processors: one without AVX-512 takes 2.37 kernels where the development machine takes 1.9.
+constexpr double kAnotherProcessor = 1.5;
 constexpr std::size_t kCycles = 1000;
 constexpr int kBlocks = 21;
 
@@ -60,7 +62,7 @@ class StepCost : public testing::Test {
   }
 
   void expect_cheap(const Recording& recording) {
-    constexpr double kBound = kPromisedNs / bench::kKernelNs;
+    constexpr double kBound = kAnotherProcessor * kPromisedNs / bench::kKernelNs;
     const double best = bench::best_ratio(kBound, [&] { return ratio(recording); });
     std::cout << "step over kernel: " << best << ", allowed " << kBound << "\n";
     EXPECT_LE(best, kBound);
