@@ -116,6 +116,16 @@ TEST_F(RestWatchTest, WhereNoBiasIsKnownARestIsSteadyForASecond) {
   EXPECT_NEAR((*watch_.gyro())[2], -0.0065, 1e-12);
 }
 
+TEST_F(RestWatchTest, WhereNoBiasIsKnownAGyroThatIsLouderTakesTenSeconds) {
+  bias_.known = false;
+  double time = 0;
+  for (int i = 0; window(i % 2 == 0 ? 0.004 : -0.004) == RestWindow::kTurned; ++i) {
+    time += params_.window;
+    ASSERT_LT(time, 2 * Tuning::kConstantRate);
+  }
+  EXPECT_NEAR(time + params_.window, Tuning::kConstantRate, 1e-9);
+}
+
 TEST_F(RestWatchTest, AWheelThatMovesBeginsTheTenSecondsAnew) {
   for (int i = 0; i < 38; ++i) window(0.3);
   step(0.3, 1, 1);

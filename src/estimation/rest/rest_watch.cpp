@@ -16,7 +16,7 @@ void RestWatch::begin() noexcept {
 void RestWatch::reset() noexcept {
   begin();
   pending_ = done_ = {};
-  steady_time_ = 0;
+  steady_time_ = repeated_time_ = 0;
   bias_changed_ = false;
 }
 
@@ -46,16 +46,20 @@ RestWindow RestWatch::close(const Bias& bias) noexcept {
     bool same = bias.known;
     bool goes_on = steady_time_ > 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double noise = Tuning::kSignificant * bias.deviation[i];
-      same = same && std::abs(mean[i] - bias.value[i]) <= params_.steady + noise;
-      goes_on = goes_on && std::abs(mean[i] - steady_gyro_[i]) <= (bias.known ? params_.steady : noise);
+      const double apart = std::abs(mean[i] - bias.value[i]);
+      same = same && apart <= params_.steady + Tuning::kSignificant * bias.deviation[i];
+      goes_on = goes_on && std::abs(mean[i] - steady_gyro_[i]) <= params_.steady;
     }
+    const double noise = Tuning::kSignificant * bias.deviation[2];
+    const bool repeats = goes_on && pending_.gyro && std::abs(mean[2] - (*pending_.gyro)[2]) <= noise;
+    repeated_time_ = (repeats ? repeated_time_ : 0) + time_;
     if (!goes_on) {
       steady_time_ = 0;
       steady_gyro_ = mean;
     }
     steady_time_ += time_;
-    bias_changed_ = !same && steady_time_ >= (bias.known ? Tuning::kConstantRate : Tuning::kBlock * (1 - 1e-9));
+    const bool shown = !bias.known && repeated_time_ >= Tuning::kBlock * (1 - 1e-9);
+    bias_changed_ = !same && (shown || steady_time_ >= Tuning::kConstantRate);
     if (!same && !bias_changed_) verdict = RestWindow::kTurned;
     if (same) steady_time_ = 0;
     now.gyro = mean;

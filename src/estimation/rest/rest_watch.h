@@ -6,7 +6,8 @@
 /// once otherwise). Its gyro mean is that of a robot at rest where it is the known bias within `steady` and
 /// kSignificant deviations; or, whatever it is, where it has been the same within `steady` for kConstantRate: nothing
 /// turns a robot so evenly on wheels that stand. Where no rest has shown a bias yet, a body that swings after a stop
-/// could read any: then the means must have been the same within kSignificant deviations for kBlock.
+/// could read any: then each mean about z must have repeated the one before, within kSignificant deviations, for
+/// kBlock.
 ///
 /// The readings of wheels may be late, and a robot may begin to move before they say so: the means of a window count
 /// when the next one is quiet, too.
@@ -93,7 +94,7 @@ class RestWatch {
   Window pending_;
   Window done_;
   Vector3 steady_gyro_{};
-  double steady_time_ = 0;
+  double steady_time_ = 0, repeated_time_ = 0;
   bool bias_changed_ = false;
 };
 
