@@ -38,7 +38,7 @@ void CommandWatch::enter_run(const VelocityCommand& inbox, bool with_zero) noexc
   message_cycle_ = 0;
   zero_requests_ = with_zero ? 1 : 0;
   zero_requested_ = with_zero;
-  life_ = request_cycle_ = not_finite_ = timeouts_ = stale_ = 0;
+  life_ = request_cycle_ = not_finite_ = timeouts_ = without_effect_ = 0;
   reason_ = kReasonNoCommand;
   requested_twist_ = {};
 }
@@ -61,7 +61,8 @@ void CommandWatch::accept(const VelocityCommand& request, std::uint64_t cycle) n
 void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t cycle) noexcept {
   const bool first = !first_cycle_.has_value();
   if (first) first_cycle_ = message_cycle_ = cycle;
-  const bool refused = request.stale != last_.stale || request.crowded != last_.crowded;
+  const bool refused =
+      request.stale != last_.stale || request.crowded != last_.crowded || request.revoked != last_.revoked;
   const bool accepted = request.count != last_.count && request.contested != kNoMessage;
   if (!refused && !accepted) return;
   message_cycle_ = cycle;
@@ -71,9 +72,10 @@ void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t c
 
 const Twist& CommandWatch::step(const VelocityCommand& request, std::uint64_t cycle) noexcept {
   note_messages(request, cycle);
-  if (request.stale != last_.stale) stale_ = kReasonStale;
+  if (request.stale != last_.stale) without_effect_ |= kReasonStale;
+  if (request.revoked != last_.revoked) without_effect_ |= kReasonRevoked;
   if (request.count != last_.count) {
-    stale_ = 0;
+    without_effect_ = 0;
     accept(request, cycle);
   }
   if (request.many_senders != 0) {

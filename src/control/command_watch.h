@@ -10,8 +10,9 @@
 /// Then the requested twist is zero, and `timeouts` grows by one, once per command. A command with a NaN or infinite
 /// component is refused: the requested twist is zero until the next valid command (the command before it is not
 /// resumed), and the refused command does not time out. The same holds while too many nodes send commands
-/// (VelocityCommand::many_senders), and until the next command after that. A message that is refused for its stamp has
-/// no effect: the command before it stays in force until its own timeout. Commands that are overwritten in the inbox
+/// (VelocityCommand::many_senders), and until the next command after that. A message that is refused for its stamp or
+/// its sender (VelocityCommand::stale, revoked) has no effect: the command before it stays in force until its own
+/// timeout. Commands that are overwritten in the inbox
 /// between two cycles count as received; only the last one is evaluated.
 ///
 /// Only cycles are counted here, so a clock that jumps cannot end a command early or restore an old one.
@@ -49,13 +50,14 @@ class CommandWatch {
   const Twist& step(const VelocityCommand& request, std::uint64_t cycle) noexcept;
 
   /// CommandReason bits of the last step: one of kReasonNoCommand, kReasonRefused, kReasonManySenders, kReasonTimedOut
-  /// or none; in addition kReasonStale.
-  std::uint64_t reasons() const noexcept { return reason_ | stale_; }
+  /// or none; in addition kReasonStale and kReasonRevoked.
+  std::uint64_t reasons() const noexcept { return reason_ | without_effect_; }
   std::uint64_t request_cycle() const noexcept { return request_cycle_; }
-  std::uint64_t received() const noexcept { return last_.count - first_.count + stale() + crowded(); }
-  std::uint64_t refused() const noexcept { return not_finite_ + stale() + crowded(); }
+  std::uint64_t received() const noexcept { return last_.count - first_.count + stale() + crowded() + revoked(); }
+  std::uint64_t refused() const noexcept { return not_finite_ + stale() + crowded() + revoked(); }
   std::uint64_t stale() const noexcept { return last_.stale - first_.stale; }
   std::uint64_t crowded() const noexcept { return last_.crowded - first_.crowded; }
+  std::uint64_t revoked() const noexcept { return last_.revoked - first_.revoked; }
   std::uint64_t timeouts() const noexcept { return timeouts_; }
 
   std::uint64_t first_cycle() const noexcept { return first_cycle_.value_or(0); }
@@ -77,7 +79,7 @@ class CommandWatch {
   std::uint64_t not_finite_ = 0;
   std::uint64_t timeouts_ = 0;
   std::uint64_t reason_ = 0;
-  std::uint64_t stale_ = 0;  ///< kReasonStale or 0
+  std::uint64_t without_effect_ = 0;  ///< kReasonStale, kReasonRevoked: since the last accepted command
   Twist requested_twist_;
   std::optional<std::uint64_t> first_cycle_;  ///< of the first step since `enter_run`
   std::uint64_t message_cycle_ = 0;

@@ -314,6 +314,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   out.requests_refused = watch_.refused();
   out.requests_stale = watch_.stale();
   out.requests_crowded = watch_.crowded();
+  out.requests_revoked = watch_.revoked();
   out.timeouts = watch_.timeouts();
   out.first_cycle = watch_.first_cycle();
   out.zero_requests = watch_.zero_requests();

@@ -114,6 +114,7 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
       whole("requests_refused"),
       whole("requests_stale"),
       whole("requests_crowded"),
+      whole("requests_revoked"),
       whole("timeouts"),
       whole("first_cycle"),
       whole("zero_requests"),
@@ -125,14 +126,23 @@ std::vector<FieldDifference> differences(const CommandFrame& logged, const Comma
 
 std::vector<FieldDifference> differences(const Permit& logged, const Permit& replayed) {
   static const std::vector<Member> kMembers{
-      whole("action"),         whole("ramp_until"),
-      whole("expiry"),         whole("state"),
-      whole("causes"),         whole("active"),
-      whole("first_cause"),    whole("warnings"),
-      whole("since_cycle"),    whole("missing"),
-      whole("unreleased"),     whole("driver_instance"),
-      whole("resets_handled"), whole("reset_refusal"),
-      {"speed_limit", 1},      {"evidence", kMaxEvidence * 5, {"#cause", "#cycle", "#joint", "value", "limit"}}};
+      whole("action"),
+      whole("ramp_until"),
+      whole("expiry"),
+      whole("state"),
+      whole("causes"),
+      whole("active"),
+      whole("first_cause"),
+      whole("warnings"),
+      whole("since_cycle"),
+      whole("missing"),
+      whole("unreleased"),
+      whole("withdrawals"),
+      whole("driver_instance"),
+      whole("resets_handled"),
+      whole("reset_refusal"),
+      {"speed_limit", 1},
+      {"evidence", kMaxEvidence * 5, {"#cause", "#cycle", "#joint", "value", "limit"}}};
   return compare(logged, replayed, kHead, kMembers);
 }
 

@@ -66,6 +66,7 @@ void SafetyMonitor::enter_run(const OperatorInput& operator_input) noexcept {
 
 void SafetyMonitor::restore(const Permit& last) noexcept {
   earlier_driver_instance_ = last.driver_instance;
+  earlier_withdrawals_ = last.withdrawals + 1;
   supervisor_.restore(last.causes, last.first_cause);
   evidence_.restore(last);
   if ((last.active & kCauseEmergencyStopTopic) != 0) operator_conditions_.hold_e_stop();
@@ -223,6 +224,7 @@ void SafetyMonitor::write(std::uint64_t cycle, std::uint64_t driver_instance, Pe
   out.since_cycle = supervisor_.since_cycle();
   out.missing = presence_.missing();
   out.unreleased = release_.released() ? 0 : 1;
+  out.withdrawals = earlier_withdrawals_ + release_.starts() + supervisor_.stops();
   out.driver_instance = driver_instance;
   out.resets_handled = resets_handled_;
   out.reset_refusal = reset_refusal_;

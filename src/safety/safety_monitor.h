@@ -33,6 +33,9 @@
 /// A latch outlives all processes: a restarted monitor restores the causes of the last permit in the channel, for any
 /// driver instance, and those of latch_file. Only an accepted reset clears them.
 ///
+/// Permit::withdrawals counts starts (motion_release.h), latched causes and the end of an earlier monitor: what was
+/// requested before one of them moves nothing after it (bridge/inputs/motion_requests.h).
+///
 /// The speed limit of a permit is the smaller of slow_speed, while a cause with Reaction::kSlow is active and for
 /// kWarningHold after it (warnings.h), and the limit that the clearance gives. A speed limit never latches.
 
@@ -163,8 +166,9 @@ class SafetyMonitor {
   std::optional<std::uint64_t> first_cycle_;  ///< see `begin`, until the first step
   std::optional<std::uint64_t> cycle_;        ///< of the last step in this run
   double last_speed_limit_ = kNoSpeedLimit;
-  std::uint64_t pending_ = 0;            ///< causes that were reported between two steps
-  std::optional<std::uint64_t> driver_;  ///< SensorFrame::driver_instance of the last step
+  std::uint64_t earlier_withdrawals_ = 0;  ///< those of an earlier monitor, and its end
+  std::uint64_t pending_ = 0;              ///< causes that were reported between two steps
+  std::optional<std::uint64_t> driver_;    ///< SensorFrame::driver_instance of the last step
   bool driver_silence_expected_ = false;
   std::uint64_t resets_handled_ = 0;
   std::uint64_t reset_refusal_ = 0;

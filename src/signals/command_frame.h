@@ -30,6 +30,7 @@ enum CommandReason : std::uint64_t {
   kReasonJerkYielded = 1u << 15,   ///< Stopped at zero with more than the jerk limit, rather than beyond it.
   kReasonStale = 1u << 16,         ///< The last message was refused for its stamp; the command before it stands.
   kReasonManySenders = 1u << 17,   ///< More than one node sends, and one_sender forbids it.
+  kReasonRevoked = 1u << 18,       ///< A sender requested motion before a withdrawal and has not sent zero since.
 };
 
 /// The gate executes a command in at most this many ticks: at tick k those of cycles k-kCommandLife … k-1.
@@ -47,9 +48,10 @@ struct CommandFrame {
   std::uint64_t permit_cycle = 0;       ///< of the permit used
   std::uint64_t request_cycle = 0;      ///< in which the last command was received
   std::uint64_t requests_received = 0;  ///< in this run
-  std::uint64_t requests_refused = 0;   ///< in this run: NaN or infinite, stale, or of too many senders
+  std::uint64_t requests_refused = 0;   ///< in this run: NaN or infinite, or for one of the reasons below
   std::uint64_t requests_stale = 0;     ///< of these: for their stamp
   std::uint64_t requests_crowded = 0;   ///< of these: while more than one node sent
+  std::uint64_t requests_revoked = 0;   ///< of these: of senders that owe a zero velocity (Permit::withdrawals)
   std::uint64_t timeouts = 0;           ///< in this run, one per event
 
   // What the monitor needs to know before it permits motion (safety/latch/motion_release.h).

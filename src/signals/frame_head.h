@@ -54,13 +54,13 @@ std::uint64_t checksum_of(const Frame& frame) noexcept {
   constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio, odd
   constexpr std::size_t kLanes = 8;
   constexpr std::size_t kWords = kFrameWords<Frame>;
+  constexpr std::size_t kRest = kWords - (kWords - 1) % kLanes;  // the first word that fills no row of lanes
   const auto mix = [](std::uint64_t hash, std::uint64_t word) { return std::rotl((hash ^ word) * kOdd, 29); };
   std::array<std::uint64_t, kLanes> lanes{1, 2, 3, 4, 5, 6, 7, 8};
-  std::size_t i = 1;
-  for (; i + kLanes <= kWords; i += kLanes) {
+  for (std::size_t i = 1; i < kRest; i += kLanes) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane] = mix(lanes[lane], word_of(frame, i + lane));
   }
-  for (; i < kWords; ++i) lanes[0] = mix(lanes[0], word_of(frame, i));
+  for (std::size_t i = kRest; i < kWords; ++i) lanes[0] = mix(lanes[0], word_of(frame, i));
   std::uint64_t hash = kWords;
   for (const std::uint64_t lane : lanes) hash = mix(hash, lane);
   return hash;

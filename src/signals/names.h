@@ -93,6 +93,9 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "synchronise the sender's clock with the robot's, or publish on cmd_vel, whose age counts from its arrival"},
     {kReasonManySenders, "many_senders", "more than one node sends commands, which one_sender forbids",
      "stop all but one"},
+    {kReasonRevoked, "revoked",
+     "a sender goes on requesting motion that was requested before a stop, a restart or a pause, or meanwhile",
+     "let it send a zero velocity, or start it anew"},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({

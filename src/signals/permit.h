@@ -84,6 +84,7 @@ struct Permit {
   std::uint64_t since_cycle = 0;  ///< in which `state` was entered (of this run; 0 after a new run)
   std::uint64_t missing = 0;      ///< nodes that were not seen in this run
   std::uint64_t unreleased = 0;   ///< 1: since a start, no zero velocity was requested (safety/latch/motion_release.h)
+  std::uint64_t withdrawals = 0;  ///< starts and latched causes: what was requested before the last one moves nothing
   std::uint64_t driver_instance = 0;  ///< SensorFrame::driver_instance of the driver it was issued for
   std::uint64_t resets_handled = 0;   ///< counter of the last reset request that was answered
   std::uint64_t reset_refusal = 0;    ///< why that one was refused; 0 = accepted

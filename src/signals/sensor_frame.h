@@ -71,6 +71,7 @@ struct SensorFrame {
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
   InjectedFaults injected{};     ///< of a simulator, for the log and the programs NODE_with_faults
   std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
+  std::uint64_t resumes = 0;     ///< Times a simulated plant went on after a pause, on the wall clock.
   std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or reset. Outlives a reset.
 };
 

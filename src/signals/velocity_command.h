@@ -25,6 +25,7 @@ struct VelocityCommand {
   std::int64_t age_ns = 0;         ///< ≥ 0, of the command when it arrived, by its stamp; 0 where it has none
   std::uint64_t stale = 0;         ///< grows with every message refused for its stamp: too old, or of the future
   std::uint64_t crowded = 0;       ///< grows with every message refused because more than one node sends
+  std::uint64_t revoked = 0;       ///< grows with every message refused because its sender owes a zero velocity
   std::uint64_t many_senders = 0;  ///< 1: more than one node sends now, and one_sender forbids it
 
   /// 1: when the command arrived, another sender's newest message within silence_needed was not a zero velocity, or was

@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "bridge/nanoseconds.h"
 
@@ -18,10 +21,19 @@ using testing::IsEmpty;
 class CommandInputTest : public testing::Test {
  protected:
   void receive(const std::string& sender, double linear, std::int64_t stamp_ns = 0) {
-    ArrivedCommand arrived{.sender = sender, .twist = {}, .stamp_ns = stamp_ns};
+    ArrivedCommand arrived{.sender = publisher(sender), .twist = {}, .stamp_ns = stamp_ns};
     arrived.twist.linear[0] = linear;
     input_.receive(arrived, now_);
   }
+
+  /// The same connection for the same name, until `restart`.
+  Publisher publisher(const std::string& name) {
+    std::shared_ptr<const void>& connection = connections_[name];
+    if (connection == nullptr) connection = std::make_shared<char>();
+    return {name, connection};
+  }
+
+  void restart(const std::string& sender) { connections_.erase(sender); }
 
   void receive_stamped(const std::string& sender, double linear, std::int64_t age_ns = 0) {
     receive(sender, linear, now_.ros_ns - age_ns);
@@ -42,6 +54,7 @@ class CommandInputTest : public testing::Test {
 
   ArrivalTime now_{.ros_ns = 1'700'000'000 * kSecond, .loop_ns = 5000 * kSecond};
   CommandInput input_{1.25, false};
+  std::map<std::string, std::shared_ptr<const void>> connections_;
 };
 
 TEST_F(CommandInputTest, PassesOnWhatOneNodeSends) {
@@ -269,6 +282,137 @@ TEST_F(CommandInputTest, ARefusedMessageIsARequestForMotionWhateverItHolds) {
   receive("/teleop", std::numeric_limits<double>::quiet_NaN());
   receive("/planner", 0);
   EXPECT_EQ(value().contested, 1u);
+}
+
+/// A stop that latches, and its reset.
+class RevokedSenderTest : public CommandInputTest {
+ protected:
+  RevokedSenderTest() { grant(); }
+
+  void grant() { input_.follow({.run = 7, .withdrawals = withdrawals_, .granted = true}, now_.loop_ns); }
+  void stop() { input_.follow({.run = 7, .withdrawals = ++withdrawals_, .granted = false}, now_.loop_ns); }
+
+  std::uint64_t withdrawals_ = 0;
+};
+
+TEST_F(RevokedSenderTest, WhatAStopInterruptedIsRefusedUntilItsSendersOwnZero) {
+  receive("/teleop", 0.5);
+  stop();
+  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().contested, kNoMessage);
+  pass(3 * kSecond);  // suspended meanwhile
+  grant();
+  const std::uint64_t count = value().count;
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().count, count);
+  EXPECT_EQ(value().revoked, 1u);
+  EXPECT_THAT(input_.revoked(now_.loop_ns), testing::ElementsAre("/teleop"));
+  EXPECT_THAT(reported(), HasSubstr("W motion of /teleop is refused: it was requested before a stop"));
+  receive("/pad", 0);
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 2u) << "the zero of another sender";
+  receive("/teleop", 0);
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().twist.linear[0], 0.5);
+  EXPECT_THAT(input_.revoked(now_.loop_ns), IsEmpty());
+}
+
+TEST_F(RevokedSenderTest, MotionWithinTheTimeoutBeforeAStopCountsAsWell) {
+  receive("/teleop", 0.5);
+  receive("/teleop", 0);
+  pass(kSecond);
+  stop();
+  grant();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 1u);
+}
+
+TEST_F(RevokedSenderTest, MotionThatEndedLongBeforeAStopDoesNot) {
+  receive("/teleop", 0.5);
+  receive("/teleop", 0);
+  pass(2 * kSecond);
+  stop();
+  grant();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().twist.linear[0], 0.5);
+}
+
+TEST_F(RevokedSenderTest, MotionThatNoZeroEndedCountsHoweverLongAgoItCame) {
+  receive("/teleop", 0.5);
+  pass(100 * kSecond);
+  stop();
+  grant();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 1u);
+}
+
+TEST_F(RevokedSenderTest, MotionOfANewSenderDuringAStopIsVoidAfterIt) {
+  stop();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 0u);
+  pass(2 * kSecond);
+  grant();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 1u);
+}
+
+TEST_F(RevokedSenderTest, ItsCommandDoesNotTakeEffectWithTheReleaseEither) {
+  stop();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().twist.linear[0], 0.5) << "in force, and braked";
+  grant();
+  EXPECT_EQ(value().twist.linear[0], 0);
+}
+
+TEST_F(RevokedSenderTest, AZeroDuringTheStopIsEnough) {
+  receive("/teleop", 0.5);
+  stop();
+  receive("/teleop", 0);
+  receive("/teleop", 0.5);  // before this node has read the permit that lets it drive
+  grant();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 0u);
+  EXPECT_EQ(value().twist.linear[0], 0.5);
+}
+
+TEST_F(RevokedSenderTest, ASenderThatIsStartedAnewOwesNothing) {
+  receive("/teleop", 0.5);
+  stop();
+  grant();
+  restart("/teleop");
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().twist.linear[0], 0.5);
+}
+
+TEST_F(RevokedSenderTest, AnotherRunIsAWithdrawalToo) {
+  receive("/teleop", 0.5);
+  input_.follow({.run = 8, .withdrawals = 0, .granted = true}, now_.loop_ns);
+  EXPECT_EQ(value().twist.linear[0], 0);
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 1u);
+}
+
+TEST_F(RevokedSenderTest, ARefusedRequestContestsTheZeroOfAnother) {
+  receive("/teleop", 0.5);
+  stop();
+  pass(2 * kSecond);
+  receive("/pad", 0);
+  EXPECT_EQ(value().contested, 0u);
+  receive("/teleop", 0.5);
+  receive("/pad", 0);
+  EXPECT_EQ(value().contested, 1u);
+}
+
+TEST_F(RevokedSenderTest, TheSameCommandIsReportedEveryTenSecondsAtMost) {
+  receive("/teleop", 0.5);
+  stop();
+  std::size_t lines = 0;
+  for (int i = 0; i < 600; ++i) {  // 60 s
+    receive("/teleop", 0.5);
+    pass(kSecond / 10);
+    lines += input_.lines().size();
+  }
+  EXPECT_EQ(lines, 6u);
 }
 
 TEST_F(CommandInputTest, NaNIsPassedOnForTheControllerToRefuse) {

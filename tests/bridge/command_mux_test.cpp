@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <memory>
+#include <string>
 
 #include "bridge/nanoseconds.h"
 #include "control/command_watch.h"
@@ -29,7 +32,8 @@ CommandSourceList shipped() {
 class CommandMuxTest : public testing::Test {
  protected:
   void receive(Source source, double linear) {
-    ArrivedCommand arrived{.sender = "/node" + std::to_string(source), .twist = {}, .stamp_ns = 0};
+    ArrivedCommand arrived{
+        .sender = {"/node" + std::to_string(source), connections_[source]}, .twist = {}, .stamp_ns = 0};
     arrived.twist.linear[0] = linear;
     mux_.receive(source, arrived, now_);
   }
@@ -44,6 +48,8 @@ class CommandMuxTest : public testing::Test {
 
   ArrivalTime now_{.ros_ns = 1'700'000'000 * kSecond, .loop_ns = 5000 * kSecond};
   CommandMux mux_{shipped(), 1.25, false};
+  std::array<std::shared_ptr<const void>, 4> connections_{std::make_shared<char>(), std::make_shared<char>(),
+                                                          std::make_shared<char>(), std::make_shared<char>()};
 };
 
 TEST_F(CommandMuxTest, TheLiveSourceOfTheHighestPriorityCommands) {
@@ -141,7 +147,8 @@ TEST_F(CommandMuxTest, AZeroOfTheWinnerIsContestedByWhatItMasks) {
 }
 
 TEST_F(CommandMuxTest, AZeroIsContestedByAMaskedSenderWhoseMessagesAreRefused) {
-  mux_.receive(kPath, {.sender = "/late", .twist = {}, .stamp_ns = now_.ros_ns - kSecond}, now_);
+  mux_.receive(kPath, {.sender = {"/late", std::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
+               now_);
   receive(kKey, 0);
   EXPECT_EQ(mux_.value().contested, 1u);
   receive(kCmd, std::numeric_limits<double>::quiet_NaN());
@@ -187,7 +194,7 @@ TEST_F(CommandMuxTest, AMaskedSenderEndsTheSilence) {
 
 TEST_F(CommandMuxTest, TwoNodesOnOneSourceContestAsWithoutAList) {
   receive(kCmd, 0.2);
-  mux_.receive(kCmd, {.sender = "/other", .twist = {}, .stamp_ns = 0}, now_);
+  mux_.receive(kCmd, {.sender = {"/other", std::make_shared<char>()}, .twist = {}, .stamp_ns = 0}, now_);
   EXPECT_EQ(mux_.value().contested, 1u);
 }
 
@@ -216,13 +223,63 @@ TEST_F(CommandMuxTest, NaNOfAMaskedSourceHasNoEffect) {
 }
 
 TEST_F(CommandMuxTest, AStampTooOldMakesNoSourceLive) {
-  mux_.receive(kKey, {.sender = "/late", .twist = {}, .stamp_ns = now_.ros_ns - kSecond}, now_);
+  mux_.receive(kKey, {.sender = {"/late", std::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
+               now_);
   EXPECT_EQ(mux_.winner(), "");
   EXPECT_EQ(mux_.value().stale, 1u);
   std::string said;
   for (const ReportLine& line : mux_.lines()) said += line.text;
   EXPECT_THAT(said, HasSubstr("key_vel: "));
 }
+
+/// A planner whose source never times out, or does so after a minute, has died; then a stop and its reset, a new run or
+/// the end of a pause.
+class DeadSourceTest : public CommandMuxTest, public testing::WithParamInterface<double> {
+ protected:
+  DeadSourceTest() {
+    CommandSourceList list = shipped();
+    list.sources[kCmd].timeout = GetParam();
+    mux_ = CommandMux(list, 0, false);
+    mux_.follow(permission_, now_.loop_ns);
+    receive(kCmd, 0.4);
+    pass(kSecond / 10);
+  }
+
+  MotionPermission permission_{.run = 7, .withdrawals = 1, .granted = true};
+};
+
+TEST_P(DeadSourceTest, DrivesNoMoreAfterAWithdrawal) {
+  EXPECT_EQ(result(), 0.4);
+  ++permission_.withdrawals;
+  EXPECT_TRUE(mux_.follow(permission_, now_.loop_ns));
+  EXPECT_EQ(result(), 0);
+  EXPECT_EQ(mux_.winner(), "");
+  receive(kKey, 0);
+  pass(kSecond);
+  EXPECT_EQ(result(), 0) << "when the pad that sent one zero is silent again";
+}
+
+TEST_P(DeadSourceTest, DrivesNoMoreInAnotherRun) {
+  permission_.run = 8;
+  mux_.follow(permission_, now_.loop_ns);
+  receive(kKey, 0);
+  pass(kSecond);
+  EXPECT_EQ(result(), 0);
+}
+
+TEST_P(DeadSourceTest, GoesOnByAZeroOfItsOwn) {
+  ++permission_.withdrawals;
+  mux_.follow(permission_, now_.loop_ns);
+  receive(kCmd, 0.4);
+  EXPECT_EQ(result(), 0);
+  EXPECT_EQ(mux_.value().revoked, 1u);
+  EXPECT_THAT(mux_.states()[kCmd], "cmd_vel: revoked");
+  receive(kCmd, 0);
+  receive(kCmd, 0.4);
+  EXPECT_EQ(result(), 0.4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Timeouts, DeadSourceTest, testing::Values(0.0, 1.25, 60.0));
 
 TEST_F(CommandMuxTest, TimeThatTurnsBackLeavesNothingLive) {
   receive(kKey, 0.3);

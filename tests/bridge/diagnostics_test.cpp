@@ -175,7 +175,7 @@ TEST(CommandReasons, OfAMomentAreReported) {
 }
 
 TEST(CommandReasons, ThatRefuseCommandsWarn) {
-  for (const std::uint64_t bit : {kReasonRefused, kReasonStale, kReasonManySenders}) {
+  for (const std::uint64_t bit : {kReasonRefused, kReasonStale, kReasonManySenders, kReasonRevoked}) {
     DiagnosticReport report("diff_drive_controller", "diffbot");
     report_command(report, {}, bit, {});
     EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));

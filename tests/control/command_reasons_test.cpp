@@ -57,6 +57,7 @@ const std::map<std::uint64_t, Break> kBreaks{
      }},
     {kReasonStale, [](ControlBench& bench) { ++bench.request.stale; }},
     {kReasonManySenders, [](ControlBench& bench) { bench.request.many_senders = 1; }},
+    {kReasonRevoked, [](ControlBench& bench) { ++bench.request.revoked; }},
 };
 
 ControlBench driving() {

@@ -134,6 +134,19 @@ TEST_F(CommandWatchTest, StaleMessagesAloneMoveNothing) {
   }
 }
 
+TEST_F(CommandWatchTest, TheRequestOfARevokedSenderIsCountedAndHasNoEffect) {
+  send(0.3);
+  watch.step(request, 0);
+  ++request.revoked;
+  EXPECT_EQ(watch.step(request, 1).linear[0], 0.3);
+  EXPECT_EQ(watch.reasons(), kReasonRevoked);
+  EXPECT_EQ(watch.revoked(), 1u);
+  EXPECT_EQ(watch.refused(), 1u);
+  send(0.2);
+  watch.step(request, 2);
+  EXPECT_EQ(watch.reasons(), 0u);
+}
+
 TEST_F(CommandWatchTest, ManySendersEndTheCommandUntilANewOneComesFromTheOneThatIsLeft) {
   send(0.5);
   watch.step(request, 0);
@@ -192,10 +205,11 @@ TEST_F(CommandWatchTest, AZeroRequestIsEvidenceUntilAnythingElseIsReceived) {
   watch.step(request, 1);
   EXPECT_TRUE(watch.zero_requested());
   EXPECT_EQ(watch.zero_requests(), 1u);
-  for (auto disturb : {+[](VelocityCommand& r) { r.twist.angular[2] = 1, ++r.count; },
-                       +[](VelocityCommand& r) { ++r.stale; }, +[](VelocityCommand& r) { ++r.crowded; },
-                       +[](VelocityCommand& r) { r.twist.linear[0] = std::nan(""), ++r.count; },
-                       +[](VelocityCommand& r) { r.contested = 1, ++r.count; }}) {
+  for (auto disturb :
+       {+[](VelocityCommand& r) { r.twist.angular[2] = 1, ++r.count; }, +[](VelocityCommand& r) { ++r.stale; },
+        +[](VelocityCommand& r) { ++r.crowded; }, +[](VelocityCommand& r) { ++r.revoked; },
+        +[](VelocityCommand& r) { r.twist.linear[0] = std::nan(""), ++r.count; },
+        +[](VelocityCommand& r) { r.contested = 1, ++r.count; }}) {
     disturb(request);
     watch.step(request, 2);
     EXPECT_FALSE(watch.zero_requested());

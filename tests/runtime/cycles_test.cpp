@@ -110,12 +110,13 @@ TEST_F(RunningLoop, TakesAgeAndRefusalsFromTheInbox) {
   EXPECT_NE(loop.newest_command().reasons & kReasonTimedOut, 0u);
   command.stale = 3;
   command.crowded = 4;
+  command.revoked = 5;
   command.many_senders = 1;
   loop.controller->inbox().store(command);
   loop.step();
   EXPECT_NE(loop.newest_command().reasons & kReasonStale, 0u);
   EXPECT_NE(loop.newest_command().reasons & kReasonManySenders, 0u);
-  EXPECT_EQ(loop.newest_command().requests_refused, 7u);
+  EXPECT_EQ(loop.newest_command().requests_refused, 12u);
   loop.driver.begin_run(2);
   loop.steps(3);
   EXPECT_EQ(loop.newest_command().requests_refused, 0u);

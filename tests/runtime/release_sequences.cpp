@@ -31,15 +31,20 @@ constexpr std::int64_t kInTransit = 3;  // driver cycles from a message to the c
 constexpr std::int64_t kBrakesWithin = kPermitLife + 2;  // driver cycles for which the last permit lives at the gate
 constexpr std::int64_t kNever = -1'000'000;
 
-/// One for each sender; the first is silent sooner than cmd_vel_timeout.
-CommandSourceList two_sources() {
-  return {.sources = {{"a", "a", 0.6 * kTimeout, 20, false}, {"b", "b", kTimeout, 10, false}},
+constexpr std::array kSourceTimeouts{0.6 * kTimeout, kTimeout, 60.0, 0.0};  // s
+
+/// One for each sender.
+CommandSourceList two_sources(double first_timeout, double second_timeout) {
+  return {.sources = {{"a", "a", first_timeout, 20, false}, {"b", "b", second_timeout, 10, false}},
           .locks = {{"pause", "pause", 0, 255}}};
 }
 
 struct Sender {
   std::string name;
+  std::shared_ptr<const void> connection = std::make_shared<char>();
+  std::int64_t suspended_until = 0;
   Message message = Message::kNone;
+  bool zero_first = false;            // the next message is a zero, as of a sender that begins a motion properly
   std::int64_t period = 10;           // ticks
   std::int64_t sent = kNever;         // tick of the last message
   Message received = Message::kNone;  // the last one that this controller's inbox took
@@ -48,8 +53,15 @@ struct Sender {
 
   std::int64_t silence = kTimeoutTicks;  // ticks, the shortest since then after which it is forgotten
 
+  std::int64_t motion_at = kNever;  // tick of the last message but an accepted zero, on this connection
+  bool zero_since = true;           // the last withdrawal of the permission to drive
+  bool owes_zero = false;
+  bool left_requesting = false;  // its connection before this one, which owed nothing: its command may be in force
+
+  bool has_requested() const { return received != Message::kNone && received != Message::kZero; }
+
   bool requests_motion(std::int64_t now) const {
-    return received != Message::kNone && received != Message::kZero && now - received_at < silence - kJudgesMargin;
+    return has_requested() && now - received_at < silence - kJudgesMargin;
   }
 };
 
@@ -67,6 +79,7 @@ class Sequence {
     parameters_.cmd_vel_timeout = kTimeout;
     parameters_.one_sender = chance(3);
     with_list_ = chance(3);
+    for (double& timeout : source_timeouts_) timeout = kSourceTimeouts[random_() % kSourceTimeouts.size()];
     for (std::size_t node = 0; node < kNodes; ++node) start(static_cast<Node>(node));
   }
 
@@ -107,8 +120,9 @@ class Sequence {
             ControllerCycle::Channels{&sensors_.reader, &state_.reader, &permit_.reader, command_.writer},
             CommandScript(), nullptr);
         inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
-        mux_.emplace(two_sources(), parameters_.cmd_vel_timeout, parameters_.one_sender);
-        for (Sender& sender : senders_) sender.received = Message::kNone;
+        mux_.emplace(two_sources(source_timeouts_[0], source_timeouts_[1]), parameters_.cmd_vel_timeout,
+                     parameters_.one_sender);
+        for (Sender& sender : senders_) connect_anew(sender);
         break;
       case kMonitorNode:
         monitor_ = std::make_unique<MonitorCycle>(
@@ -132,6 +146,30 @@ class Sequence {
     started_at_ = now_;
     start_cycle_ = cycles_;
     released_ = false;
+    withdraw();
+  }
+
+  /// What was requested until now moves nothing from now on.
+  void withdraw() {
+    withdrawn_cycle_ = cycles_;
+    for (Sender& sender : senders_) {
+      sender.zero_since = sender.left_requesting = false;
+      sender.owes_zero |= sender.has_requested() || now_ - sender.motion_at < sender.silence - kJudgesMargin;
+    }
+  }
+
+  /// The robot may drive again: a request during the stop that no zero ended is void, too.
+  void release() {
+    for (Sender& sender : senders_) sender.owes_zero |= sender.has_requested() && !sender.zero_since;
+  }
+
+  static void connect_anew(Sender& sender) {
+    sender.left_requesting |= sender.has_requested() && !sender.owes_zero;
+    sender.connection = std::make_shared<char>();
+    sender.received = Message::kNone;
+    sender.motion_at = kNever;
+    sender.zero_since = true;
+    sender.owes_zero = false;
   }
 
   void end(Node node) {
@@ -161,6 +199,7 @@ class Sequence {
       driver_->begin_run(random_() | 1);
       take_release_back();
     }
+    pause();
     if (chance(300) && controller_ && !away(kControllerNode)) tune();
     if (!monitor_ || away(kMonitorNode)) return;
     if (chance(500)) {
@@ -171,8 +210,23 @@ class Sequence {
     if (chance(20)) reset();
   }
 
+  /// A zero that is sent in the pause counts after it, because nothing older may move then.
+  void pause() {
+    if (driver_ && !away(kDriverNode) && now_ > pause_until_ && chance(700)) {
+      pause_until_ = now_ + 1 + below(chance(2) ? 4 : 80);
+      take_release_back();
+    }
+    if (driver_ && now_ == pause_until_) {
+      driver_->count_resume();
+      release();
+    }
+  }
+
   void stop() {
-    if (!stopped_) stop_cycle_ = cycles_;
+    if (!stopped_) {
+      stop_cycle_ = cycles_;
+      withdraw();
+    }
     stopped_ = true;
   }
 
@@ -240,8 +294,12 @@ class Sequence {
                                       Message::kStale, Message::kAgedZero, Message::kAgedMotion};
         sender.message = kChoices[random_() % kChoices.size()];
         if (chance(3)) sender.message = Message::kMotion;
+        sender.zero_first = chance(2);
         sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
       }
+      if (chance(300)) sender.suspended_until = now_ + below(4 * kTimeoutTicks);
+      if (chance(400)) connect_anew(sender);
+      if (now_ < sender.suspended_until) continue;
       if (sender.message == Message::kNone || now_ - sender.sent < sender.period) continue;
       sender.sent = now_;
       last_sent_ = now_;
@@ -254,19 +312,32 @@ class Sequence {
     for (std::size_t i = 0; i < senders_.size(); ++i) {
       if (std::exchange(waiting_[i], false)) receive(senders_[i]);
     }
+    follow_permission();
     if (with_list_ && chance(200)) mux_->receive_lock(0, chance(3), loop_ns());
     intake().look(loop_ns());
     controller_->inbox().store(intake().value());
   }
 
+  /// As the node does, before each message and at each of its ticks.
+  void follow_permission() {
+    Permit permit;
+    if (permit_.reader.newest(permit) != Lookup::kFrame) return;
+    if (!current(sensors_.reader, permit.head, robot_.hash)) return;
+    intake().follow(
+        {.run = permit.head.run, .withdrawals = permit.withdrawals, .granted = permit.action == PermitAction::kDrive},
+        loop_ns());
+  }
+
   void receive(Sender& sender) {
-    ArrivedCommand arrived{.sender = sender.name, .twist = {}, .stamp_ns = 0};
-    if (sender.message == Message::kMotion || sender.message == Message::kAgedMotion) arrived.twist.linear[0] = 0.5;
-    if (sender.message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
-    if (sender.message == Message::kStale) arrived.stamp_ns = 1;
+    follow_permission();
+    ArrivedCommand arrived{.sender = {sender.name, sender.connection}, .twist = {}, .stamp_ns = 0};
+    const Message message = std::exchange(sender.zero_first, false) ? Message::kZero : sender.message;
+    if (message == Message::kMotion || message == Message::kAgedMotion) arrived.twist.linear[0] = 0.5;
+    if (message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
+    if (message == Message::kStale) arrived.stamp_ns = 1;
     // The clock that senders stamp with jumps as it likes.
     const ArrivalTime time{.ros_ns = 1'000'000'000'000 + below(2'000'000'000), .loop_ns = loop_ns()};
-    const bool aged = sender.message == Message::kAgedZero || sender.message == Message::kAgedMotion;
+    const bool aged = message == Message::kAgedZero || message == Message::kAgedMotion;
     if (aged) arrived.stamp_ns = time.ros_ns - below(150'000'000) + (chance(5) ? 120'000'000 : 0);
     const std::uint64_t refused = intake().value().stale;
     if (with_list_) {
@@ -277,6 +348,12 @@ class Sequence {
     const bool accepted_zero =
         zero(arrived.twist) && intake().value().stale == refused;  // without a timeout none is old
     sender.received = accepted_zero ? Message::kZero : Message::kMotion;
+    if (accepted_zero) {
+      sender.zero_since = true;
+      sender.owes_zero = false;
+    } else {
+      sender.motion_at = now_;
+    }
     sender.received_at = now_;
     sender.silence = shortest_silence();
     sender.received_cycle = cycles_;
@@ -293,7 +370,8 @@ class Sequence {
   std::int64_t loop_ns() const { return now_ * kPeriodNs; }
 
   void step() {
-    ticked_ = driver_ && !away(kDriverNode);
+    ticked_ = driver_ && !away(kDriverNode) && now_ >= pause_until_;
+    if (driver_ && now_ < pause_until_ && !away(kDriverNode)) driver_->publish_paused();
     if (ticked_) {
       driver_->step();
       ++cycles_;
@@ -311,9 +389,13 @@ class Sequence {
   }
 
   const char* judge() {
-    if (now_ - std::max(started_at_, last_sent_) >= shortest_silence() - kJudgesMargin) released_ = true;
+    if (!released_ && now_ - std::max(started_at_, last_sent_) >= shortest_silence() - kJudgesMargin) {
+      released_ = true;
+      release();
+    }
     if (std::exchange(accepted_, false)) {
       ++figures_.accepted_resets;
+      release();
       stopped_ = false;
       if (held_) return "a reset was accepted while a publisher's last word on e_stop was true";
       for (const Sender& sender : senders_) {
@@ -325,6 +407,14 @@ class Sequence {
     ++figures_.moving_cycles;
     if (!released_ && cycles_ - start_cycle_ > kBrakesWithin) return "motion before a zero request";
     if (stopped_ && cycles_ - stop_cycle_ > kBrakesWithin) return "motion after an emergency stop";
+    const bool requested = std::ranges::any_of(senders_, [](const Sender& sender) {
+      return sender.left_requesting || (sender.has_requested() && !sender.owes_zero);
+    });
+    CommandFrame command;  // the request in force; a ramp to zero may outlast it
+    const bool in_force = command_.reader.newest(command) == Lookup::kFrame && !zero(command.twist_requested);
+    if (requested || !in_force) requested_cycle_ = cycles_;
+    if (cycles_ - std::max(requested_cycle_, withdrawn_cycle_) > kBrakesWithin)
+      return "motion that was requested before a withdrawal";
     return nullptr;
   }
 
@@ -343,6 +433,7 @@ class Sequence {
   std::unique_ptr<ControllerCycle> controller_;
   std::unique_ptr<MonitorCycle> monitor_;
   bool with_list_ = false;
+  std::array<double, 2> source_timeouts_{};
   std::optional<CommandInput> inbox_;
   std::optional<CommandMux> mux_;  ///< instead, with a list of sources
   OperatorInput operator_input_;
@@ -367,6 +458,9 @@ class Sequence {
   std::int64_t cycles_ = 0;  ///< that the driver has ticked, in all runs
   std::int64_t start_cycle_ = 0;
   std::int64_t stop_cycle_ = 0;
+  std::int64_t withdrawn_cycle_ = 0;
+  std::int64_t requested_cycle_ = 0;   ///< in which a sender that owed nothing requested motion, or none was in force
+  std::int64_t pause_until_ = kNever;  ///< tick
 };
 
 }  // namespace

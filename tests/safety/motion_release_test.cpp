@@ -210,7 +210,70 @@ TEST_F(MotionReleaseTest, AMonitorThatStartsInAGoingRunDoesNotCountOlderZeros) {
   expect_release_by_a_new_zero_only();
 }
 
+TEST_F(MotionReleaseTest, TheEndOfAPauseIsAStart) {
+  request_zero();
+  step();
+  ASSERT_TRUE(release_.released());
+  ++sensors_.resumes;
+  request_motion();
+  step();
+  EXPECT_FALSE(release_.released());
+  expect_release_by_a_new_zero_only();
+}
+
+TEST_F(MotionReleaseTest, SilenceBeforeAPauseDoesNotCountAfterIt) {
+  request_zero();
+  steps(10 * kSilence);
+  command_.zero_requested = 0;
+  ++sensors_.resumes;
+  steps(kSilence);
+  EXPECT_FALSE(release_.released());
+  steps(2);
+  EXPECT_TRUE(release_.released());
+}
+
 // Through the monitor.
+
+TEST_F(MonitorTest, CountsStopsAndStarts) {
+  const std::uint64_t before = permit_.withdrawals;
+  drive();
+  EXPECT_EQ(permit_.withdrawals, before);
+  ++input_.operator_input.e_stop_services;
+  step();
+  ++input_.operator_input.e_stop_services;
+  step();
+  EXPECT_EQ(permit_.withdrawals, before + 1) << "a cause that is latched already";
+  ++input_.operator_input.e_stop_triggers;
+  step();
+  EXPECT_EQ(permit_.withdrawals, before + 2) << "another cause in the same stop";
+  stand();
+  ASSERT_EQ(reset(), 0u);
+  EXPECT_EQ(permit_.withdrawals, before + 2) << "the release";
+  ++sensors_.resumes;
+  ask_for(1);
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kInit);
+  EXPECT_EQ(permit_.withdrawals, before + 3);
+  ++sensors_.resumes;
+  step();
+  EXPECT_EQ(permit_.withdrawals, before + 4) << "in INIT, too";
+  stand();
+  const std::uint64_t in_run = permit_.withdrawals;
+  new_run();
+  step();
+  EXPECT_GT(permit_.withdrawals, in_run);
+}
+
+TEST_F(MonitorTest, ARestartOfTheMonitorIsAWithdrawal) {
+  drive();
+  const Permit last = permit_;
+  monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
+  monitor_.restore(last);
+  monitor_.enter_run(input_.operator_input);
+  monitor_.begin(cycle());
+  step();
+  EXPECT_GT(permit_.withdrawals, last.withdrawals);
+}
 
 TEST_F(MonitorTest, AtAColdStartNothingMovesBeforeAZeroRequest) {
   new_run();

@@ -16,7 +16,7 @@ class CommandDesk:
         self.drive: DriveState | None = None
         self.values: dict[str, str] = {}
         self.message = ""
-        self._stamped = rospy.Publisher(robot.name("cmd_vel_stamped"), TwistStamped, queue_size=1, tcp_nodelay=True)
+        self.publisher = rospy.Publisher(robot.name("cmd_vel_stamped"), TwistStamped, queue_size=1, tcp_nodelay=True)
         self._last_send = 0.0
         self._subscribers = [
             rospy.Subscriber(robot.name("drive_state"), DriveState, self._receive_drive),
@@ -24,26 +24,32 @@ class CommandDesk:
         ]
 
     def send(self, linear: float, angular: float, stamp: rospy.Time) -> None:
-        """cmd_vel_stamped, at most every SEND_PERIOD."""
+        """cmd_vel_stamped, at most every SEND_PERIOD; the zero that it owes first, if it is revoked."""
+        if rospy.get_name() in self.revoked:
+            linear = angular = 0.0
         if time.monotonic() - self._last_send < SEND_PERIOD:
             return
         self._last_send = time.monotonic()
         message = TwistStamped()
         message.header.stamp = stamp
         message.twist.linear.x, message.twist.angular.z = linear, angular
-        self._stamped.publish(message)
+        self.publisher.publish(message)
 
     def send_aged(self, linear: float, age: float) -> None:
         """Stamped `age` s ago on this process' clock."""
         self.send(linear, 0.0, rospy.Time.from_sec(rospy.get_time() - age))
 
     def connected(self) -> bool:
-        return bool(self._stamped.get_num_connections() > 0)
+        return bool(self.publisher.get_num_connections() > 0)
 
     @property
     def reasons(self) -> set[str]:
         """Of drive_state."""
         return set() if self.drive is None else set(self.drive.reasons)
+
+    @property
+    def revoked(self) -> tuple[str, ...]:
+        return () if self.drive is None else tuple(self.drive.revoked)
 
     def _receive_drive(self, message: DriveState) -> None:
         self.drive = message

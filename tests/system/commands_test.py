@@ -11,6 +11,7 @@ from pathlib import Path
 import rospy
 import rostest
 from commands_support import CommandDesk
+from geometry_msgs.msg import TwistStamped
 from losses_support import JumpingClock
 from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
 
@@ -75,6 +76,34 @@ class CommandsTest(RobotTestCase):
         wait_for(words, lambda: self.log.count(words) > before, every=lambda: self.desk.send_aged(0.5, age))
         self.assertEqual(self.log.count(words), before + 1, "one warning for a series")
         self.assertLess(abs(self.robot.speed), MOVED)
+
+    def test_a_sender_that_slept_over_a_stop_and_its_reset_moves_nothing_before_its_zero(self) -> None:
+        self.drive_stamped()
+        self.assertTrue(self.robot.call("e_stop_trigger").success)
+        wait_for("the stop", lambda: "e_stop_service" in self.robot.causes)
+        self.robot.release()
+        message = TwistStamped()
+        message.twist.linear.x = 0.5
+        sleeper = self.desk.publisher
+
+        def refused() -> bool:
+            self.assertLess(abs(self.robot.speed), STANDING)
+            return rospy.get_name() in self.desk.revoked and "revoked" in self.desk.reasons
+
+        wait_for("the refusal", refused, every=lambda: sleeper.publish(message))
+        wait_for(
+            "the count", lambda: int(self.desk.values["commands_of_revoked_senders"]) > 0,
+            every=lambda: sleeper.publish(message),
+        )
+        self.assertIn(f"motion of {rospy.get_name()} is refused", self.log)
+        self.assertIn(f"{rospy.get_name()}: let it send a zero velocity", self.why())
+        sleeper.publish(TwistStamped())
+        self.drive_stamped()
+
+    def why(self) -> str:
+        program = Program("why.py")
+        program.wait()
+        return program.output
 
     def test_a_stamped_command_drives(self) -> None:
         self.drive_stamped()

@@ -11,7 +11,7 @@ from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault, Step
 from std_srvs.srv import SetBool, Trigger
-from system_support import LIMIT, MONITOR, PLANT, RobotTestCase, wait_for
+from system_support import LIMIT, MONITOR, PLANT, SEND_PERIOD, RobotTestCase, wait_for
 
 
 class ServicesTest(RobotTestCase):
@@ -85,6 +85,21 @@ class ServicesTest(RobotTestCase):
         self.assertNotIn("driver_lost", self.robot.causes)
         wait_for("stamps of now", lambda: abs(rospy.get_time() - self.robot.odom.header.stamp.to_sec()) < 1.0)
         self.robot.drive_until("0.5 m/s again", self.robot.driving)
+
+    def test_a_command_of_a_pause_moves_nothing_after_it(self) -> None:
+        self.robot.await_rest()
+        self.set_pause(True)
+        wait_for("word of it", lambda: self.plant_message == "paused")
+        for _ in range(5):
+            self.robot.send(0.5, 0.0)
+            time.sleep(SEND_PERIOD)
+        self.set_pause(False)
+        wait_for("zero first", lambda: self.robot.status.awaiting_zero_request)
+        self.assertLess(abs(self.robot.speed), 0.01)
+        wait_for("the release by silence", lambda: self.robot.state == SafetyStatus.READY)
+        self.assertLess(abs(self.robot.speed), 0.01)
+        self.robot.await_rest()
+        self.robot.drive_until("0.5 m/s, once it has sent zeros", self.robot.driving)
 
     def test_steps_exactly_as_many_cycles_as_asked_for(self) -> None:
         success, message = self.step(5)

@@ -252,6 +252,23 @@ def test_many_senders_are_named_where_one_sender_forbids_them(driving):
     assert "(2 senders: all are refused)" in text(facts)
 
 
+def test_a_revoked_sender_is_named(driving):
+    facts = saying(
+        driving,
+        CONTROLLER,
+        revoked_senders="/planner",
+        requested_m_s="0",
+        requested_rad_s="0",
+        command__revoked=("a sender goes on requesting motion that was requested before a stop", "let it send a zero"),
+    )
+    answer = judge(replace(facts, measured=(0.0, 0.0)))
+    assert answer.verdict is Verdict.STOPPED
+    assert answer.headline == (
+        "Commands are refused: a sender goes on requesting motion that was requested before a stop."
+    )
+    assert answer.actions == (("operator", "/planner: let it send a zero"),)
+
+
 def test_received_senders_count_and_registered_ones_do_not(driving):
     facts = saying(replace(driving, senders=("/idle", "/send_cmd")), CONTROLLER, senders="/send_cmd")
     assert "published by /send_cmd\n" in text(facts)

@@ -319,6 +319,12 @@ def _controller(facts: Facts) -> Answer | None:
             f"Commands are refused: {reasons['many_senders']}.",
             (("operator", f"{remedies.get('many_senders', '')} of {', '.join(facts.commanders())}"),),
         )
+    if "revoked" in reasons:
+        return Answer(
+            Verdict.STOPPED,
+            f"Commands are refused: {reasons['revoked']}.",
+            (("operator", f"{facts.value(CONTROLLER, 'revoked_senders')}: {remedies.get('revoked', '')}"),),
+        )
     silent = "timed_out" in reasons or "no_command" in reasons
     for name in ("refused", *(["stale"] if silent else []), "timed_out", "no_command"):
         if name not in reasons:

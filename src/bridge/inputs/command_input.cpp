@@ -38,29 +38,34 @@ void CommandInput::set_timeout(double timeout) {
 }
 
 void CommandInput::set_silence(double silence) {
-  moving_.set_window(nanoseconds(silence));
+  requests_.set_window(nanoseconds(silence));
 }
 
 void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& time) {
   const JudgedStamp stamp = judge_stamp(arrived.stamp_ns, time.ros_ns, timeout_ns_);
   if (stamp.verdict != StampVerdict::kUsable) {
     ++value_.stale;
-    moving_.add(arrived.sender, time.loop_ns);
-    refuse_stamp(arrived.sender, stamp, time.loop_ns);
+    requests_.request(arrived.sender, time.loop_ns);
+    refuse_stamp(arrived.sender.name, stamp, time.loop_ns);
     return;
   }
-  reported_stamps_.erase(arrived.sender);
-  senders_.add(arrived.sender, time.loop_ns);
+  reported_stamps_.erase(arrived.sender.name);
+  senders_.add(arrived.sender.name, time.loop_ns);
   look(time.loop_ns);
   if (value_.many_senders != 0) {
     ++value_.crowded;
-    moving_.add(arrived.sender, time.loop_ns);
+    requests_.request(arrived.sender, time.loop_ns);
     return;
   }
   if (zero(arrived.twist)) {
-    moving_.drop(arrived.sender);
+    requests_.end(arrived.sender);
   } else {
-    moving_.add(arrived.sender, time.loop_ns);
+    requests_.request(arrived.sender, time.loop_ns);
+  }
+  if (requests_.revoked(arrived.sender)) {
+    ++value_.revoked;
+    refuse_revoked(arrived.sender.name, time.loop_ns);
+    return;
   }
   value_.contested = zero(arrived.twist) && motion_requested(time.loop_ns) ? 1 : 0;
   value_.twist = arrived.twist;
@@ -74,8 +79,23 @@ bool CommandInput::look(std::int64_t loop_ns) {
   return std::exchange(value_.many_senders, many) != many;
 }
 
+bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_ns) {
+  if (!requests_.follow(permission, loop_ns)) return false;
+  value_.twist = {};
+  value_.contested = kNoMessage;
+  ++value_.count;
+  return true;
+}
+
 std::vector<ReportLine> CommandInput::lines() {
   return std::exchange(lines_, {});
+}
+
+void CommandInput::refuse_revoked(const std::string& sender, std::int64_t loop_ns) {
+  if (!may_report(sender + " revoked", loop_ns)) return;
+  lines_.push_back({true, "motion of " + sender +
+                              " is refused: it was requested before a stop, a restart or a pause ended the permission "
+                              "to move, or meanwhile; let that sender send a zero velocity, or start it anew"});
 }
 
 void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns) {

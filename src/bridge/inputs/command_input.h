@@ -7,15 +7,15 @@
 ///   2. its sender (command_senders.h): with `one_sender`, while messages of two or more senders arrived within
 ///      cmd_vel_timeout, but no less than kSenderWindow, the messages of all of them are refused, and the robot ramps
 ///      to rest until one sender is left. Without it each message overrides the one before, and that is reported;
-///   3. NaN and infinity are refused by the controller (control/command_watch.h).
+///   3. its connection (motion_requests.h): motion is refused while the connection is revoked;
+///   4. NaN and infinity are refused by the controller (control/command_watch.h).
 ///
-/// A sender requests motion from a message that is refused or not of zero velocity until its next accepted zero
-/// velocity, or for cmd_vel_timeout (1 s if that is 0). A zero velocity that arrives while another sender requests
-/// motion is contested (VelocityCommand::contested): it is executed, but is no evidence
-/// (safety/latch/motion_release.h).
+/// A zero velocity that arrives while another connection requests motion, by a message within cmd_vel_timeout (1 s if
+/// that is 0), is contested (VelocityCommand::contested): it is executed, but is no evidence
+/// (safety/latch/motion_release.h). When the permission to move is withdrawn, the command in force ends.
 ///
-/// Reports: one warning per sender with wrong stamps, one per set of competing senders; repeated after kRepeatAfter at
-/// the earliest, in the loop's time.
+/// Reports: one warning per sender with wrong stamps, one per revoked sender, one per set of competing senders;
+/// repeated after kRepeatAfter at the earliest, in the loop's time.
 
 #include <cstdint>
 #include <map>
@@ -25,6 +25,7 @@
 #include "bridge/inputs/command_intake.h"
 #include "bridge/inputs/command_senders.h"
 #include "bridge/inputs/command_stamp.h"
+#include "bridge/inputs/motion_requests.h"
 #include "bridge/reports/command_report.h"
 #include "signals/velocity_command.h"
 
@@ -36,7 +37,7 @@ inline constexpr double kSenderWindow = 1.25;
 inline constexpr std::int64_t kRepeatAfter = 10'000'000'000;  ///< ns
 
 struct ArrivedCommand {
-  std::string sender;  ///< the publisher's node
+  Publisher sender;
   Twist twist;
   std::int64_t stamp_ns = 0;  ///< 0: none
 };
@@ -67,10 +68,15 @@ class CommandInput final : public CommandIntake {
   std::vector<ReportLine> lines() override;
   std::vector<std::string> senders(std::int64_t loop_ns) override { return senders_.at(loop_ns); }
 
-  /// A sender requests motion, as above.
-  bool motion_requested(std::int64_t loop_ns) { return moving_.count(loop_ns) > 0; }
+  bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
+
+  std::vector<std::string> revoked(std::int64_t loop_ns) const override { return requests_.revoked_names(loop_ns); }
+
+  /// A connection requests motion, as above.
+  bool motion_requested(std::int64_t loop_ns) const { return requests_.any(loop_ns); }
 
  private:
+  void refuse_revoked(const std::string& sender, std::int64_t loop_ns);
   void refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns);
   void report_senders(std::int64_t loop_ns);
   bool may_report(const std::string& what, std::int64_t loop_ns);
@@ -79,7 +85,7 @@ class CommandInput final : public CommandIntake {
   double timeout_ = 0;  ///< s
   std::int64_t timeout_ns_ = 0;
   CommandSenders senders_;
-  CommandSenders moving_;  ///< those that request motion
+  MotionRequests requests_;
   VelocityCommand value_;
   std::map<std::string, StampVerdict> reported_stamps_;  ///< of senders with wrong stamps, as last reported
   std::map<std::string, std::int64_t> reported_ns_;      ///< by sender and verdict, or by the names of a crowd

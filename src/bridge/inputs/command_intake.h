@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bridge/inputs/motion_requests.h"
 #include "bridge/reports/command_report.h"
 #include "signals/velocity_command.h"
 
@@ -22,6 +23,13 @@ class CommandIntake {
 
   /// Follows what happens without a message: silence. True if the value of the inbox changed.
   virtual bool look(std::int64_t loop_ns) = 0;
+
+  /// Follows the safety monitor; before each message that arrives, and at least at every `look`. True if the command in
+  /// force ended (motion_requests.h).
+  virtual bool follow(const MotionPermission& permission, std::int64_t loop_ns) = 0;
+
+  /// Names of the senders whose motion is refused until their next zero velocity, sorted.
+  virtual std::vector<std::string> revoked(std::int64_t loop_ns) const = 0;
 
   /// The value for the inbox.
   virtual const VelocityCommand& value() const noexcept = 0;

@@ -20,8 +20,7 @@ bool recent(const std::optional<std::int64_t>& last_ns, double timeout, std::int
 
 CommandMux::CommandMux(const CommandSourceList& list, double timeout, bool one_sender) {
   for (const CommandSource& source : list.sources) {
-    sources_.push_back(
-        {.given = source, .input = CommandInput(source.timeout, one_sender), .last_ns = {}, .live = false, .lock = {}});
+    sources_.push_back({.given = source, .input = CommandInput(source.timeout, one_sender), .last_ns = {}, .lock = {}});
   }
   for (const CommandLock& lock : list.locks) {
     locks_.push_back({.given = lock, .last_ns = {}, .set = false, .locks = false});
@@ -59,6 +58,27 @@ bool CommandMux::look(std::int64_t loop_ns) {
   return true;
 }
 
+bool CommandMux::follow(const MotionPermission& permission, std::int64_t loop_ns) {
+  bool ended = false;
+  for (Source& source : sources_) {
+    if (!source.input.follow(permission, loop_ns)) continue;
+    source.last_ns.reset();
+    ended = true;
+  }
+  if (!ended) return false;
+  select(loop_ns);
+  take_result(loop_ns, false);
+  return true;
+}
+
+std::vector<std::string> CommandMux::revoked(std::int64_t loop_ns) const {
+  std::set<std::string> names;
+  for (const Source& source : sources_) {
+    for (std::string& name : source.input.revoked(loop_ns)) names.insert(std::move(name));
+  }
+  return {names.begin(), names.end()};
+}
+
 bool CommandMux::select(std::int64_t loop_ns) {
   std::optional<std::size_t> highest;
   for (std::size_t i = 0; i < locks_.size(); ++i) {
@@ -71,6 +91,7 @@ bool CommandMux::select(std::int64_t loop_ns) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     Source& source = sources_[i];
     source.live = recent(source.last_ns, source.given.timeout, loop_ns);
+    source.revoked = !source.live && !source.input.revoked(loop_ns).empty();
     source.lock.reset();
     if (highest && source.given.priority < locks_[*highest].given.priority) source.lock = highest;
     if (!winner && source.live && !source.lock) winner = i;
@@ -106,10 +127,11 @@ bool CommandMux::unread(std::int64_t loop_ns) const {
 }
 
 void CommandMux::add_refusals() {
-  value_.stale = value_.crowded = 0;
+  value_.stale = value_.crowded = value_.revoked = 0;
   for (const Source& source : sources_) {
     value_.stale += source.input.value().stale;
     value_.crowded += source.input.value().crowded;
+    value_.revoked += source.input.value().revoked;
   }
 }
 
@@ -141,7 +163,7 @@ std::vector<std::string> CommandMux::states() const {
     const Source& source = sources_[i];
     std::string state = "commands";
     if (!source.live) {
-      state = "silent";
+      state = source.revoked ? "revoked" : "silent";
     } else if (source.lock) {
       state = "locked by " + locks_[*source.lock].given.name;
     } else if (winner_ != i) {

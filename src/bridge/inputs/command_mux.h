@@ -10,6 +10,9 @@
 /// renewed at every look, so that nothing times out and the robot is at rest by command. When the winner changes, the
 /// new one's last command takes effect at once; the controller's S-curve leads from one to the other.
 ///
+/// A source whose command was ended by the safety monitor (motion_requests.h) is not live until its next accepted
+/// message, whatever its timeout.
+///
 /// Evidence that no motion is requested (safety/latch/motion_release.h) counts the messages of all sources: a zero
 /// result is contested while any of them requests motion, masked or locked as it may be, because that motion would
 /// begin with the silence of the winner or the end of the lock. The zero where there is no winner is no message
@@ -42,6 +45,9 @@ class CommandMux final : public CommandIntake {
   /// Follows timeouts and locks. True if the value of the inbox changed.
   bool look(std::int64_t loop_ns) override;
 
+  bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
+  std::vector<std::string> revoked(std::int64_t loop_ns) const override;
+
   const VelocityCommand& value() const noexcept override { return value_; }
   std::vector<ReportLine> lines() override;
   std::vector<std::string> senders(std::int64_t loop_ns) override;
@@ -50,7 +56,7 @@ class CommandMux final : public CommandIntake {
   std::string winner() const override;
 
   /// One text per source, by priority: "joy_vel: silent", "key_vel: commands", "cmd_vel: masked by key_vel",
-  /// "path_vel: locked by pause".
+  /// "path_vel: locked by pause", "path_vel: revoked" (its senders request motion that is refused).
   std::vector<std::string> states() const override;
 
  private:
@@ -59,6 +65,7 @@ class CommandMux final : public CommandIntake {
     CommandInput input;
     std::optional<std::int64_t> last_ns;  ///< when its last accepted message arrived
     bool live = false;
+    bool revoked = false;             ///< not live, and at the last look a revoked sender requested motion
     std::optional<std::size_t> lock;  ///< that masks it
   };
   struct Lock {

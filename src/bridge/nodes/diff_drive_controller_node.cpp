@@ -60,10 +60,10 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
       connect_sources(handle);
       return;
     }
-    cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const std::string& sender) {
+    cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const Publisher& sender) {
       receive({.sender = sender, .twist = twist_of(message)});
     });
-    cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const std::string& sender) {
+    cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const Publisher& sender) {
       const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
       receive({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
     });
@@ -87,7 +87,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     joint_targets_.publish(joint_targets(command_, robot(), stamp));
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
     msg::DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), robot(), stamp);
-    add_sources(state);
+    add_senders(state);
     drive_state_.publish(state);
     if (report_outdated_.exchange(false)) command_report_.limit(process().retuning().in_force());
     write_log(command_report_.look(command_));
@@ -96,14 +96,16 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
     const std::uint64_t lately = std::exchange(since_report_, 0);
-    report_command(report, command_, lately, intake_->senders(loop_ns()), intake_->states());
+    const std::int64_t now_ns = loop_ns();
+    report_command(report, command_, lately, intake_->senders(now_ns), intake_->states(), intake_->revoked(now_ns));
   }
 
  private:
   /// Two topics, two threads, one inbox.
   void receive(const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
-    log_dropped(arrived.sender);
+    log_dropped(arrived.sender.name);
+    follow_permission();
     input_.receive(arrived, arrival_time());
     process().cycle().inbox().store(input_.value());
   }
@@ -111,9 +113,19 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   /// Likewise, of the source with this index.
   void receive_from(std::size_t source, const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
-    log_dropped(arrived.sender);
+    log_dropped(arrived.sender.name);
+    follow_permission();
     mux_->receive(source, arrived, arrival_time());
     process().cycle().inbox().store(mux_->value());
+  }
+
+  /// True if the command in force ended. Any thread that holds the lock.
+  bool follow_permission() {
+    Permit permit;
+    if (process().permits().newest(permit) != Lookup::kFrame || !process().is_current(permit.head)) return false;
+    const MotionPermission permission{
+        .run = permit.head.run, .withdrawals = permit.withdrawals, .granted = permit.action == PermitAction::kDrive};
+    return intake_->follow(permission, loop_ns());
   }
 
   /// Now. Any thread that holds the lock.
@@ -129,13 +141,13 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
       const std::string& topic = list_.sources[i].topic;
       if (list_.sources[i].stamped) {
         stamped_sources_.emplace_back(topic, 1).connect_with_sender(
-            handle, [this, i](const msg::TwistStamped& message, const std::string& sender) {
+            handle, [this, i](const msg::TwistStamped& message, const Publisher& sender) {
               const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
               receive_from(i, {.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
             });
       } else {
         sources_.emplace_back(topic, 1).connect_with_sender(
-            handle, [this, i](const msg::Twist& message, const std::string& sender) {
+            handle, [this, i](const msg::Twist& message, const Publisher& sender) {
               receive_from(i, {.sender = sender, .twist = twist_of(message)});
             });
       }
@@ -155,11 +167,13 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     process().cycle().inbox().store(mux_->value());
   }
 
-  void add_sources(msg::DriveState& message) {
+  void add_senders(msg::DriveState& message) {
     const std::lock_guard lock(input_mutex_);
     message.commander = intake_->winner();
     const std::vector<std::string> states = intake_->states();
     message.sources.assign(states.begin(), states.end());
+    const std::vector<std::string> revoked = intake_->revoked(loop_ns());
+    message.revoked.assign(revoked.begin(), revoked.end());
   }
 
   /// A command that arrives before the loop runs moves nothing later: one warning, until the loop has run.
@@ -251,7 +265,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     std::vector<ReportLine> lines;
     {
       const std::lock_guard lock(input_mutex_);
-      if (intake_->look(loop_ns())) process().cycle().inbox().store(intake_->value());
+      const bool ended = follow_permission();
+      if (intake_->look(loop_ns()) || ended) process().cycle().inbox().store(intake_->value());
       lines = intake_->lines();
     }
     write_log(lines);

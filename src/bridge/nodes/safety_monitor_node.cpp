@@ -40,7 +40,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     // A malformed message stops the robot, too: its sender may have meant a stop.
     e_stop_.connect_with_sender(
         handle,
-        [this](const msg::Bool& message, const std::string& sender) { receive_e_stop(sender, message.data != 0); },
+        [this](const msg::Bool& message, const Publisher& sender) { receive_e_stop(sender.name, message.data != 0); },
         [this](const std::string& sender) { receive_e_stop(sender, true); });
     heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
     clearance_.connect(handle, [this](const msg::Float64& message) { receive_clearance(message.data); });

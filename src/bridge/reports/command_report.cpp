@@ -87,7 +87,8 @@ std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
   if (command.head.run != run_) enter_run(command);
   const std::int64_t now_ns = command.head.stamp_ns;
   const bool timed_out = command.timeouts > timeouts_;
-  const std::uint64_t not_finite = command.requests_refused - command.requests_stale - command.requests_crowded;
+  const std::uint64_t not_finite =
+      command.requests_refused - command.requests_stale - command.requests_crowded - command.requests_revoked;
   const bool refused = not_finite > refused_;
   const bool stands = (command.reasons & kNoEffect) != 0;
   timeouts_ = command.timeouts;

@@ -120,8 +120,9 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
 }
 
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
-                    const std::vector<std::string>& senders, const std::vector<std::string>& sources) {
-  constexpr std::uint64_t kRefusals = kReasonRefused | kReasonStale | kReasonManySenders;
+                    const std::vector<std::string>& senders, const std::vector<std::string>& sources,
+                    const std::vector<std::string>& revoked) {
+  constexpr std::uint64_t kRefusals = kReasonRefused | kReasonStale | kReasonManySenders | kReasonRevoked;
   if ((lately & kRefusals) != 0) report.warn(sentences_of(kCommandReasonNames, lately & kRefusals));
   if (senders.size() > 1 && sources.empty()) report.warn("commands come from more than one node: " + joined(senders));
   report.value("cycle", command.head.cycle);
@@ -129,10 +130,12 @@ void report_command(DiagnosticReport& report, const CommandFrame& command, std::
   report.value("reasons_lately", names_of(kCommandReasonNames, lately));
   report.value("senders", joined(senders));
   if (!sources.empty()) report.value("sources", joined(sources));
+  report.value("revoked_senders", joined(revoked));
   report.value("commands_received", command.requests_received);
   report.value("commands_refused", command.requests_refused);
   report.value("commands_stale", command.requests_stale);
   report.value("commands_of_too_many_senders", command.requests_crowded);
+  report.value("commands_of_revoked_senders", command.requests_revoked);
   report.value("timeouts", command.timeouts);
   report.value("requested_m_s", command.twist_requested.linear[0]);
   report.value("requested_rad_s", command.twist_requested.angular[2]);

@@ -44,9 +44,11 @@ void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double 
 /// `slip_lately`: SlipReason bits of any cycle since the last report.
 void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately);
 /// `lately`: CommandReason bits of any cycle since the last report; `senders` of commands, by name. Several of them are
-/// a fault unless they send to different sources (`sources`: CommandMux::states; empty: there is no list).
+/// a fault unless they send to different sources (`sources`: CommandMux::states; empty: there is no list). `revoked`:
+/// CommandIntake::revoked.
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
-                    const std::vector<std::string>& senders, const std::vector<std::string>& sources = {});
+                    const std::vector<std::string>& senders, const std::vector<std::string>& sources = {},
+                    const std::vector<std::string>& revoked = {});
 void report_permit(DiagnosticReport& report, const Permit& permit);
 
 }  // namespace robot_control

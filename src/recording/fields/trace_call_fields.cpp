@@ -48,6 +48,7 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   to.push_back(field<C, std::int64_t>(name + "_age_ns", "ns, when it arrived, by its stamp", OF(age_ns)));
   number("stale", "refused for their stamp", OF(stale));
   number("crowded", "refused because more than one node sends", OF(crowded));
+  number("revoked", "refused because their sender owes a zero velocity", OF(revoked));
   number("many_senders", "1: more than one node sends now", OF(many_senders));
   number("contested", "1: another sender requested motion; 2: a zero velocity of no sender", OF(contested));
 #undef OF

@@ -29,6 +29,7 @@ void add_command(TraceFields& to) {
   number("requests_refused", "in this run", MEMBER(command.requests_refused));
   number("requests_stale", "of these, for their stamp", MEMBER(command.requests_stale));
   number("requests_crowded", "of these, while more than one node sent", MEMBER(command.requests_crowded));
+  number("requests_revoked", "of these, of senders that owe a zero velocity", MEMBER(command.requests_revoked));
   number("timeouts", "in this run", MEMBER(command.timeouts));
   number("command_first_cycle", "of this process in this run", MEMBER(command.first_cycle));
   number("zero_requests", "zero velocities accepted since then", MEMBER(command.zero_requests));

@@ -62,6 +62,7 @@ void add_driver(TraceFields& to) {
   to.push_back(field<D, u8>("injected", "FaultKind of each FaultComponent, of a simulator", MEMBER(sensors.injected)));
   to.push_back(
       field<D, u64>("slipped_ns", "ns by which a simulated plant fell behind in this run", MEMBER(sensors.slipped_ns)));
+  to.push_back(field<D, u64>("resumes", "times a simulated plant went on after a pause", MEMBER(sensors.resumes)));
   to.push_back(field<D, u64>("held_ns", "ns for which a simulated plant stood", MEMBER(sensors.held_ns)));
 }
 

@@ -21,6 +21,7 @@ void add_permit(TraceFields& to) {
   number("permit_warnings", "StopCause bits, not latched", MEMBER(permit.warnings));
   number("permit_since_cycle", "in which the state was entered", MEMBER(permit.since_cycle));
   number("permit_missing", "MissingNode bits", MEMBER(permit.missing));
+  number("permit_withdrawals", "starts and latched causes so far", MEMBER(permit.withdrawals));
   number("permit_unreleased", "1: no zero velocity was requested since a start", MEMBER(permit.unreleased));
   number("permit_driver_instance", "of the driver it was issued for", MEMBER(permit.driver_instance));
   number("resets_handled", "counter of the last reset request answered", MEMBER(permit.resets_handled));

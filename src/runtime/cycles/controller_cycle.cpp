@@ -25,6 +25,7 @@ void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
   received_ = arrived;
   request_.stale = arrived.stale;
   request_.crowded = arrived.crowded;
+  request_.revoked = arrived.revoked;
   request_.many_senders = arrived.many_senders;
   request_.contested = arrived.contested;
 }

@@ -83,6 +83,7 @@ void DriverCycle::step() noexcept {
   sensors.gate = gate_.report();
   sensors.overruns = overruns_;
   sensors.slipped_ns = slipped_ns_;
+  sensors.resumes = resumes_;
   sensors.held_ns = held_ns_;
   channels_.sensors.publish(sensors);
   if (now_ != nullptr) trace_.timing = {woke_ns - due_ns(sensors), now_() - due_ns(sensors)};

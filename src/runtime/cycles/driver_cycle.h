@@ -59,6 +59,9 @@ class DriverCycle {
   /// Wall clock: the next tick is due then. The part of its lag that has not slipped was held.
   void set_due(std::int64_t deadline_ns) noexcept;
 
+  /// Wall clock: a pause has ended (SensorFrame::resumes).
+  void count_resume() noexcept { ++resumes_; }
+
   /// Hardware, after its node was late: the next tick is that many cycles further on.
   void skip(std::uint64_t cycles) noexcept { cycle_ += cycles; }
 
@@ -90,6 +93,7 @@ class DriverCycle {
   std::int64_t start_ns_ = 0;
   std::uint64_t overruns_ = 0;
   std::uint64_t slipped_ns_ = 0;
+  std::uint64_t resumes_ = 0;
   std::uint64_t held_ns_ = 0;
   InjectedFaults injected_{};
   SensorFrame paused_;

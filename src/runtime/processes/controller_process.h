@@ -19,6 +19,7 @@ class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerT
   ~ControllerProcess() override { stop(); }
 
   std::vector<std::string> missing() const override;
+  const FrameReader<Permit>& permits() const noexcept { return permit_.reader; }
   ControllerCycle& cycle() noexcept { return cycle_; }
   Retuning& retuning() noexcept { return retuning_; }
 

@@ -144,6 +144,7 @@ void DriverProcess::loop_wall() noexcept {
     if (held) {
       schedule = Periodic(std::max(schedule.deadline_ns(), monotonic_ns()), period_ns, when_late);
       cycle_->set_due(schedule.deadline_ns());
+      if (!hold_.paused()) cycle_->count_resume();
     }
     sleep_until(schedule.deadline_ns());
     const std::int64_t slipped_before = schedule.slipped_ns();

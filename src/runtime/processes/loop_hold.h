@@ -56,6 +56,9 @@ class LoopHold {
   /// Is the loop asked to park, as of now? A wait for others must not keep it from that.
   bool park_asked() noexcept;
 
+  /// As of the last look; false: a tick is allowed beyond the cycles of a step.
+  bool paused() const noexcept { return asked_.paused != 0; }
+
   /// As of the last look.
   const InjectedFaults& faults() const noexcept { return asked_.faults; }
 

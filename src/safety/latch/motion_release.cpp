@@ -9,7 +9,14 @@ bool MotionRelease::Count::grown(const CommandFrame& command) noexcept {
   return command.zero_requests > *before;
 }
 
+void MotionRelease::enter_run() noexcept {
+  const std::uint64_t starts = starts_ + 1;
+  *this = MotionRelease();
+  starts_ = starts;
+}
+
 void MotionRelease::start(std::uint64_t cycle) noexcept {
+  ++starts_;
   released_ = false;
   since_start_.restart(std::max(since_start_.after, cycle));
   since_gap_.restart(std::max(since_gap_.after, since_start_.after));
@@ -24,6 +31,9 @@ void MotionRelease::note_start(std::optional<std::uint64_t>& known, std::uint64_
 void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexcept {
   const std::uint64_t cycle = input.sensors->head.cycle;
   const CommandFrame* command = input.command;
+  const std::uint64_t resumes = input.sensors->resumes;
+  if (resumes_ && *resumes_ != resumes) start(cycle);
+  resumes_ = resumes;
   if (input.state_seen) note_start(state_first_, input.state_first_cycle);
   if (command != nullptr) note_start(command_first_, command->first_cycle);
   if (elapsed > 1) since_gap_.restart(cycle - 1);

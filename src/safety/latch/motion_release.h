@@ -5,7 +5,8 @@
 /// of requests (control/command_watch.h) began in its first_cycle.
 ///
 /// **Zero first.** A start is the first cycle of a run (the driver was started or reset), the first_cycle of an
-/// estimator or of a controller, and the first cycle of this monitor. After the latest start motion is released as soon
+/// estimator or of a controller, the first cycle after a pause (SensorFrame::resumes), and the first cycle of this
+/// monitor. After the latest start motion is released as soon
 /// as a current command frame reports one of
 ///   zero     a zero request was received after that start
 ///   silence  no message of any sender, accepted or refused, for silence_needed cycles after that start, and no command
@@ -32,13 +33,16 @@ namespace robot_control {
 class MotionRelease {
  public:
   /// A new run.
-  void enter_run() noexcept { *this = MotionRelease(); }
+  void enter_run() noexcept;
 
   /// This monitor was started in this cycle of a run that was already going on.
   void begin(std::uint64_t cycle) noexcept { start(cycle); }
 
   /// `elapsed`: cycles since the last step, ≥ 1.
   void step(const MonitorInput& input, std::uint64_t elapsed) noexcept;
+
+  /// Starts until now, over all runs.
+  std::uint64_t starts() const noexcept { return starts_; }
 
   /// Zero first is satisfied.
   bool released() const noexcept { return released_; }
@@ -60,10 +64,12 @@ class MotionRelease {
   void note_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept;
   void judge(const CommandFrame& command) noexcept;
 
+  std::optional<std::uint64_t> resumes_;  ///< SensorFrame::resumes of the last step
   std::optional<std::uint64_t> state_first_;
   std::optional<std::uint64_t> command_first_;
   Count since_start_;
   Count since_gap_;
+  std::uint64_t starts_ = 0;
   bool released_ = false;
   bool no_motion_requested_ = false;
 };

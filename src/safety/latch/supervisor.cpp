@@ -47,6 +47,7 @@ void Supervisor::restore(std::uint64_t causes, std::uint64_t first_cause) noexce
 
 void Supervisor::latch(const SupervisorInput& input) noexcept {
   const std::uint64_t active = input.fault | input.brake | input.ramp;
+  if ((active & ~causes()) != 0) ++stops_;
   if (first_cause_ == 0) first_cause_ = active & (~active + 1);  // the lowest bit names one of several
   fault_ |= input.fault;
   brake_ |= input.brake;

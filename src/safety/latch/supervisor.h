@@ -53,6 +53,7 @@ class Supervisor {
   std::uint64_t since_cycle() const noexcept { return since_cycle_; }
   std::uint64_t ramp_until() const noexcept { return ramp_until_; }
   std::uint64_t reset_refusal() const noexcept { return reset_refusal_; }
+  std::uint64_t stops() const noexcept { return stops_; }  ///< how often a cause latched that was not
 
  private:
   void latch(const SupervisorInput& input) noexcept;
@@ -68,6 +69,7 @@ class Supervisor {
   std::uint64_t since_cycle_ = 0;
   std::uint64_t ramp_until_ = 0;
   std::uint64_t reset_refusal_ = 0;
+  std::uint64_t stops_ = 0;
 };
 
 }  // namespace robot_control

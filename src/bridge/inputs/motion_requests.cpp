@@ -1,0 +1,75 @@
+#include "bridge/inputs/motion_requests.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+namespace robot_control {
+namespace {
+
+bool same(const std::weak_ptr<const void>& known, const std::shared_ptr<const void>& connection) {
+  return !known.owner_before(connection) && !connection.owner_before(known);
+}
+
+}  // namespace
+
+MotionRequests::Record& MotionRequests::record_of(const Publisher& sender) {
+  std::erase_if(records_, [](const Record& record) { return record.connection.expired(); });
+  for (Record& record : records_) {
+    if (same(record.connection, sender.connection)) return record;
+  }
+  Record& record = records_.emplace_back();
+  record.name = sender.name;
+  record.connection = sender.connection;
+  return record;
+}
+
+void MotionRequests::request(const Publisher& sender, std::int64_t now_ns) {
+  Record& record = record_of(sender);
+  record.requests = true;
+  record.requested_ns = now_ns;
+}
+
+void MotionRequests::end(const Publisher& sender) {
+  Record& record = record_of(sender);
+  record.requests = record.revoked = false;
+  record.zero_sent = true;
+}
+
+bool MotionRequests::follow(const MotionPermission& permission, std::int64_t now_ns) {
+  const bool withdrawn = permission.run != permission_.run || permission.withdrawals != permission_.withdrawals;
+  const bool granted = permission.granted && (withdrawn || !permission_.granted);
+  permission_ = permission;
+  bool ended = withdrawn;
+  for (Record& record : records_) {
+    if (withdrawn) {
+      record.revoked |= record.requests || recent(record, now_ns);
+      record.zero_sent = false;
+    }
+    if (granted && record.requests && !record.zero_sent && !record.revoked) ended = record.revoked = true;
+  }
+  return ended;
+}
+
+bool MotionRequests::revoked(const Publisher& sender) const {
+  return std::ranges::any_of(
+      records_, [&](const Record& record) { return record.revoked && same(record.connection, sender.connection); });
+}
+
+bool MotionRequests::recent(const Record& record, std::int64_t now_ns) const {
+  return record.requested_ns && std::abs(now_ns - *record.requested_ns) <= window_ns_;
+}
+
+bool MotionRequests::any(std::int64_t now_ns) const {
+  return std::ranges::any_of(records_, [&](const Record& record) { return record.requests && recent(record, now_ns); });
+}
+
+std::vector<std::string> MotionRequests::revoked_names(std::int64_t now_ns) const {
+  std::set<std::string> names;
+  for (const Record& record : records_) {
+    if (record.revoked && record.requests && recent(record, now_ns)) names.insert(record.name);
+  }
+  return {names.begin(), names.end()};
+}
+
+}  // namespace robot_control
