@@ -3,13 +3,17 @@
     scripts/behaviour [--check]    compares this build with the recorded sums
     scripts/behaviour --record     records the sums of this build
 
-Runs: `run.csv` of `sim.launch clock:=lockstep` with a command script, and logs of `ClosedLoop` on five robots, each
-with two seeds, the second with faults of sensors, motors, battery, button and nodes. A robot whose description is
-absent is skipped; recording keeps its sums.
+A sum covers the physical quantities of `ROW_QUANTITIES` and `JOINT_QUANTITIES`, by name and value, in every cycle. How
+and in which order the log stores them does not count, and neither do the log's other fields. Where a field gets another
+name, `RENAMED` maps the quantity to it, and the sums stay.
 
-The sums are of floating-point numbers: libm selects its routines by the processor's instructions, and the last bits
-may differ with them. The sums are stored together with the kind of processor on which they were recorded, and mean
-nothing on another.
+Runs: `sim.launch clock:=lockstep` with a command script, and `ClosedLoop` on five robots, each with two seeds, the
+second with faults of sensors, motors, battery, button and nodes. A robot whose description is absent is skipped;
+recording keeps its sums.
+
+The last bits depend on libm, which selects its routines by the processor's instructions: without FMA or AVX2, exp, log,
+pow and atan2 round otherwise; AVX-512 changes nothing. `libm_kind` is therefore computed from results of libm, and the
+sums are stored together with it.
 """
 
 from __future__ import annotations
@@ -17,20 +21,43 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import math
 import os
 import platform
-import re
+import random
 import socket
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
 from lab.robot_corpus import DIFFBOT, urdf_of
 from robot_control import ClosedLoop
+from robot_control.common.run_log import FloatArray, Log, read_run
 
 SUMS = Path(__file__).with_name("sums.json")
+ROW_QUANTITIES = (
+    *("time", "battery_voltage", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"),
+    *("truth_x", "truth_y", "truth_yaw", "truth_linear", "truth_angular"),
+    *("estimate_x", "estimate_y", "estimate_z", "estimate_yaw", "estimate_roll", "estimate_pitch"),
+    *("estimate_linear", "estimate_lateral", "estimate_angular", "estimate_distance"),
+    *("estimate_x_variance", "estimate_y_variance", "estimate_yaw_variance"),
+    *("estimate_xy_covariance", "estimate_x_yaw_covariance", "estimate_y_yaw_covariance"),
+    *("estimate_linear_variance", "estimate_lateral_variance", "estimate_angular_variance"),
+    *("gyro_bias_x", "gyro_bias_y", "gyro_bias_z", "radius_ratio", "wheel_base_factor"),
+    *("wheel_odom_x", "wheel_odom_y", "wheel_odom_yaw", "wheel_odom_linear", "wheel_odom_angular"),
+    *("requested_linear", "requested_angular", "limited_linear", "limited_angular", "speed_limit"),
+    *("permit_action", "supervisor_state", "gate_verdict"),
+)
+JOINT_QUANTITIES = (
+    *("position", "velocity", "effort"),
+    *("mode", "effort_command", "velocity_command", "velocity_measured"),
+)
+RENAMED: Mapping[str, str] = {}
+"""Quantity → its column in the log, where that has another name than the quantity or, of a joint, `<joint>_<quantity>`.
+In a joint's column `{joint}` stands for its name: `{"effort": "{joint}_torque"}`."""
 ROBOTS = (DIFFBOT, "create_2", "jackal", "pmb2", "scout_v2")
 HEALTHY_SEED, FAULTY_SEED = 1, 2
 LEGS = ((0.5, 0.2), (-0.3, 0.5), (0.0, -1.0), (0.8, 0.0))  # m/s, rad/s
@@ -66,10 +93,47 @@ cycle,linear,angular,event
 6500,0,-1,
 """
 LAUNCH = "sim.launch clock:=lockstep"
-LAUNCH_WITH_FAULTS = f"{LAUNCH} faults:=true"
+REMEDY = "run scripts/behaviour --record at the commit before the change, and --check after it"
 LAUNCH_LIMIT = 120.0  # s; the run takes 5 s on an idle machine
 
 Sum = Callable[[], str]
+
+
+class MissingColumnError(ValueError):
+    """A quantity has no column in the log."""
+
+
+class QuantitySum:
+    """The sum of all quantities of a robot with these joints, over rows that may come in parts."""
+
+    def __init__(self, joints: Sequence[str]) -> None:
+        self._columns = {name: RENAMED.get(name, name) for name in ROW_QUANTITIES}
+        for joint in joints:
+            for name in JOINT_QUANTITIES:
+                self._columns[f"{joint} {name}"] = RENAMED.get(name, f"{{joint}}_{name}").format(joint=joint)
+        self._sums = {name: hashlib.sha256() for name in self._columns}
+
+    def add(self, log: Log) -> None:
+        """Adds rows.
+
+        Raises:
+            MissingColumnError: the log has no column of a quantity.
+        """
+        for name, column in self._columns.items():
+            if column not in log:
+                raise MissingColumnError(
+                    f"{name}: the log has no column {column}; name its new one in RENAMED of {__file__}"
+                )
+            self._sums[name].update(_canonical(log[column]).tobytes())
+
+    def digest(self) -> str:
+        lines = sorted(f"{name} {one.hexdigest()}" for name, one in self._sums.items())
+        return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+
+
+def _canonical(values: FloatArray) -> FloatArray:
+    """Equal values have equal bits: one zero, one NaN."""
+    return np.where(np.isnan(values), np.nan, values + 0.0)
 
 
 class _Recorder:
@@ -77,22 +141,16 @@ class _Recorder:
 
     def __init__(self, loop: ClosedLoop) -> None:
         self._loop = loop
-        self._sum = hashlib.sha256()
-        self._names: tuple[str, ...] = ()
+        self._sum = QuantitySum([joint["name"] for joint in loop.robot["joints"]])
 
     def drive(self, seconds: float, linear: float, angular: float) -> None:
         cycles = round(seconds / self._loop.period)
         for first in range(0, cycles, SEND_CYCLES):
             self._loop.command(linear, angular)
-            log = self._loop.step(min(SEND_CYCLES, cycles - first))
-            if not self._names:
-                self._names = tuple(log)
-                self._sum.update(",".join(self._names).encode())
-            for name in self._names:
-                self._sum.update(log[name].tobytes())
+            self._sum.add(self._loop.step(min(SEND_CYCLES, cycles - first)))
 
     def digest(self) -> str:
-        return self._sum.hexdigest()
+        return self._sum.digest()
 
 
 def drive_healthy(robot: str, seed: int) -> str:
@@ -129,8 +187,8 @@ def drive_with_faults(robot: str, seed: int) -> str:
     return recorder.digest()
 
 
-def launch_lockstep(faults: str = "false") -> str:
-    """Sum of the `run.csv` that `sim.launch clock:=lockstep` writes.
+def launch_lockstep() -> str:
+    """Sum of the `run.bag` that `sim.launch clock:=lockstep` writes, at the float32 in which it keeps most outputs.
 
     Raises:
         subprocess.CalledProcessError: with roslaunch's output, where it fails.
@@ -139,12 +197,14 @@ def launch_lockstep(faults: str = "false") -> str:
     with tempfile.TemporaryDirectory(prefix="behaviour-") as folder, socket.socket() as free:
         script = Path(folder) / "script.csv"
         script.write_text(LAUNCH_SCRIPT)
+        params = Path(folder) / "params.yaml"
+        params.write_text("telemetry: {record: always}\n")
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
         free.close()
         arguments = {
             "clock": "lockstep",
-            "faults": faults,
+            "params": params,
             "seed": HEALTHY_SEED,
             "cycles": LAUNCH_CYCLES,
             "command_script": script,
@@ -173,12 +233,15 @@ def launch_lockstep(faults: str = "false") -> str:
             check=True,
             timeout=LAUNCH_LIMIT,
         )
-        return hashlib.sha256((Path(folder) / "run.csv").read_bytes()).hexdigest()
+        run = read_run(Path(folder) / "run.bag")
+        result = QuantitySum(run.header["joints"])
+        result.add({name: values.astype(np.float32).astype(np.float64) for name, values in run.columns.items()})
+        return result.digest()
 
 
 def runs() -> dict[str, Sum]:
     """Name of each run, and what gives its sum."""
-    result: dict[str, Sum] = {LAUNCH: launch_lockstep, LAUNCH_WITH_FAULTS: lambda: launch_lockstep("true")}
+    result: dict[str, Sum] = {LAUNCH: launch_lockstep}
     for robot in ROBOTS:
         result[healthy_name(robot)] = lambda robot=robot: drive_healthy(robot, HEALTHY_SEED)  # type: ignore[misc]
         result[faulty_name(robot)] = lambda robot=robot: drive_with_faults(robot, FAULTY_SEED)  # type: ignore[misc]
@@ -195,22 +258,23 @@ def faulty_name(robot: str) -> str:
     return f"ClosedLoop {robot}, seed {FAULTY_SEED}, faults"
 
 
-def processor(cpuinfo: str | None = None) -> str:
-    """Architecture, maker and the instructions by which libm selects its routines."""
-    text = Path("/proc/cpuinfo").read_text() if cpuinfo is None else cpuinfo
-
-    def field(name: str) -> str:
-        found = re.search(rf"^{name}\s*: (.*)$", text, re.MULTILINE)
-        return found[1] if found else "unknown"
-
-    instructions = sorted({"fma", "avx2", "avx512f"} & set(field("flags").split()))
-    return " ".join([platform.machine(), field("vendor_id"), *instructions])
+def libm_kind() -> str:
+    """Architecture, and a sum of what libm gives for a thousand arguments."""
+    seeded = random.Random(0)
+    functions = (math.sin, math.cos, math.tan, math.atan, math.tanh, math.exp, math.expm1, math.erfc)
+    result = hashlib.sha256()
+    for _ in range(1000):
+        x, y = seeded.uniform(-8, 8), seeded.uniform(0, 8)
+        values = [f(x) for f in functions]
+        values += [math.asin(x / 8), math.acos(x / 8), math.atan2(x, y), math.log(y), math.pow(y, x)]
+        result.update(np.array(values).tobytes())
+    return f"{platform.machine()} libm {result.hexdigest()[:16]}"
 
 
 def recorded() -> tuple[str, dict[str, str]]:
-    """Kind of processor and sums of the checked-in file."""
+    """Kind of libm and sums of the checked-in file."""
     content = json.loads(SUMS.read_text())
-    return content["processor"], content["sums"]
+    return content["kind"], content["sums"]
 
 
 def sums(chosen: Mapping[str, Sum]) -> Iterator[tuple[str, str | None, str]]:
@@ -225,8 +289,8 @@ def sums(chosen: Mapping[str, Sum]) -> Iterator[tuple[str, str | None, str]]:
 def check() -> int:
     """Compares; prints one line per run. The exit code."""
     kind, expected = recorded()
-    if kind != processor():
-        print(f"recorded on another kind of processor ({kind}, here {processor()}): sums cannot be compared")
+    if kind != libm_kind():
+        print(f"recorded with another libm ({kind}, here {libm_kind()}): {REMEDY}")
         return 2
     failed = 0
     for name, found, reason in sums(runs()):
@@ -242,14 +306,16 @@ def check() -> int:
 
 def record() -> int:
     """Writes the file of sums. The exit code."""
-    kind, kept = recorded() if SUMS.is_file() else (processor(), {})
-    if kind != processor():
+    kind, kept = recorded() if SUMS.is_file() else (libm_kind(), {})
+    if kind != libm_kind():
         kept = {}
-    for name, found, reason in sums(runs()):
+    chosen = runs()
+    kept = {name: value for name, value in kept.items() if name in chosen}
+    for name, found, reason in sums(chosen):
         print(f"{name}: {found or f'skipped, {reason}'}", flush=True)
         if found is not None:
             kept[name] = found
-    SUMS.write_text(json.dumps({"processor": processor(), "sums": kept}, indent=2) + "\n")
+    SUMS.write_text(json.dumps({"kind": libm_kind(), "sums": kept}, indent=2) + "\n")
     return 0
 
 
@@ -264,6 +330,9 @@ def main() -> int:
         return check() if given.check else record()
     except subprocess.CalledProcessError as error:
         print(f"scripts/behaviour: roslaunch failed:\n{error.output}", file=sys.stderr)
+        return 3
+    except MissingColumnError as error:
+        print(f"scripts/behaviour: {error}", file=sys.stderr)
         return 3
 
 
