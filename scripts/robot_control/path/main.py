@@ -58,7 +58,7 @@ def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Sig
     planned = route(here)
     wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
     wanted.publish(message_of(here, frame.name))
-    follower = Follower(planned, FollowParameters(speed=given.speed))
+    follower = Follower(planned, FollowParameters(speed=given.speed, scale_error=frame.scale_error))
     run = services.drive = Drive(robot, topic, follower, frame)
     reported = time.monotonic()
 

@@ -88,7 +88,8 @@ class Server:
         if refusal:
             return refusal
         points, frame = located(points, goal.path.header.frame_id, self._robot.frames, self._tf)
-        follower = Follower(route(points), FollowParameters(speed=goal.speed or FollowParameters.speed))
+        speed = goal.speed or FollowParameters.speed
+        follower = Follower(route(points), FollowParameters(speed=speed, scale_error=frame.scale_error))
         self._wanted.publish(message_of(points, frame.name))
         drive = Drive(self._robot, self._topic, follower, frame)
         self._services.drive = drive
