@@ -25,8 +25,12 @@ LOOK = 0.005
 class Drive:
     """A path from its first command on."""
 
-    def __init__(self, robot: Robot, topic: CommandTopic, follower: Follower, frame: PathFrame) -> None:
+    def __init__(
+        self, robot: Robot, topic: CommandTopic, follower: Follower, frame: PathFrame, requested: float
+    ) -> None:
+        """`requested`: s (monotonic) when."""
         self._robot, self._topic, self.follower, self._frame = robot, topic, follower, frame
+        self._requested = requested
         self._lock = threading.Lock()  # services come in threads of their own
         self._stamp: rospy.Time | None = None  # of the last odometry
         self.paused_by = ""
@@ -35,7 +39,7 @@ class Drive:
         """Until the follower's end, or as long as it shall; `look` is called at every look. Sends no last zero."""
         last = -math.inf
         while going_on() and not self.follower.over:
-            against = self._robot.against_driving(time.monotonic())
+            against = self._robot.against_driving(time.monotonic()) or self._robot.revoked(self._requested)
             if against:
                 self.follower.fail(against)
             elif self._robot.odometry_at > last:
