@@ -9,6 +9,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from robot_control.common.interruptions import Status
+from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.ros_node import begin_node
 from robot_control.common.safety_watch import status_of
 from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
@@ -52,11 +53,13 @@ class Statuses:
 
     def __init__(self) -> None:
         self._received: deque[Status] = deque()
+        self._parameters = LiveParameters()
         self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
 
     def look(self, release: Release) -> list[Line]:
         """Gives `release` what has come since the last look, or how long nothing has."""
         newest = [self._received.popleft() for _ in range(len(self._received))]
+        release.command_timeout = self._parameters.command_timeout
         return release.step(time.monotonic(), newest, connected=self._subscriber.get_num_connections() > 0)
 
     def _receive(self, message: SafetyStatus) -> None:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from robot_control.common.interruptions import Interruptions, Status
+from robot_control.common.zero_request import silent_long_enough
 
 NO_MONITOR = 3.0
 """s without any safety_status, which comes once per second at least"""
@@ -24,8 +25,6 @@ TIMEOUT = 2.0
 """s in which a start needs no explanation; a silent cmd_vel ends the wait for a zero sooner"""
 STANDING = 0.01
 """m/s; a speed limit below it is none to drive with"""
-
-AWAITS_ZERO = "waits for a zero request; stop the other sender for 1.25 s or let it send zero"
 
 
 @dataclass(frozen=True)
@@ -49,6 +48,7 @@ class Release:
     """Follows safety_status; times in s of any one clock."""
 
     def __init__(self, now: float) -> None:
+        self.command_timeout = 0.0  # s, the controller's; 0: off, or not known
         self._start = self._received_at = now
         self._interruptions = Interruptions(now)
         self._seen = 0  # interruptions
@@ -142,12 +142,12 @@ class Release:
             self._say_at = math.inf
             yield Line(text)
 
-    @staticmethod
-    def _obstacle(status: Status, *, gone: bool) -> str:
+    def _obstacle(self, status: Status, *, gone: bool) -> str:
         if gone:
             return "safety_status is silent: waits with zeros for safety_monitor"
         if status.awaiting_zero:
-            return AWAITS_ZERO
+            silence = silent_long_enough(self.command_timeout)
+            return f"waits for a zero request; stop the other sender{silence} or let it send zero"
         if status.state == "INIT":
             return f"waits with zeros: safety_monitor waits for {', '.join(status.missing) or 'the first cycles'}"
         remedy = f": {status.remedy}" if status.remedy else ""
