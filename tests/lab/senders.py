@@ -31,8 +31,8 @@ class _Watch:
         self.interruptions = Interruptions(now)
         self._seen = 0
 
-    def interrupted(self, now: float, statuses: Sequence[Status]) -> bool:
-        self.interruptions.step(now, statuses)
+    def interrupted(self, now: float, statuses: Sequence[Status], *, waited: bool = False) -> bool:
+        self.interruptions.step(now, statuses, waited=waited)
         new, self._seen = self.interruptions.count > self._seen, self.interruptions.count
         return new
 
@@ -87,6 +87,7 @@ class PathSender:
         self._watch, self._requested = _Watch(now), now
         self._follower: Follower | None = None
         self._odometry_at = now
+        self._driving = False
         self.reason = ""  # why it ended
 
     def plan(self, waypoints: Sequence[Waypoint]) -> None:
@@ -94,14 +95,15 @@ class PathSender:
         self._follower = Follower(route(waypoints))
 
     def step(self, now: float, statuses: Sequence[Status], odometry: tuple[Pose, Motion] | None) -> Command | None:
-        """One look, also while it plans: programs do that in a thread of their own."""
-        self._watch.interrupted(now, statuses)
+        """One look; none is needed while it plans."""
+        self._watch.interrupted(now, statuses, waited=not self._driving)
         stopped = self._watch.interruptions.status is not None and self._watch.interruptions.status.stopped
         self.reason = (
             self.reason or self._watch.interruptions.revoked(self._requested) or ("stopped" if stopped else "")
         )
         if self.reason or self._follower is None or not self._watch.drivable or odometry is None:
             return Command()
+        self._driving = True
         elapsed, self._odometry_at = now - self._odometry_at, now
         motion = self._follower.step(*odometry, elapsed=min(elapsed, 0.5))
         self.reason = self._follower.reason

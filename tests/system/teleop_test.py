@@ -2,6 +2,7 @@
 """teleop.py in a pseudo-terminal, beside a running robot: keys move it, and every end of the keys stops it."""
 
 import csv
+import math
 import signal
 import statistics
 import tempfile
@@ -62,9 +63,12 @@ class TeleopTest(RobotTestCase):
         self.terminal.type("\x1b[?0u")
         wait_for("the request for releases", lambda: b"\x1b[>15u" in self.terminal.written)
         end = time.monotonic() + 30.0
-        self.terminal.type("\x1b[119;1:1u")
+        pressed = -math.inf
         while not self.robot.driving():
             self.assertLess(time.monotonic(), end)
+            if time.monotonic() > pressed + 5.0:  # what is held over a pause of teleop.py has to be released first
+                pressed = time.monotonic()
+                self.terminal.type("\x1b[119;1:3u\x1b[119;1:1u")
             time.sleep(0.03)
             self.terminal.type("\x1b[119;1:2u")
         self.terminal.type("\x1b[119;1:3u")

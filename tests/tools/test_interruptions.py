@@ -62,6 +62,14 @@ def test_a_pause_of_the_program_interrupts_what_it_did():
     assert made.revoked(0.2 + 2 * GAP) == ""
 
 
+def test_a_program_that_plans_for_long_is_none_that_was_suspended():
+    made = interruptions(READY)
+    made.step(60.0, waited=True)
+    assert made.revoked(0.1) == ""
+    made.step(60.1, [RELEASED], waited=True)
+    assert "stopped and released" in made.revoked(0.1)
+
+
 def test_a_terminal_that_reports_releases_unblocks_with_the_last_one():
     dead_man, now = DeadMan(HoldParameters()), 1.0
     for key in ("w", "a"):
@@ -193,6 +201,7 @@ def test_a_path_that_is_planned_or_driven_over_a_stop_moves_nothing(seed):
             continue
         if (made.reason or chance.random() < 0.001) and monitor.status.drivable:
             requested, made, planned = now, PathSender(now), now + chance.uniform(0.0, 3.0)
+            monitor.messages = [monitor.status]  # it is latched
         linear = command.linear if command is not None else 0.0
         command = made.step(now, monitor.take(), (Pose(x, 0.0, 0.0), Motion(linear, 0.0)))
         x += command.linear * PERIOD

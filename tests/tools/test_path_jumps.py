@@ -20,7 +20,7 @@ PATHS = [STRAIGHT, BENT, BACK, CURVE, SHAPES["circle"](0.8), SHAPES["square"](0.
 
 
 class Jumping:
-    """Where it believes to be is one pose, how far it has driven another thing."""
+    """Its pose by odometry jumps; how far it has driven does not."""
 
     def __init__(self, waypoints):
         self.route = route(waypoints)

@@ -4,7 +4,7 @@ What is requested, planned, held or waited for belongs to the time in which it b
 
     stop     the state was READY or DRIVE, and is not any more
     reset    `resets` or `run` differ between two messages that permit to drive: a stop and its reset lie between them
-    gap      this program did not look for longer than GAP: it was suspended, and what it knows is old
+    gap      this program did not look for longer than GAP while it drove: it was suspended, and what it knows is old
 
 A request that was made during a stop is one from before its reset.
 Times are s of any one clock that never turns back. The clock has to run on while a program is suspended.
@@ -68,10 +68,10 @@ class Interruptions:
         self.status: Status | None = None  # the newest one
         self.count = 0  # of interruptions
 
-    def step(self, now: float, statuses: Iterable[Status] = ()) -> None:
-        """One look: notes how long there was none, and takes in what has come."""
+    def step(self, now: float, statuses: Iterable[Status] = (), *, waited: bool = False) -> None:
+        """One look: notes how long there was none, unless it `waited` or planned, and takes in what has come."""
         gap, self._looked = now - self._looked, now
-        if gap > GAP:
+        if gap > GAP and not waited:
             self._interrupt(now, f"this program stood still for {gap:.1f} s")
         for status in statuses:
             self.receive(status, now)

@@ -13,10 +13,10 @@ import rospy
 from robot_control.common.interruptions import Interruptions, Status
 from robot_control.msg import SafetyStatus
 
-LOOK = 0.02
-"""s between two looks"""
-SHORT = 0.1
-"""s between two looks after which the thread that receives may be behind"""
+LATE = 0.1
+"""s between two looks after which messages may wait that the receiving thread has not taken"""
+CATCH_UP = 0.02
+"""s that it is given then"""
 
 
 def status_of(message: SafetyStatus) -> Status:
@@ -40,53 +40,47 @@ def status_of(message: SafetyStatus) -> Status:
 
 
 class SafetyWatch:
-    """Looks in a thread of its own, so that a program that plans or waits is not taken for one that was suspended."""
+    """Takes in each message when it comes; looks when it is asked."""
 
     def __init__(self) -> None:
         self.message: SafetyStatus | None = None  # the newest one
         self.received_at = -math.inf  # s, monotonic
         self._lock = threading.Lock()
-        self._received: list[Status] = []
         self._looked = time.monotonic()
         self._interruptions = Interruptions(self._looked)
         rospy.Subscriber("safety_status", SafetyStatus, self.receive, tcp_nodelay=True)
-        threading.Thread(target=self._keep_looking, daemon=True).start()
 
     def receive(self, message: SafetyStatus) -> None:
         """One message."""
         with self._lock:
-            self._received.append(status_of(message))
             self.message, self.received_at = message, time.monotonic()
+            self._interruptions.receive(status_of(message), self.received_at)
 
     def interruptions(self) -> tuple[int, str]:
-        """How many there were, and why the last one."""
-        with self._newest() as interruptions:
+        """One look: how many there were, and why the last one."""
+        with self._look(waited=False) as interruptions:
             return interruptions.count, interruptions.reason
 
-    def revoked(self, requested: float) -> str:
-        """Why what was requested at `requested` s (monotonic) does not begin any more; empty: it may."""
-        with self._newest() as interruptions:
+    def revoked(self, requested: float, *, waited: bool) -> str:
+        """Why what was requested at `requested` s (monotonic) does not begin, or go on, any more; empty: it may.
+
+        `waited`: since the last look the program did not drive, but waited or planned.
+        """
+        with self._look(waited=waited) as interruptions:
             return interruptions.revoked(requested)
 
     def drivable(self, silence: float) -> bool | None:
         """Does the monitor permit to drive? None: it has said nothing for `silence` s."""
-        with self._newest() as interruptions:
-            status = interruptions.status
+        with self._lock:
+            status = self._interruptions.status
             fresh = time.monotonic() - self.received_at < silence
             return status.drivable if status is not None and fresh else None
 
     @contextmanager
-    def _newest(self) -> Iterator[Interruptions]:
-        if time.monotonic() - self._looked > SHORT:
-            time.sleep(LOOK)
+    def _look(self, *, waited: bool) -> Iterator[Interruptions]:
+        if time.monotonic() - self._looked > LATE:
+            time.sleep(CATCH_UP)
         with self._lock:
-            now = time.monotonic()
-            self._interruptions.step(now, self._received)
-            self._looked, self._received = now, []
+            self._looked = time.monotonic()
+            self._interruptions.step(self._looked, waited=waited)
             yield self._interruptions
-
-    def _keep_looking(self) -> None:
-        while True:
-            time.sleep(LOOK)
-            with self._newest():
-                pass

@@ -68,9 +68,11 @@ class Robot:
         """m/s, of safety_status: `clearance` and warnings."""
         return math.inf if self.safety is None else float(self.safety.speed_limit)
 
-    def revoked(self, requested: float) -> str:
-        """Why a path that was requested at `requested` s (monotonic) is not driven any more; empty: nothing."""
-        why = self.watch.revoked(requested)
+    def revoked(self, requested: float, *, waited: bool) -> str:
+        """Why a path that was requested at `requested` s (monotonic) is not driven any more; empty: nothing. `waited`:
+        since the last look it was not driven.
+        """
+        why = self.watch.revoked(requested, waited=waited)
         return why and f"{why}: what was requested before does not begin, or go on, by itself. Start the path again"
 
     def against_driving(self, now: float) -> str:
@@ -95,7 +97,7 @@ class Robot:
         """
         end = time.monotonic() + PATIENCE
         while going_on() and time.monotonic() < end:
-            against = self.stop_in_words() if self.stopped else self.revoked(requested)
+            against = self.stop_in_words() if self.stopped else self.revoked(requested, waited=True)
             if against:
                 return against
             if self.drivable and self.odometry is not None and topic.connected and self.commands:

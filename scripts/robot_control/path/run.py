@@ -37,9 +37,10 @@ class Drive:
 
     def run(self, going_on: Callable[[], bool], look: Callable[[], None]) -> None:
         """Until the follower's end, or as long as it shall; `look` is called at every look. Sends no last zero."""
-        last = -math.inf
+        last, waited = -math.inf, True
         while going_on() and not self.follower.over:
-            against = self._robot.against_driving(time.monotonic()) or self._robot.revoked(self._requested)
+            revoked = self._robot.revoked(self._requested, waited=waited)
+            against, waited = self._robot.against_driving(time.monotonic()) or revoked, False
             if against:
                 self.follower.fail(against)
             elif self._robot.odometry_at > last:
