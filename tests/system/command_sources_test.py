@@ -1,9 +1,13 @@
 #!/usr/bin/python3
 """A list of command sources, on a running robot: priority, timeout, lock; teleop.py and drive_path.py find theirs."""
 
+import json
 import math
+import os
 import signal
+import tempfile
 import time
+from pathlib import Path
 
 import roslib.packages
 import rospy
@@ -166,6 +170,48 @@ class CommandSourcesTest(RobotTestCase):
             self.addCleanup(path.end)
             self.assertEqual(path.wait(), code, path.output)
             self.assertIn("done; at most" if code == 0 else "tf does not connect", path.output)
+
+    def test_a_plan_that_comes_after_a_stop_and_its_reset_is_refused(self) -> None:
+        path = Program("drive_path.py", "--topic", "late_plan")
+        self.addCleanup(path.end)
+        plan = rospy.Publisher("late_plan", PathMessage, queue_size=1)
+        wait_for("that it waits for its plan", lambda: plan.get_num_connections() > 0)
+        self.robot.call("e_stop_trigger")
+        self.robot.release()
+        message = PathMessage()
+        message.header.frame_id = "base_link"
+        message.poses = [PoseStamped(), PoseStamped()]
+        message.poses[1].pose.position.x = 1.0
+        before = self.robot.distance
+        plan.publish(message)
+        self.assertEqual(path.wait(), 1, path.output)
+        self.assertIn("what was requested before does not begin", path.output)
+        time.sleep(0.5)
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+
+    def test_two_publishers_of_joy_move_nothing(self) -> None:
+        pad = Program("pad.py", "--joy", "_scale_linear:=0.3")
+        self.addCleanup(pad.end)
+        idle = Program("pad.py", "__name:=idle", environment=self.fake_pad())
+        self.addCleanup(idle.end)
+        joy = rospy.Publisher("joy", Joy, queue_size=1)
+        held = Joy(axes=[0, 1], buttons=[0, 0, 0, 0, 1, 0])
+        words = "two nodes publish joy"
+        wait_for(f"{words}: {pad.output}", lambda: words in pad.output, every=lambda: joy.publish(held))
+        end = time.monotonic() + 2.0
+        while time.monotonic() < end:
+            joy.publish(held)
+            time.sleep(0.02)
+        self.assertTrue(self.robot.rests())
+
+    def fake_pad(self) -> dict[str, str]:
+        """With nothing held (tests/support/fake_evdev)."""
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        device = Path(folder.name, "event5")
+        device.write_text(json.dumps({"axes": {"1": 128}, "held": []}))
+        fake = repository() / "tests" / "support" / "fake_evdev"
+        return {"FAKE_PAD": str(device), "PYTHONPATH": f"{fake}:{os.environ.get('PYTHONPATH', '')}"}
 
     def pose(self) -> tuple[float, float, float]:
         pose = self.robot.odom.pose.pose

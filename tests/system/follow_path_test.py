@@ -2,6 +2,7 @@
 """The action follow_path on a running robot with a list of command sources."""
 
 import math
+import signal
 import time
 from collections.abc import Sequence
 
@@ -65,8 +66,9 @@ class FollowPathTest(RobotTestCase):
         self.before = len(self.server.output)
 
     def stalled(self) -> bool:
-        """Half a second without odometry ends a path, too."""
-        return super().stalled() or "odom is silent" in self.server.output[self.before :]
+        """Half a second without odometry, or without this program, ends a path, too."""
+        said = self.server.output[self.before :]
+        return super().stalled() or "odom is silent" in said or "stood still" in said
 
     def goal(self, points: Points, frame: str = "odom", **fields: float) -> FollowPathGoal:
         """Points before the robot, x ahead."""
@@ -190,6 +192,45 @@ class FollowPathTest(RobotTestCase):
         state, result = Client(goal).end()
         self.assertEqual((state, result.reason), (SUCCEEDED, "done"), self.server.output)
         self.assertAlmostEqual(result.distance, 1.5, delta=0.01)
+
+    def stop_and_release(self) -> None:
+        self.robot.call("e_stop_trigger")
+        self.robot.release()
+
+    def assert_does_not_begin(self, client: Client, words: str) -> None:
+        state, result = client.end()
+        self.assertEqual(state, ABORTED, result.reason)
+        self.assertIn(words, result.reason)
+        moved_at = self.robot.distance
+        time.sleep(1.5)
+        self.assertAlmostEqual(self.robot.distance, moved_at, delta=0.01)
+
+    def test_a_goal_that_is_planned_during_a_stop_and_its_reset_does_not_begin(self) -> None:
+        for number in (20_000, 100_000):
+            client = Client(self.goal([(2.0 * n / number, 0.0) for n in range(number)]))
+            self.stop_and_release()
+            self.assert_does_not_begin(client, "e_stop_")
+
+    @again_after_a_stall
+    def test_a_goal_whose_server_was_suspended_during_a_stop_and_its_reset_does_not_go_on(self) -> None:
+        client = Client(self.straight(4.0))
+        self.await_motion(client)
+        self.server.send_signal(signal.SIGSTOP)
+        try:
+            self.stop_and_release()
+        finally:
+            self.server.send_signal(signal.SIGCONT)
+        self.assert_does_not_begin(client, "")
+
+    @again_after_a_stall
+    def test_odometry_that_is_set_ends_a_goal(self) -> None:
+        client = Client(self.straight(4.0))
+        self.await_motion(client)
+        self.robot.call("reset_odometry")
+        state, result = client.end()
+        self.assertEqual(state, ABORTED)
+        self.assertIn("the pose jumped by", result.reason)
+        self.await_rest()
 
     def test_what_cannot_be_driven_is_refused_with_its_reason(self) -> None:
         dense = [(0.05 * number + (3.0 if number > 20 else 0.0), 0.0) for number in range(40)]

@@ -2,6 +2,7 @@
 """teleop.py in a pseudo-terminal, beside a running robot: keys move it, and every end of the keys stops it."""
 
 import csv
+import math
 import signal
 import statistics
 import tempfile
@@ -62,9 +63,12 @@ class TeleopTest(RobotTestCase):
         self.terminal.type("\x1b[?0u")
         wait_for("the request for releases", lambda: b"\x1b[>15u" in self.terminal.written)
         end = time.monotonic() + 30.0
-        self.terminal.type("\x1b[119;1:1u")
+        pressed = -math.inf
         while not self.robot.driving():
             self.assertLess(time.monotonic(), end)
+            if time.monotonic() > pressed + 5.0:  # what is held over a pause of teleop.py has to be released first
+                pressed = time.monotonic()
+                self.terminal.type("\x1b[119;1:3u\x1b[119;1:1u")
             time.sleep(0.03)
             self.terminal.type("\x1b[119;1:2u")
         self.terminal.type("\x1b[119;1:3u")
@@ -103,6 +107,28 @@ class TeleopTest(RobotTestCase):
             self.await_rest()
             self.terminal.end()
             self.terminal = self.started()
+
+    def test_a_key_that_is_held_while_it_is_suspended_over_a_stop_moves_nothing_until_its_release(self) -> None:
+        self.drive()
+        self.terminal.send_signal(signal.SIGSTOP)
+        self.robot.call("e_stop_trigger")
+        wait_for("the stop", lambda: "e_stop_service" in self.robot.causes, every=lambda: self.terminal.type("w"))
+        self.robot.release()
+        self.terminal.hold("w", 1.0)
+        self.terminal.send_signal(signal.SIGCONT)
+        before = self.robot.distance
+        self.terminal.hold("w", 2.0, delay=0.03)
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+        time.sleep(1.0)
+        self.drive()
+
+    def test_reports_of_the_mouse_move_nothing(self) -> None:
+        before = self.robot.distance
+        end = time.monotonic() + 2.0
+        while time.monotonic() < end:
+            self.terminal.type("\x1b[<35;119;97M\x1b[MCww\x1b[67;119;97M")
+            time.sleep(0.02)
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 
     def test_ctrl_c_ends_it_and_the_terminal_is_as_before(self) -> None:
         self.drive()

@@ -2,6 +2,7 @@
 
 import math
 import os
+import random
 from dataclasses import dataclass
 
 import pytest
@@ -106,11 +107,90 @@ def test_a_lost_wireless_link_ends_after_max_hold(pad):
     assert last == pytest.approx(0.1 + GIVEN.max_hold, abs=2 * PERIOD)
 
 
-def test_a_stick_that_moves_now_and_then_has_no_longest_hold(pad):
-    now = 0.1
-    for number in range(10):
-        now = hold(pad, (0.0, 0.9 + 0.01 * number), ENABLE, now, 10.0)
+def test_noise_of_the_stick_lengthens_no_hold(pad):
+    last, number = None, 0
+    while 0.1 + number * PERIOD < GIVEN.max_hold + 5.0:
+        now = 0.1 + number * PERIOD
+        pad.receive((0.0, 0.9 + 0.0001 * (number % 7)), (0, number % 3 == 0, 0, 0, 1, number % 2), now)
+        if pad.command(now) not in (None, Command()):
+            last = now
+        number += 1
+    assert last == pytest.approx(0.1 + GIVEN.max_hold, abs=2 * PERIOD)
+    assert pad.state(now) == "release the enable button once"
+
+
+def test_a_second_publisher_of_joy_zeroes_and_is_named():
+    """A lost pad with its button held, and an idle one that was switched on meanwhile."""
+    pad = Pad(GIVEN)
+    pad.receive(REST, NONE, 0.0, "/lost")
+    for number in range(60):
+        now = 0.1 + number * PERIOD
+        pad.receive(FORWARD, ENABLE, now, "/lost")
+        if number > 50:
+            pad.receive(REST, NONE, now, "/idle")
+        assert pad.command(now) == (Command(GIVEN.scale_linear, 0.0) if number <= 50 else Command())
+    assert pad.state(now) == "two nodes publish joy, /lost and /idle: zero until one has ended"
+
+
+@pytest.mark.parametrize("left", ["/first", "/second"])
+def test_the_publisher_that_is_left_drives_after_a_release(left):
+    pad = Pad(GIVEN)
+    for number in range(50):
+        pad.receive(REST, NONE, number * PERIOD, "/first")
+        pad.receive(FORWARD, ENABLE, number * PERIOD, "/second")
+    for number in range(50, 150):
+        now = number * PERIOD
+        pad.receive(FORWARD, ENABLE, now, left)
+        assert pad.command(now) in (None, Command())
+    pad.receive(FORWARD, NONE, now + PERIOD, left)
+    pad.receive(FORWARD, ENABLE, now + 2 * PERIOD, left)
+    assert pad.command(now + 2 * PERIOD).linear == GIVEN.scale_linear
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_of_two_pads_that_send_at_random_none_moves_the_robot(seed):
+    chance = random.Random(seed)
+    pad = Pad(GIVEN)
+    periods = {name: chance.uniform(0.01, 0.4 * GIVEN.joy_timeout) for name in ("/a", "/b")}
+    due = dict.fromkeys(periods, 0.0)
+    for number in range(2000):
+        now = 0.005 * number
+        for name, at in due.items():
+            if now >= at:
+                due[name] = now + periods[name] * chance.uniform(0.5, 1.0)
+                pad.receive(FORWARD, chance.choice([ENABLE, NONE]), now, name)
+        assert now < GIVEN.joy_timeout or pad.command(now) in (None, Command())
+
+
+def test_what_is_held_over_a_stop_moves_nothing_until_it_was_released(pad):
+    now = hold(pad, FORWARD, ENABLE, 0.1, 1.0)
     assert pad.command(now).linear > 0
+    pad.permit(False)
+    pad.interrupt(now)
+    assert pad.command(now) == Command()
+    pad.permit(True)
+    now = hold(pad, FORWARD, ENABLE, now, 2.0)
+    assert pad.command(now) is None
+    pad.receive(FORWARD, NONE, now)
+    pad.receive(FORWARD, ENABLE, now + PERIOD)
+    assert pad.command(now + PERIOD).linear > 0
+
+
+def test_what_is_pressed_during_a_stop_moves_nothing_after_it(pad):
+    pad.permit(False)
+    now = hold(pad, FORWARD, ENABLE, 1.0, 1.0)
+    assert pad.command(now) is None
+    pad.permit(True)
+    now = hold(pad, FORWARD, ENABLE, now, 1.0)
+    assert pad.command(now) is None
+
+
+def test_messages_from_before_an_interruption_arm_nothing(pad):
+    now = hold(pad, FORWARD, ENABLE, 0.1, 1.0) + 3.0
+    pad.interrupt(now)
+    for buttons in (ENABLE, NONE, ENABLE):
+        pad.receive(FORWARD, buttons, now)
+        assert pad.command(now) in (None, Command())
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 2.0, -1.01])

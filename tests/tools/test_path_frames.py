@@ -94,7 +94,7 @@ def robot(monkeypatch):
     monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
     robot = Robot()
     robot._receive_odometry(Odometry())
-    robot._receive_safety(SafetyStatus(state_name="DRIVE"))
+    robot.watch.receive(SafetyStatus(state_name="DRIVE"))
     return robot, robot.odometry_at
 
 
@@ -112,6 +112,6 @@ def test_a_safety_monitor_that_falls_silent_ends_the_path(robot):
 
 
 def test_a_stop_ends_the_path_with_its_sentence(robot):
-    robot[0]._receive_safety(SafetyStatus(state_name="STOPPED", sentences=["e_stop was called"]))
+    robot[0].watch.receive(SafetyStatus(state_name="STOPPED", sentences=["e_stop was called"]))
     words = robot[0].against_driving(robot[1])
     assert words == "STOPPED: e_stop was called. Call e_stop_reset, then start the path again"

@@ -1,6 +1,7 @@
 """teleop.py's terminal is as before after every end of the program."""
 
 import os
+import re
 import signal
 import sys
 import time
@@ -64,6 +65,15 @@ def test_within_the_block_keys_come_at_once_and_the_screen_is_drawn(started):
     wait_for(lambda: "read b'w'" in program.screen)
 
 
+def test_what_was_typed_before_the_block_is_no_key(started):
+    program = started(LOOP, 'import termios, tty; tty.setraw(0); print("begins", flush=True); time.sleep(1.0)')
+    wait_for(lambda: b"begins" in program.written)
+    program.type("w")
+    wait_for(lambda: "drawn" in program.screen)
+    program.type("x")
+    wait_for(lambda: "read b'x'" in program.screen)
+
+
 @pytest.mark.parametrize(
     ("end", "code"),
     [
@@ -104,6 +114,32 @@ def test_a_terminal_that_takes_nothing_has_its_settings_at_the_end_and_its_scree
     wait_for(lambda: program.settings() == program.before)
     program.read_on()
     wait_for(lambda: END in program.written)
+
+
+def private_modes(written, modes):
+    """Those that are on after these bytes (xterm's DECSET, DECRST, XTSAVE, XTRESTORE), by those that were before."""
+    saved, modes = {}, set(modes)
+    for numbers, action in re.findall(rb"\x1b\[\?([0-9;]+)([hlsr])", written):
+        for mode in map(int, numbers.split(b";")):
+            if action == b"s":
+                saved[mode] = mode in modes
+            elif action == b"h" or (action == b"r" and saved[mode]):
+                modes.add(mode)
+            else:
+                modes.discard(mode)
+    return modes
+
+
+@pytest.mark.parametrize("before", [set(), {9, 1007}, {1000, 1006}, {1003, 1015, 1004, 2004}, {1002, 1005, 1001, 1016}])
+@pytest.mark.parametrize("end", ["pass", "os.kill(os.getpid(), signal.SIGKILL)"])
+def test_the_mouse_and_the_focus_are_not_reported_and_a_paste_is_marked_until_the_end(started, before, end):
+    shown, own = {25}, {25, 1049, 2004}
+    program = started(f"    {end}\n")
+    program.wait()
+    assert_restored(program)
+    begin = program.written[: program.written.index(b"drawn")]
+    assert private_modes(begin, before | shown) == own - shown
+    assert private_modes(program.written, before | shown) == before | shown
 
 
 def test_what_was_printed_meanwhile_comes_afterwards(started):

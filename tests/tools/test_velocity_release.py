@@ -78,11 +78,13 @@ def test_a_stop_before_the_first_permit_is_waited_for_and_named(release) -> None
     assert release.phase is Phase.SENDING
 
 
-def test_a_wait_for_a_zero_of_another_sender_is_said_once_in_one_line(release) -> None:
+@pytest.mark.parametrize(("timeout", "silence"), [(1.25, " for 1.25 s"), (0.6, " for 0.6 s"), (0.0, "")])
+def test_a_wait_for_a_zero_of_another_sender_is_said_once_in_one_line(release, timeout, silence) -> None:
+    release.command_timeout = timeout
     waiting = Status("INIT", awaiting_zero=True)
     said = [line for i in range(100) for line in release.look(0.1 * i, waiting)]
     assert [line.text for line in said] == [
-        "waits for a zero request; stop the other sender for 1.25 s or let it send zero"
+        f"waits for a zero request; stop the other sender{silence} or let it send zero"
     ]
 
 

@@ -84,11 +84,13 @@ def text(facts: Facts, **look) -> str:
     return "\n".join(render(facts, Look(**look)))
 
 
-def test_a_robot_that_waits_for_a_zero_request_says_so_and_names_the_sender(driving):
-    waiting = replace(driving, safety=Safety("INIT", "brake", awaiting_zero=True), measured=(0.0, 0.0))
+@pytest.mark.parametrize(("timeout", "silence"), [(1.25, " for 1.25 s"), (0.6, " for 0.6 s"), (0.0, "")])
+def test_a_robot_that_waits_for_a_zero_request_says_so_and_names_the_sender(driving, timeout, silence):
+    safety = Safety("INIT", "brake", awaiting_zero=True)
+    waiting = replace(driving, safety=safety, measured=(0.0, 0.0), command_timeout=timeout)
     answer = judge(waiting)
     assert answer.verdict is Verdict.STOPPED
-    assert answer.headline.endswith("waits for a zero request; stop the sender for 1.25 s or send zero.")
+    assert answer.headline.endswith(f"waits for a zero request; stop the sender{silence} or send zero.")
     assert "/send_cmd" in answer.actions[0][1]
     assert judge(replace(waiting, senders=())).actions == ()
 

@@ -8,9 +8,12 @@ from collections import deque
 import rospy
 from geometry_msgs.msg import Twist
 
+from robot_control.common.interruptions import Status
+from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.ros_node import begin_node
+from robot_control.common.safety_watch import status_of
 from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
-from robot_control.drive.release import Line, Phase, Release, Status
+from robot_control.drive.release import Line, Phase, Release
 from robot_control.drive.send_plan import SendPlan, parse_plan
 from robot_control.msg import SafetyStatus
 
@@ -45,46 +48,22 @@ def _say_last(missed: int) -> None:
     print("cmd_vel: zero" + (f", which {missed} of the subscribers did not take" if missed else ""), flush=True)
 
 
-class SafetyWatch:
+class Statuses:
     """What safety_status says, every message of it: a stop that is followed by a release at once is a stop, too."""
 
     def __init__(self) -> None:
-        self._received: deque[tuple[Status, float]] = deque()
-        self._last: tuple[Status, float] | None = None
+        self._received: deque[Status] = deque()
+        self._parameters = LiveParameters()
         self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
 
     def look(self, release: Release) -> list[Line]:
         """Gives `release` what has come since the last look, or how long nothing has."""
-        lines = []
-        while self._received:
-            self._last = self._received.popleft()
-            lines += release.look(self._last[1], self._last[0])
-        now = time.monotonic()
-        if self._last is None:
-            return release.look(now, None)
-        connected = self._subscriber.get_num_connections() > 0
-        return lines + release.look(now, self._last[0], now - self._last[1], connected=connected)
+        newest = [self._received.popleft() for _ in range(len(self._received))]
+        release.command_timeout = self._parameters.command_timeout
+        return release.step(time.monotonic(), newest, connected=self._subscriber.get_num_connections() > 0)
 
     def _receive(self, message: SafetyStatus) -> None:
-        self._received.append((status_of(message), time.monotonic()))
-
-
-def status_of(message: SafetyStatus) -> Status:
-    """Of the causes the one that came first."""
-    first = message.causes.index(message.first_cause) if message.first_cause in message.causes else 0
-    sentence, detail, remedy = (
-        texts[first] if first < len(texts) else "" for texts in (message.sentences, message.details, message.remedies)
-    )
-    return Status(
-        state=message.state_name,
-        sentence=sentence,
-        detail=detail,
-        remedy=remedy,
-        causes=len(message.causes),
-        missing=tuple(message.missing),
-        awaiting_zero=message.awaiting_zero_request,
-        speed_limit=message.speed_limit,
-    )
+        self._received.append(status_of(message))
 
 
 def send(plan: SendPlan, signals: Signals) -> int:
@@ -97,7 +76,7 @@ def send(plan: SendPlan, signals: Signals) -> int:
     """
     publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
     sender = Sender(publisher, Twist(), _say_last)
-    watch = SafetyWatch()
+    watch = Statuses()
     _wait_for_subscriber(publisher, signals)
     release = Release(time.monotonic())
     phase = Phase.WAITING

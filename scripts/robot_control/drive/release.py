@@ -2,18 +2,20 @@
 
     WAITING   zeros, until the state is READY or DRIVE for the first time since this program started
     SENDING   the command, while it stays so
-    STOPPED   zeros for good, which let a reset be accepted; over when the robot is released: motion needs a new start
+    STOPPED   zeros for good, which let a reset be accepted; over when the robot is released: motion needs a new start.
+              An interruption between two looks (interruptions.py) is a stop, too
 
 Without any safety_status there is nothing to wait for: after NO_MONITOR the command is sent, provisionally: the first
 status decides as if it had come at the start.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from robot_control.common.safety_states import DRIVABLE
+from robot_control.common.interruptions import Interruptions, Status
+from robot_control.common.zero_request import silent_long_enough
 
 NO_MONITOR = 3.0
 """s without any safety_status, which comes once per second at least"""
@@ -23,35 +25,6 @@ TIMEOUT = 2.0
 """s in which a start needs no explanation; a silent cmd_vel ends the wait for a zero sooner"""
 STANDING = 0.01
 """m/s; a speed limit below it is none to drive with"""
-
-AWAITS_ZERO = "waits for a zero request; stop the other sender for 1.25 s or let it send zero"
-
-
-@dataclass(frozen=True)
-class Status:
-    """What safety_status said last."""
-
-    state: str  # INIT, READY, DRIVE, STOPPING, STOPPED, FAULT
-    sentence: str = ""  # of the first cause
-    detail: str = ""  # its value and limit
-    remedy: str = ""
-    causes: int = 0
-    missing: tuple[str, ...] = ()
-    awaiting_zero: bool = False
-    speed_limit: float = math.inf  # m/s
-
-    @property
-    def drivable(self) -> bool:
-        """A permit to drive."""
-        return self.state in DRIVABLE
-
-    def why(self) -> str:
-        """State and cause: STOPPED: the robot hit something (51 m/s^2, limit 30 m/s^2)."""
-        if not self.sentence:
-            return self.state
-        measured = f" ({self.detail})" if self.detail else ""
-        others = f", and {self.causes - 1} more: see why.py" if self.causes > 1 else ""
-        return f"{self.state}: {self.sentence}{measured}{others}"
 
 
 @dataclass(frozen=True)
@@ -75,7 +48,10 @@ class Release:
     """Follows safety_status; times in s of any one clock."""
 
     def __init__(self, now: float) -> None:
-        self._start = now
+        self.command_timeout = 0.0  # s, the controller's; 0: off, or not known
+        self._start = self._received_at = now
+        self._interruptions = Interruptions(now)
+        self._seen = 0  # interruptions
         self._phase = Phase.WAITING
         self._provisional = False
         self._silence_logged = False
@@ -89,6 +65,20 @@ class Release:
         """What is sent now."""
         return self._phase
 
+    def step(self, now: float, statuses: Sequence[Status] = (), *, connected: bool = True) -> list[Line]:
+        """One look of the program, with all messages since the last one.
+
+        Args:
+            now: s.
+            statuses: in their order.
+            connected: a publisher of safety_status is there.
+        """
+        self._interruptions.step(now)
+        lines = [line for status in statuses for line in self.look(now, status)]
+        if statuses:
+            self._received_at = now
+        return lines + self.look(now, self._interruptions.status, now - self._received_at, connected=connected)
+
     def look(self, now: float, status: Status | None, age: float = 0.0, *, connected: bool = True) -> list[Line]:
         """Takes in what is known `now`.
 
@@ -101,9 +91,22 @@ class Release:
         return list(self._look(now, status, age, connected))
 
     def _look(self, now: float, status: Status | None, age: float, connected: bool) -> Iterator[Line]:  # noqa: FBT001
-        if status is None:
+        if status is not None:
+            self._interruptions.receive(status, now)
+        interrupted, self._seen = self._interruptions.count > self._seen, self._interruptions.count
+        if interrupted and self._phase in {Phase.WAITING, Phase.SENDING}:
+            self._phase, self._provisional = Phase.STOPPED, False
+            remedy = f"{status.remedy}, then " if status is not None and status.remedy else ""
+            yield Line(
+                f"{self._interruptions.reason}. The command has no effect, zeros are sent from now on. "
+                f"To drive again: {remedy}start send_cmd.py again"
+            )
+        elif status is None:
             yield from self._without_monitor(now)
-            return
+        else:
+            yield from self._with_monitor(now, status, age, connected=connected)
+
+    def _with_monitor(self, now: float, status: Status, age: float, *, connected: bool) -> Iterator[Line]:
         if self._provisional:
             self._provisional = False
             self._phase = Phase.WAITING
@@ -117,7 +120,7 @@ class Release:
             yield Line("the robot is released; this command does not begin again by itself: start send_cmd.py again")
 
     def _without_monitor(self, now: float) -> Iterator[Line]:
-        if self._provisional or now - self._start < NO_MONITOR:
+        if self._phase is not Phase.WAITING or now - self._start < NO_MONITOR:
             return
         self._provisional = True
         self._phase = Phase.SENDING
@@ -139,12 +142,12 @@ class Release:
             self._say_at = math.inf
             yield Line(text)
 
-    @staticmethod
-    def _obstacle(status: Status, *, gone: bool) -> str:
+    def _obstacle(self, status: Status, *, gone: bool) -> str:
         if gone:
             return "safety_status is silent: waits with zeros for safety_monitor"
         if status.awaiting_zero:
-            return AWAITS_ZERO
+            silence = silent_long_enough(self.command_timeout)
+            return f"waits for a zero request; stop the other sender{silence} or let it send zero"
         if status.state == "INIT":
             return f"waits with zeros: safety_monitor waits for {', '.join(status.missing) or 'the first cycles'}"
         remedy = f": {status.remedy}" if status.remedy else ""
@@ -156,18 +159,6 @@ class Release:
             yield Line(
                 "safety_monitor is gone, and without it the robot brakes: the command has no effect, zeros are sent "
                 "from now on. To drive again: start safety_monitor, call e_stop_reset, start send_cmd.py again"
-            )
-            return
-        if not status.drivable:
-            self._phase = Phase.STOPPED
-            if status.state == "INIT":
-                why = "INIT: a node or the simulation was started again, and releases no command from before"
-            else:
-                why = status.why()
-            remedy = f"{status.remedy}, then " if status.remedy else ""
-            yield Line(
-                f"{why}. The command has no effect, zeros are sent from now on. To drive again: {remedy}"
-                "start send_cmd.py again"
             )
             return
         if age > NO_MONITOR and not self._silence_logged:

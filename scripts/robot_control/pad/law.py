@@ -5,9 +5,11 @@
 
 With enable_turbo_button held, the turbo scales hold instead. The names are those of teleop_twist_joy.
 
-The enable button counts only after it was seen released, so that a pad that is plugged in, or comes back, with the
-button held moves nothing. A hold during which neither axis nor button changes for max_hold ends in zero: a wireless
-receiver that has lost its pad goes on reporting what it saw last.
+The enable button counts only after it was seen released: since the pad was plugged in or came back, since a stop or a
+pause of this program (interruptions.py), and while the robot may drive. A hold ends after max_hold, whatever the stick
+does: a wireless receiver that has lost its pad goes on reporting what it saw last, noise included.
+
+One pad is one sender. While messages of a second one come within joy_timeout, nothing moves.
 """
 
 from collections.abc import Sequence
@@ -15,6 +17,8 @@ from dataclasses import dataclass, fields
 
 from robot_control.common.command import Command
 
+SETTLING = 0.3
+"""s after an interruption in which messages may still come that were sent before it"""
 ZEROS = 1.0
 """s for which zeros are sent after a motion; then nothing is, so that another sender may command"""
 LONGEST = 256
@@ -51,28 +55,46 @@ class Pad:
         self._axes: tuple[float, ...] = ()
         self._buttons: tuple[int, ...] = ()
         self._answered_at = float("-inf")
-        self._changed_at = float("-inf")
+        self._held_since = float("inf")
+        self._sender = self._other = ""
+        self._other_at = float("-inf")
+        self._drivable: bool | None = None
         self._armed = False  # the enable buttons were seen released
+        self._arms_from = float("-inf")
         self._zeros_until = float("-inf")
 
     def start(self, now: float) -> None:
         """Zeros, so that the robot may be released."""
         self._zeros_until = now + ZEROS
 
-    def receive(self, axes: Sequence[float], buttons: Sequence[int], now: float) -> None:
-        """The device answered, or a message came: its axes, −1 … 1, and buttons, 0 or 1."""
+    def receive(self, axes: Sequence[float], buttons: Sequence[int], now: float, sender: str = "") -> None:
+        """The device answered, or a message of this sender came: its axes, −1 … 1, and buttons, 0 or 1."""
         if len(axes) > LONGEST or len(buttons) > LONGEST:
             return
-        came_back = now - self._answered_at > self._given.joy_timeout
-        seen = tuple(axes), tuple(buttons)
-        if seen != (self._axes, self._buttons):
-            self._changed_at = now
-        self._axes, self._buttons = seen
-        self._answered_at = now
-        if came_back:
+        came_back = not self.answers(now)
+        if sender != self._sender and not came_back:
+            self._other, self._other_at = sender, now
             self._armed = False
-        if not self._held():
-            self._armed = True
+            return
+        self._sender = sender
+        self._axes, self._buttons = tuple(axes), tuple(buttons)
+        self._answered_at = now
+        if self._held():
+            self._armed = self._armed and not came_back
+            self._held_since = min(self._held_since, now)
+        else:
+            self._armed = not self._contested(now) and now >= self._arms_from
+            self._held_since = float("inf")
+
+    def interrupt(self, now: float) -> None:
+        """What is held was pressed before a stop, or before this program stood still (interruptions.py)."""
+        if self._armed and self._held():
+            self._zeros_until = now + ZEROS
+        self._armed, self._arms_from = False, now + SETTLING
+
+    def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
+        """May the robot drive, by its safety monitor? None: it says nothing."""
+        self._drivable = drivable
 
     def lose(self) -> None:
         """The device is gone."""
@@ -80,7 +102,7 @@ class Pad:
 
     def command(self, now: float) -> Command | None:
         """What to send now; None: nothing."""
-        if self.answers(now) and self._held() and now - self._changed_at >= self._given.max_hold:
+        if self._held() and (self._drivable is False or now - self._held_since >= self._given.max_hold):
             self._armed = False
         if not (self.answers(now) and self._armed and self._held()):
             return Command() if now < self._zeros_until else None
@@ -98,9 +120,14 @@ class Pad:
         """In words."""
         if not self.answers(now):
             return "no pad answers"
+        if self._contested(now):
+            return f"two nodes publish joy, {self._sender} and {self._other}: zero until one has ended"
         if self._held() and not self._armed:
             return "release the enable button once"
         return "drives" if self._held() else f"hold button {self._given.enable_button} to drive"
+
+    def _contested(self, now: float) -> bool:
+        return now - self._other_at <= self._given.joy_timeout
 
     def _held(self) -> bool:
         return self._pressed(self._given.enable_button) or self._pressed(self._given.enable_turbo_button)

@@ -6,6 +6,7 @@ import argparse
 import math
 import sys
 import time
+from collections import deque
 from typing import Any
 
 import rospy
@@ -13,7 +14,9 @@ from sensor_msgs.msg import Joy
 
 from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
+from robot_control.common.files import printable
 from robot_control.common.ros_node import running_node
+from robot_control.common.safety_watch import SafetyWatch
 from robot_control.common.server_values import ServerValueError, server_tree
 from robot_control.common.topic_sender import Signals
 from robot_control.pad.device import PACKAGE, Device, open_device
@@ -24,6 +27,10 @@ PERIOD = 0.02
 """s between two looks at the device"""
 SEARCH_PERIOD = 1.0
 """s between two looks for a device"""
+MESSAGES = 100
+"""on joy, kept between two looks"""
+SILENCE = 3.0
+"""s without safety_status, which comes once per second: then it says nothing"""
 
 
 class ParameterError(ValueError):
@@ -63,16 +70,17 @@ class Source:
         self._device: Device | None = None
         self._searched_at = self._published_at = -math.inf
         self._publisher = None if topic else rospy.Publisher("joy", Joy, queue_size=1)
-        self._newest: Joy | None = None
+        self._received: deque[Joy] = deque(maxlen=MESSAGES)
         if topic:
-            rospy.Subscriber("joy", Joy, self._receive, queue_size=1, tcp_nodelay=True)
+            rospy.Subscriber("joy", Joy, self._received.append, queue_size=MESSAGES, tcp_nodelay=True)
 
     def look(self, now: float) -> None:
         """Hands what there is to the pad."""
         if self._publisher is None:
-            message, self._newest = self._newest, None
-            if message is not None:
-                self._pad.receive(message.axes, message.buttons, now)
+            while self._received:
+                message = self._received.popleft()
+                sender = message._connection_header.get("callerid", "")  # noqa: SLF001 (where rospy keeps it)
+                self._pad.receive(message.axes, message.buttons, now, printable(sender))
             return
         if self._device is None and now - self._searched_at >= SEARCH_PERIOD:
             self._searched_at = now
@@ -95,9 +103,6 @@ class Source:
             message.header.stamp = rospy.Time.now()
             self._publisher.publish(message)
 
-    def _receive(self, message: Joy) -> None:
-        self._newest = message
-
 
 def drive(given: argparse.Namespace, signals: Signals) -> None:
     """Until a signal."""
@@ -105,9 +110,16 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
     source = Source(pad, given.device, topic=given.joy)
     pad.start(time.monotonic())
     pace, said = Pace(topic.send), ""
+    watch, interruptions = SafetyWatch(), 0
     while signals.going_on():
         now = time.monotonic()
         source.look(now)
+        count, why = watch.interruptions()
+        if count != interruptions:
+            interruptions = count
+            pad.interrupt(now)
+            rospy.logwarn(f"{why}: release the enable button once")
+        pad.permit(watch.drivable(SILENCE))
         pace.look(pad.command(now), now)
         if pad.state(now) != said:
             said = pad.state(now)

@@ -10,6 +10,12 @@ at (x_L, y_L) in the robot's axes (turned by π where it drives backwards), and 
 
 A path is driven in pieces (pieces.py). Between two of them, and at the end, the robot stands and turns on the spot:
 ω = ±min(ω_max, √(2·α·|error|)).
+
+Three things end a path of any form:
+
+    jump        the pose moves between two messages by more than the measured speeds allow in that time
+    off         the nearest point of the piece, from the farthest one reached to the reach of the lookahead, is too far
+    in vain     the robot moves without coming nearer to the end of the piece, or of a turn (headway.py)
 """
 
 from __future__ import annotations
@@ -18,6 +24,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from robot_control.path.headway import Headway
 from robot_control.path.pieces import Foot, Route, turned
 
 
@@ -40,6 +47,12 @@ class FollowParameters:
     standing: float = 0.01  # m/s and rad/s
     off_path: float = 0.3  # m; farther aside it ends
     start_distance: float = 0.5  # m; farther from its first point a path is not begun
+    jump: float = 0.1  # m; a localisation corrects a pose by less at once
+    heading_jump: float = 0.2  # rad, likewise
+    in_vain: float = 0.15  # m
+    turned_in_vain: float = 0.5  # rad
+    speed_error: float = 0.1  # share by which a measured speed may exceed that of the poses, as where wheels slip
+    scale_error: float = 0.01  # share by which a way in the path's frame may be shorter than by odometry
 
 
 class State(Enum):
@@ -70,6 +83,9 @@ class Motion:
 
 
 STAND = Motion()
+PERIOD = 0.02
+"""s between two odometry messages"""
+JUMPED = "odometry was set, or a localisation corrected it by more than a path can follow; start the path again"
 
 
 class Follower:
@@ -82,7 +98,11 @@ class Follower:
         self._state = State.TURNING
         self._settling = True  # a turn first waits until the robot stands
         self._before_pause = State.TURNING
-        self._begun = False
+        self._last: tuple[Pose, Motion] | None = None  # of the step before
+        self._reachable = 0.0  # m off the path that is allowed until it is reached
+        given = self._parameters
+        self._headway = Headway(given.in_vain, given.scale_error)
+        self._turning_headway = Headway(given.turned_in_vain, given.scale_error)
         self._driven = 0.0  # m, of pieces that are done
         self._along = 0.0  # m, of the present piece
         self.reason = ""
@@ -130,62 +150,90 @@ class Follower:
         if not self.over:
             self._state, self.reason = State.FAILED, reason
 
-    def step(self, pose: Pose, measured: Motion, limit: float = math.inf) -> Motion:
+    def step(self, pose: Pose, measured: Motion, limit: float = math.inf, elapsed: float = PERIOD) -> Motion:
         """What to command now.
 
         Args:
             pose: of the robot, by odometry.
             measured: its twist.
             limit: m/s that nothing may exceed (SafetyStatus.speed_limit).
+            elapsed: s since the pose of the last step.
         """
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw, measured.linear, measured.angular))):
             self.fail("the odometry holds a number that is not finite")
-        if not self._begun and not self.over:
-            self._begin(pose)
+        moved = Motion(measured.linear * elapsed, measured.angular * elapsed)
+        if not self.over:
+            if self._last is None:
+                self._begin(pose)
+            else:
+                moved = self._moved(*self._last, pose, measured, elapsed)
+            self._last = pose, measured
         if self.over or self._state is State.PAUSED:
             return STAND
         if self._state is State.TURNING:
-            return self._turn(pose, measured)
-        return self._drive(pose, measured, limit)
+            return self._turn(pose, measured, moved.angular)
+        return self._drive(pose, measured, limit, moved.linear)
+
+    def _moved(self, last: Pose, before: Motion, pose: Pose, measured: Motion, elapsed: float) -> Motion:
+        """m, rad since the last message, in which the robot was as fast as in the faster of both; a jump ends it."""
+        given = self._parameters
+        way = math.dist((last.x, last.y), (pose.x, pose.y))
+        angle = abs(turned(pose.yaw - last.yaw))
+        if way > max(abs(before.linear), abs(measured.linear)) * elapsed + given.jump:
+            self.fail(f"the pose jumped by {way:.2f} m in {elapsed:.2f} s: {JUMPED}")
+        elif angle > max(abs(before.angular), abs(measured.angular)) * elapsed + given.heading_jump:
+            self.fail(f"the pose jumped by {math.degrees(angle):.0f} deg in {elapsed:.2f} s: {JUMPED}")
+        driven = abs(measured.linear) * elapsed
+        driven = min(driven, max(way, (1 - given.speed_error) * driven))
+        return Motion(math.copysign(driven, measured.linear), measured.angular * elapsed)
 
     def _begin(self, pose: Pose) -> None:
-        self._begun = True
         first = self._route.pieces[0]
-        distance = math.dist(first.points[0], (pose.x, pose.y))
+        distance = self._reachable = math.dist(first.points[0], (pose.x, pose.y))
         if distance > self._parameters.start_distance:
             self.fail(
                 f"the path begins {distance:.2f} m from the robot, more than {self._parameters.start_distance:g} m"
             )
         elif abs(turned(first.first_heading - pose.yaw)) < self._parameters.start_turn:
-            self._state = State.DRIVING
+            self._begin_piece()
 
-    def _turn(self, pose: Pose, measured: Motion) -> Motion:
+    def _begin_piece(self) -> None:
+        self._state = State.DRIVING
+        self._headway.begin(self._route.pieces[self._number].length + self._reachable)
+
+    def _turn(self, pose: Pose, measured: Motion, moved: float) -> Motion:
         given = self._parameters
         at_end = self._number == len(self._route.pieces)
         wanted = self._route.end_heading if at_end else self._route.pieces[self._number].first_heading
         error = turned(wanted - pose.yaw)
         self.heading_error = -error
-        stands = abs(measured.linear) < given.standing
-        if self._settling and not stands:
-            return STAND
-        self._settling = False
+        if self._settling:
+            self._turning_headway.begin(abs(error))
+            self._settling = abs(measured.linear) >= given.standing
+            if self._settling:
+                return STAND
         if abs(error) < given.heading_tolerance:
             if abs(measured.angular) < given.standing:
-                self._state = State.DONE if at_end else State.DRIVING
+                if at_end:
+                    self._state = State.DONE
+                else:
+                    self._begin_piece()
+            return STAND
+        if self._turning_headway.step(abs(moved), abs(error)):
+            self.fail(f"turned by {given.turned_in_vain:g} rad without coming nearer to its heading")
             return STAND
         left = abs(error) - abs(measured.angular) * given.reaction
         speed = min(given.max_angular_speed, math.sqrt(2 * given.angular_deceleration * max(left, 0.0)))
         return Motion(0.0, math.copysign(max(speed, given.slowest), error))
 
-    def _drive(self, pose: Pose, measured: Motion, limit: float) -> Motion:
+    def _drive(self, pose: Pose, measured: Motion, limit: float, moved: float) -> Motion:
         given = self._parameters
         piece = self._route.pieces[self._number]
         lookahead = max(given.shortest_lookahead, given.lookahead_time * abs(measured.linear))
         foot = piece.foot(pose.x, pose.y, reach=2 * lookahead + given.off_path)
         self._along = foot.along
         self._note_errors(foot, pose, piece.heading(foot.tangent))
-        if abs(foot.aside) > given.off_path:
-            self.fail(f"{abs(foot.aside):.2f} m off the path, more than {given.off_path:g} m")
+        if self._goes_wrong(foot, piece.length - foot.along, piece.sign * moved):
             return STAND
         left = piece.length - foot.along - abs(measured.linear) * given.reaction
         if piece.length - foot.along <= given.at_end:
@@ -208,6 +256,18 @@ class Follower:
         )
         speed = min(max(speed, given.slowest), limit)
         return Motion(piece.sign * speed, speed * curvature)
+
+    def _goes_wrong(self, foot: Foot, left: float, driven: float) -> bool:
+        """Off the path, or in vain; then it has ended."""
+        given = self._parameters
+        allowed = max(given.off_path, self._reachable)
+        if foot.distance <= given.off_path:
+            self._reachable = 0.0
+        if foot.distance > allowed:
+            self.fail(f"{foot.distance:.2f} m off the path, more than {allowed:g} m")
+        elif self._headway.step(driven, left + foot.distance):
+            self.fail(f"driven by {given.in_vain:g} m without coming nearer to its end")
+        return self.over
 
     def _note_errors(self, foot: Foot, pose: Pose, heading: float) -> None:
         self.cross_track_error = foot.aside

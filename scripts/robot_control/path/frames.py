@@ -79,6 +79,11 @@ class PathFrame:
         self._odom, self._frames = odom, frames
         self._stamp, self._newer_at = math.nan, math.inf
 
+    @property
+    def scale_error(self) -> float:
+        """Share by which the wheels' speed and the poses may differ: a localisation knows nothing of the wheels."""
+        return 0.01 if self.name == self._odom else 0.05
+
     def pose(self, pose: Pose, now: float) -> Pose:
         """`now`: s of a clock that never jumps.
 

@@ -37,14 +37,16 @@ def received(name: str) -> Path:
 
 
 def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Signals) -> str:
-    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's.
+    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's. Calling this is the
+    request: a plan that comes after a stop and its reset is refused.
 
     Raises:
         PathError: the topic brings none.
     """
+    requested = time.monotonic()
     robot, topic, tf = Robot(), CommandTopic(SOURCE), Tf()
     services = PauseServices()
-    wrong = robot.await_drivable(topic, signals.going_on)
+    wrong = robot.await_drivable(topic, signals.going_on, requested)
     if wrong or robot.odometry is None:
         return wrong
     odom, _ = robot.frames
@@ -58,8 +60,8 @@ def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Sig
     planned = route(here)
     wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
     wanted.publish(message_of(here, frame.name))
-    follower = Follower(planned, FollowParameters(speed=given.speed))
-    run = services.drive = Drive(robot, topic, follower, frame)
+    follower = Follower(planned, FollowParameters(speed=given.speed, scale_error=frame.scale_error))
+    run = services.drive = Drive(robot, topic, follower, frame, requested)
     reported = time.monotonic()
 
     def report() -> None:

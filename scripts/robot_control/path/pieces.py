@@ -24,10 +24,11 @@ def turned(angle: float) -> float:
 
 @dataclass(frozen=True)
 class Foot:
-    """The nearest point of a piece."""
+    """The nearest point of a piece within reach."""
 
-    along: float  # m from the begin of the piece; beyond its ends on their tangents
-    aside: float  # m that the robot is to the left of the piece
+    along: float  # m from the begin of the piece
+    distance: float  # m from the robot
+    aside: float  # m that the robot is to the left of the tangent
     tangent: float  # rad, direction of the piece there
 
 
@@ -40,6 +41,7 @@ class Piece:
         lengths = (math.dist(a, b) for a, b in pairwise(self.points))
         self.starts = list(accumulate(lengths, initial=0.0))
         self._segment = 0
+        self._along = 0.0  # m, of the last foot
 
     @property
     def length(self) -> float:
@@ -62,23 +64,17 @@ class Piece:
 
     def foot(self, x: float, y: float, reach: float) -> Foot:
         """Nearest to this point, searched from the last answer on, no more than `reach` ahead, never behind."""
-        best, best_distance = self._segment, math.inf
-        limit = self.starts[self._segment] + reach
+        best, best_along, best_distance = self._segment, self._along, math.inf
         for number in range(self._segment, len(self.points) - 1):
-            if self.starts[number] > limit:
+            if self.starts[number] > self._along + reach:
                 break
-            distance = self._distance(number, x, y)
+            along, distance = self._nearest(number, x, y)
             if distance < best_distance - 1e-12:
-                best, best_distance = number, distance
-        self._segment = best
+                best, best_along, best_distance = number, along, distance
+        self._segment, self._along = best, best_along
         tangent = self._tangent(best)
         dx, dy = x - self.points[best][0], y - self.points[best][1]
-        along = dx * math.cos(tangent) + dy * math.sin(tangent)
-        aside = dy * math.cos(tangent) - dx * math.sin(tangent)
-        size = self.starts[best + 1] - self.starts[best]
-        low = -math.inf if best == 0 else 0.0
-        high = math.inf if best == len(self.points) - 2 else size
-        return Foot(self.starts[best] + min(max(along, low), high), aside, tangent)
+        return Foot(best_along, best_distance, dy * math.cos(tangent) - dx * math.sin(tangent), tangent)
 
     def at(self, along: float) -> Point:
         """The point so far from its begin; beyond the ends on their tangents."""
@@ -94,11 +90,14 @@ class Piece:
         (ax, ay), (bx, by) = self.points[number], self.points[number + 1]
         return math.atan2(by - ay, bx - ax)
 
-    def _distance(self, number: int, x: float, y: float) -> float:
+    def _nearest(self, number: int, x: float, y: float) -> tuple[float, float]:
+        """Of a segment, not behind the last answer: m from the begin of the piece, m from this point."""
         (ax, ay), (bx, by) = self.points[number], self.points[number + 1]
         dx, dy = bx - ax, by - ay
-        share = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)))
-        return math.hypot(x - ax - share * dx, y - ay - share * dy)
+        start, size = self.starts[number], self.starts[number + 1] - self.starts[number]
+        share = min(1.0, max(0.0, self._along - start) / size)
+        share = min(1.0, max(share, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)))
+        return start + share * size, math.hypot(x - ax - share * dx, y - ay - share * dy)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.orientation import yaw_of
-from robot_control.common.safety_states import DRIVABLE
+from robot_control.common.safety_states import DRIVABLE, STOPPED
+from robot_control.common.safety_watch import SafetyWatch
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.path.follower import Pose
 
@@ -36,18 +37,21 @@ class Robot:
     def __init__(self) -> None:
         self.odometry: Odometry | None = None
         self.odometry_at = -math.inf
-        self.safety: SafetyStatus | None = None
-        self._safety_at = -math.inf
+        self.watch = SafetyWatch()
         self.commands = False  # what is sent here reaches the wheels
         self.masked_by = ""
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
 
     @property
     def frames(self) -> tuple[str, str]:
         """Of odometry and of the robot; empty before the first odometry."""
         return (self.odometry.header.frame_id, self.odometry.child_frame_id) if self.odometry is not None else ("", "")
+
+    @property
+    def safety(self) -> SafetyStatus | None:
+        """The newest one."""
+        return self.watch.message
 
     @property
     def drivable(self) -> bool:
@@ -57,18 +61,25 @@ class Robot:
     @property
     def stopped(self) -> bool:
         """Only a reset ends what stands against motion."""
-        return self.safety is not None and self.safety.state_name in {"STOPPING", "STOPPED", "FAULT"}
+        return self.safety is not None and self.safety.state_name in STOPPED
 
     @property
     def speed_limit(self) -> float:
         """m/s, of safety_status: `clearance` and warnings."""
         return math.inf if self.safety is None else float(self.safety.speed_limit)
 
+    def revoked(self, requested: float, *, waited: bool) -> str:
+        """Why a path that was requested at `requested` s (monotonic) is not driven any more; empty: nothing. `waited`:
+        since the last look it was not driven.
+        """
+        why = self.watch.revoked(requested, waited=waited)
+        return why and f"{why}: what was requested before does not begin, or go on, by itself. Start the path again"
+
     def against_driving(self, now: float) -> str:
         """Why a path that is driven has to end; empty: nothing."""
         if now - self.odometry_at > SILENCE:
             return f"odom is silent for {SILENCE:g} s"
-        if now - self._safety_at > SAFETY_SILENCE:
+        if now - self.watch.received_at > SAFETY_SILENCE:
             return f"safety_status is silent for {SAFETY_SILENCE:g} s"
         return "" if self.drivable else self.stop_in_words()
 
@@ -79,15 +90,16 @@ class Robot:
         why = "; ".join(self.safety.sentences) or "it is not ready"
         return f"{self.safety.state_name}: {why}. Call e_stop_reset, then start the path again"
 
-    def await_drivable(self, topic: CommandTopic, going_on: Callable[[], bool]) -> str:
+    def await_drivable(self, topic: CommandTopic, going_on: Callable[[], bool], requested: float) -> str:
         """With zeros until it may drive; why it may not, within PATIENCE, or empty.
 
         The end of a stop is not waited for: a path that was requested before a reset does not begin with it.
         """
         end = time.monotonic() + PATIENCE
         while going_on() and time.monotonic() < end:
-            if self.stopped:
-                return self.stop_in_words()
+            against = self.stop_in_words() if self.stopped else self.revoked(requested, waited=True)
+            if against:
+                return against
             if self.drivable and self.odometry is not None and topic.connected and self.commands:
                 return ""
             topic.send(0.0, 0.0)
@@ -102,9 +114,6 @@ class Robot:
 
     def _receive_odometry(self, message: Odometry) -> None:
         self.odometry, self.odometry_at = message, time.monotonic()
-
-    def _receive_safety(self, message: SafetyStatus) -> None:
-        self.safety, self._safety_at = message, time.monotonic()
 
     def _receive_state(self, message: DriveState) -> None:
         states = dict(text.split(": ", 1) for text in message.sources)

@@ -15,7 +15,7 @@ from std_srvs.srv import Trigger, TriggerResponse
 from robot_control.common.command_topic import CommandTopic
 from robot_control.path.follower import Follower, Motion, State
 from robot_control.path.frames import PathFrame
-from robot_control.path.robot import SOURCE, Robot, pose_of
+from robot_control.path.robot import SILENCE, SOURCE, Robot, pose_of
 from robot_control.path.waypoints import PathError, Waypoint, from_poses
 
 LOOK = 0.005
@@ -25,16 +25,22 @@ LOOK = 0.005
 class Drive:
     """A path from its first command on."""
 
-    def __init__(self, robot: Robot, topic: CommandTopic, follower: Follower, frame: PathFrame) -> None:
+    def __init__(
+        self, robot: Robot, topic: CommandTopic, follower: Follower, frame: PathFrame, requested: float
+    ) -> None:
+        """`requested`: s (monotonic) when."""
         self._robot, self._topic, self.follower, self._frame = robot, topic, follower, frame
+        self._requested = requested
         self._lock = threading.Lock()  # services come in threads of their own
+        self._stamp: rospy.Time | None = None  # of the last odometry
         self.paused_by = ""
 
     def run(self, going_on: Callable[[], bool], look: Callable[[], None]) -> None:
         """Until the follower's end, or as long as it shall; `look` is called at every look. Sends no last zero."""
-        last = -math.inf
+        last, waited = -math.inf, True
         while going_on() and not self.follower.over:
-            against = self._robot.against_driving(time.monotonic())
+            revoked = self._robot.revoked(self._requested, waited=waited)
+            against, waited = self._robot.against_driving(time.monotonic()) or revoked, False
             if against:
                 self.follower.fail(against)
             elif self._robot.odometry_at > last:
@@ -66,11 +72,16 @@ class Drive:
             measured = Motion(odometry.twist.twist.linear.x, odometry.twist.twist.angular.z)
             try:
                 pose = self._frame.pose(pose_of(odometry), time.monotonic())
-                command = self.follower.step(pose, measured, self._robot.speed_limit)
+                command = self.follower.step(pose, measured, self._robot.speed_limit, self._elapsed(odometry))
             except PathError as error:
                 self.follower.fail(str(error))
                 return
         self._topic.send(command.linear, command.angular)
+
+    def _elapsed(self, odometry: Odometry) -> float:
+        """s since the last one; more than SILENCE would have ended the path."""
+        last, self._stamp = self._stamp or odometry.header.stamp, odometry.header.stamp
+        return min(max(0.0, float((self._stamp - last).to_sec())), SILENCE)
 
     def describe(self) -> str:
         """One line for the log."""

@@ -15,7 +15,13 @@ from nav_msgs.msg import Path
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals
-from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, FollowPathResult
+from robot_control.msg import (
+    FollowPathAction,
+    FollowPathActionGoal,
+    FollowPathFeedback,
+    FollowPathGoal,
+    FollowPathResult,
+)
 from robot_control.path.follower import Follower, FollowParameters, State
 from robot_control.path.frames import Tf, located
 from robot_control.path.pieces import route
@@ -30,6 +36,33 @@ END = 2.0
 """s for the goal that is driven when the program is ended"""
 
 
+class TimedGoal(FollowPathActionGoal):  # type: ignore[misc]
+    """Notes when it arrived: a long one takes seconds to be read."""
+
+    arrived = math.inf
+    """s, monotonic"""
+
+    def deserialize(self, buffer: bytes) -> TimedGoal:
+        """Called by rospy with the bytes of one message."""
+        self.arrived = time.monotonic()
+        super().deserialize(buffer)
+        return self
+
+
+class TimedAction(FollowPathAction):  # type: ignore[misc]
+    """The action follow_path with such goals."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.action_goal = TimedGoal()
+
+
+def requested_at(arrived: float, stamp: rospy.Time) -> float:
+    """s, monotonic, when the goal was sent: by its stamp, where it has one, and at the latest when it arrived."""
+    age = (rospy.Time.now() - stamp).to_sec() if stamp else 0.0
+    return min(arrived, time.monotonic() - age)
+
+
 class Server:
     """One goal at a time; the newest counts."""
 
@@ -40,7 +73,7 @@ class Server:
         self._wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
         self._idle = threading.Event()
         self._idle.set()
-        self._action = actionlib.SimpleActionServer(NAME, FollowPathAction, self._execute, auto_start=False)
+        self._action = actionlib.SimpleActionServer(NAME, TimedAction, self._execute, auto_start=False)
         self._action.start()
 
     def await_end(self) -> None:
@@ -60,7 +93,7 @@ class Server:
         finally:
             self._services.drive = None
             replaced = self._action.is_new_goal_available()
-            if not replaced:
+            if result.reason or not replaced:
                 self._topic.send(0.0, 0.0)
             self._conclude(result, replaced=replaced)
             self._idle.set()
@@ -81,16 +114,19 @@ class Server:
         """Why it ended. Raises PathError: the goal cannot be driven."""
         if not (math.isfinite(goal.speed) and goal.speed >= 0):
             raise PathError(f"speed is {goal.speed:g} m/s: it must be a number from zero on; zero is the default")
+        current = self._action.current_goal
+        requested = requested_at(current.goal.arrived, current.get_goal_id().stamp)
         points = shortened(checked(points_of(goal.path)), goal.begin_at)
         result.distance = goal.begin_at
         self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
-        refusal = self._robot.await_drivable(self._topic, self._going_on)
+        refusal = self._robot.await_drivable(self._topic, self._going_on, requested)
         if refusal:
             return refusal
         points, frame = located(points, goal.path.header.frame_id, self._robot.frames, self._tf)
-        follower = Follower(route(points), FollowParameters(speed=goal.speed or FollowParameters.speed))
+        speed = goal.speed or FollowParameters.speed
+        follower = Follower(route(points), FollowParameters(speed=speed, scale_error=frame.scale_error))
         self._wanted.publish(message_of(points, frame.name))
-        drive = Drive(self._robot, self._topic, follower, frame)
+        drive = Drive(self._robot, self._topic, follower, frame, requested)
         self._services.drive = drive
         reporter = Reporter(self._action, drive, goal.begin_at)
         drive.run(self._going_on, reporter.look)

@@ -89,6 +89,7 @@ class DeadMan:
         self._fast = False
         self._last_key, self._last_byte = "", float("-inf")
         self._stopped_in_burst = False
+        self._down: set[str] = set()  # by a terminal that reports releases; else all that were ever pressed
         self._blocked: set[Hashable] | None = None  # None: no motion is; else these, or with an empty set all
         self._blocked_byte = 0.0
 
@@ -101,6 +102,7 @@ class DeadMan:
 
     def press(self, key: str, now: float, *, repeat: bool = False) -> None:
         """A byte of a motion key came; `repeat`: the terminal says that it is no first one."""
+        self._down.add(key)
         burst = now - self._last_byte < BURST
         again = key == self._last_key
         gap = now - self._last_byte
@@ -125,10 +127,11 @@ class DeadMan:
             self._until = now + (self.first_hold if tapped else self._parameters.hold)
 
     def release(self, key: str) -> None:
-        """The terminal reports that this key was released."""
+        """The terminal reports that this key was released; the release of the last one ends a block of all motions."""
+        self._down.discard(key)
         if key == self._key:
             self._key = ""
-        if self._blocked is not None and (not self._blocked or self._motion(key) in self._blocked):
+        if self._blocked is not None and (self._motion(key) in self._blocked or not (self._blocked or self._down)):
             self._blocked = None
 
     def stop(self, now: float) -> None:
@@ -139,6 +142,7 @@ class DeadMan:
 
     def block(self, key: str, now: float) -> None:
         """A byte of `key` comes while there can be no motion: none until all keys have paused."""
+        self._down.add(key)
         self._key = ""
         self._last_key, self._last_byte = key, now
         self._blocked, self._blocked_byte = set(), now

@@ -3,21 +3,32 @@
 A key is named by its lower-case character, or `up`, `down`, `left`, `right`, `escape`, `enter`, `space`, `interrupt`.
 Read are plain bytes, the arrows of ECMA-48 terminals (ESC [ A, ESC O A), and kitty's keyboard protocol
 (https://sw.kovidgoyal.net/kitty/keyboard-protocol): CSI code:shifted;modifiers:event u, which also reports releases.
-The Linux console's function keys (ESC [ [ A) are read and mean nothing.
 
-An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence.
+Everything else that a terminal sends is consumed to its end and means nothing (ECMA-48, section 5; xterm's ctlseqs):
+
+    ESC [ … final            final: 0x40 to 0x7E; also as the byte 0x9B
+    ESC [ M, t, T            mouse reports of raw characters follow: 3, 2, 6; ESC [ [ of the Linux console: 1
+    ESC O … final            also as 0x8F
+    ESC P ] X ^ _ … ST        strings; ST: ESC and a backslash, 0x9C or BEL; also as 0x90 and others
+    ESC [200~ … ESC [201~    a paste
+    UTF-8                    letters of several bytes
+
+An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence. No sequence
+swallows a stop: Space and ! count inside ESC [ and ESC O, where no report has them, and elsewhere when they come
+ESCAPE_WAIT after the byte before, as a typed key does. What has no end is over after SEQUENCE_WAIT without a byte.
 """
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum
+from enum import Enum, auto
 
 ESCAPE_WAIT = 0.05
 """s; the bytes of one sequence come together, on a slow link within this time"""
 SEQUENCE_WAIT = 1.0
-"""s after which a sequence that was begun is dropped"""
+"""s without a byte after which a sequence that was begun is over"""
 LONGEST = 32
-"""bytes of a sequence"""
+"""bytes of a sequence that may mean something"""
 
 QUERY_RELEASES = b"\x1b[?u"
 """does this terminal speak kitty's protocol?"""
@@ -25,11 +36,21 @@ REPORT_RELEASES = b"\x1b[>15u"
 """1 disambiguate, 2 event types, 4 shifted keys, 8 all keys as sequences"""
 END_RELEASES = b"\x1b[<u"
 
-ESC = 0x1B
+ESC, BEL, STRING_END = 0x1B, 0x07, 0x9C
+CANCELS = b"\x18\x1a"
+"""end a sequence"""
 STOPS = b" !"
-"""in no key's sequence: there they end it and count, so that none swallows a stop"""
+STRINGS = "PX]^_"
+"""after ESC"""
+RAW_CHARACTERS = {"M": 3, "t": 2, "T": 6, "[": 1}
+"""after ESC [ and this final byte"""
+PASTE, PASTE_END = "200~", "201~"
 ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
 NAMES = {3: "interrupt", 4: "interrupt", 10: "enter", 13: "enter", 27: "escape", 32: "space"}
+ARROW = re.compile(r"(1(;(?P<modifiers>[0-9]+)(:(?P<event>[0-9]+))?)?)?")
+CODE = re.compile(
+    r"(?P<code>[0-9]+)(:(?P<shifted>[0-9]*)(:[0-9]*)?)?(;(?P<modifiers>[0-9]*)(:(?P<event>[0-9]+))?(;[0-9:]*)?)?"
+)
 SHIFT, CONTROL = 1, 4
 
 
@@ -50,55 +71,116 @@ class Key:
     event: Event = Event.PRESS
 
 
+class Part(Enum):
+    """Of which a byte is one."""
+
+    KEYS = auto()
+    ESCAPE = auto()
+    CONTROL = auto()  # after ESC [
+    SINGLE = auto()  # after ESC O
+    STRING = auto()
+    RAW = auto()
+
+
 class Decoder:
     """Keeps what of a sequence has come."""
 
     def __init__(self) -> None:
-        self._pending = b""
-        self._since = 0.0
+        self._part = Part.KEYS
+        self._in_string = False  # the ESC may be the begin of its end
+        self._pasting = False
+        self._sequence = ""  # after ESC [ or ESC O
+        self._raw = 0  # characters that are still to come
+        self._letter = 0  # bytes of a UTF-8 letter that may still come
+        self._last = 0.0
 
     def feed(self, data: bytes, now: float) -> list[Key]:
         """The keys that these bytes complete."""
         keys: list[Key] = []
         for byte in data:
-            keys += self._byte(byte, now)
+            waiting = self._part is not Part.KEYS or self._pasting
+            typed_later = waiting and byte in STOPS and now - self._last >= ESCAPE_WAIT
+            self._last = now
+            found = list(self._byte(byte))
+            if typed_later:
+                keys += plain(byte)
+            elif not self._pasting:
+                keys += found
         return keys
 
     def look(self, now: float) -> list[Key]:
         """The key Esc, if an ESC has stayed alone."""
-        wait = ESCAPE_WAIT if self._pending == b"\x1b" else SEQUENCE_WAIT
-        if not self._pending or now - self._since < wait:
+        alone = self._part is Part.ESCAPE
+        if now - self._last < (ESCAPE_WAIT if alone else SEQUENCE_WAIT):
             return []
-        alone, self._pending = self._pending == b"\x1b", b""
+        self._part, self._in_string, self._pasting, self._letter = Part.KEYS, False, False, 0
         return [Key("escape")] if alone else []
 
-    def _byte(self, byte: int, now: float) -> Iterator[Key]:
-        if not self._pending:
-            if byte == ESC:
-                self._pending, self._since = b"\x1b", now
-            else:
-                yield from plain(byte)
+    def _byte(self, byte: int) -> Iterator[Key]:
+        if self._letter and 0x80 <= byte <= 0xBF:
+            self._letter -= 1
             return
-        if self._pending == b"\x1b":
-            if byte in b"[O":
-                self._pending += bytes([byte])
-                return
-            self._pending = b""
-            yield Key("escape")
-            yield from self._byte(byte, now)
-            return
-        if byte in STOPS:
-            self._pending = b""
-            yield from plain(byte)
-            return
-        self._pending += bytes([byte])
-        if 0x40 <= byte <= 0x7E and self._pending != b"\x1b[[":
-            sequence, self._pending = self._pending, b""
-            yield from sequence_key(sequence)
+        self._letter = letter_bytes(byte) if self._part is not Part.RAW else int(0xC2 <= byte <= 0xDF)
+        if self._part is Part.ESCAPE:
+            yield from self._after_escape(byte)
         elif byte == ESC:
-            self._pending, self._since = b"\x1b", now
-        elif len(self._pending) > LONGEST:
-            self._pending = b""
+            self._in_string, self._part = self._part is Part.STRING, Part.ESCAPE
+        elif self._part is Part.KEYS:
+            if not (0x80 <= byte < 0xA0 and self._begins(chr(byte - 0x40))):
+                yield from plain(byte)
+        elif self._part is Part.RAW:
+            self._raw -= 1
+            self._part = Part.RAW if self._raw else Part.KEYS
+        elif byte in CANCELS:
+            self._part = Part.KEYS
+        elif self._part is not Part.STRING:
+            yield from self._control(byte)
+        elif byte in (BEL, STRING_END):
+            self._part = Part.KEYS
+
+    def _after_escape(self, byte: int) -> Iterator[Key]:
+        string_ends, self._in_string = self._in_string and chr(byte) == "\\", False
+        if string_ends:
+            self._part = Part.KEYS
+        elif not self._begins(chr(byte)):
+            yield Key("escape")
+            if byte != ESC:
+                self._part = Part.KEYS
+                yield from self._byte(byte)
+
+    def _begins(self, introducer: str) -> bool:
+        part = {"[": Part.CONTROL, "O": Part.SINGLE, **dict.fromkeys(STRINGS, Part.STRING)}.get(introducer)
+        self._part, self._sequence = part or self._part, ""
+        return part is not None
+
+    def _control(self, byte: int) -> Iterator[Key]:
+        """After ESC [ or ESC O."""
+        if 0x40 <= byte <= 0x7E:
+            single, self._part = self._part is Part.SINGLE, Part.KEYS
+            yield from self._complete(chr(byte), single=single)
+            return
+        self._sequence = (self._sequence + chr(byte))[: LONGEST + 1]
+        if byte in STOPS and self._part is Part.SINGLE:
+            self._part = Part.KEYS
+        if byte in STOPS or byte < 0x20:
+            yield from plain(byte)
+
+    def _complete(self, final: str, *, single: bool) -> Iterator[Key]:
+        body = self._sequence
+        if single:
+            if not body and final in ARROWS:
+                yield Key(ARROWS[final])
+        elif body + final in RAW_CHARACTERS:
+            self._part, self._raw = Part.RAW, RAW_CHARACTERS[final]
+        elif body + final in (PASTE, PASTE_END):
+            self._pasting = body + final == PASTE
+        elif len(body) <= LONGEST:
+            yield from control_key(body, final)
+
+
+def letter_bytes(byte: int) -> int:
+    """How many bytes of a UTF-8 letter follow its first one; 0: it is no first one."""
+    return (0xC2 <= byte <= 0xF4) + (0xE0 <= byte <= 0xF4) + (0xF0 <= byte <= 0xF4)
 
 
 def plain(byte: int) -> Iterator[Key]:
@@ -109,28 +191,24 @@ def plain(byte: int) -> Iterator[Key]:
         yield Key(chr(byte).lower())
 
 
-def sequence_key(sequence: bytes) -> Iterator[Key]:
-    """ESC [ … or ESC O …, complete."""
-    text = sequence.decode("latin-1")
-    body, final = text[2:-1], text[-1]
-    if body == "[":
-        return
-    if final == "u" and body.startswith("?"):
+def control_key(body: str, final: str) -> Iterator[Key]:
+    """ESC [ body final."""
+    if final == "u" and re.fullmatch(r"\?[0-9]+", body):
         yield Key("", Event.SPEAKS_KITTY)
         return
-    fields = [part.split(":") for part in body.split(";")]
-    codes, modifiers = fields[0], fields[1] if len(fields) > 1 else [""]
-    pressed = _number(modifiers[0], 1) - 1
-    event = _number(modifiers[1], 1) if len(modifiers) > 1 else 1
-    if event not in {1, 2, 3}:
+    form = ARROW if final in ARROWS else CODE if final == "u" else None
+    found = form and form.fullmatch(body)
+    event = _number(found["event"], 1) if found else 0
+    if not found or event not in {1, 2, 3}:
         return
-    if final in ARROWS:
+    pressed = max(_number(found["modifiers"], 1) - 1, 0)
+    if form is ARROW:
         yield Key(ARROWS[final], Event(event))
-    elif final == "u":
-        shifted = _number(codes[1], 0) if len(codes) > 1 and pressed & SHIFT else 0
-        name = _name(shifted or _number(codes[0], 0), pressed)
-        if name:
-            yield Key(name, Event(event))
+        return
+    shifted = _number(found["shifted"], 0) if pressed & SHIFT else 0
+    name = _name(shifted or _number(found["code"], 0), pressed)
+    if name:
+        yield Key(name, Event(event))
 
 
 def _name(code: int, modifiers: int) -> str:
@@ -139,5 +217,5 @@ def _name(code: int, modifiers: int) -> str:
     return NAMES.get(code, "") or (chr(code).lower() if 0x21 <= code <= 0x7E else "")
 
 
-def _number(text: str, default: int) -> int:
-    return int(text) if text.isdecimal() and len(text) < 8 else default
+def _number(text: str | None, default: int) -> int:
+    return int(text) if text and len(text) < 8 else default

@@ -14,7 +14,7 @@ from robot_control.common.command import Command, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
-from robot_control.common.safety_states import DRIVABLE
+from robot_control.common.safety_watch import SafetyWatch
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.drive.send_plan import positive
 from robot_control.teleop.backlog import Backlog
@@ -48,7 +48,8 @@ class Teleop:
         self._limits = SpeedLimits()
         self._operator = Operator(self._keys, Command(given.linear, given.angular), self._limits.newest(), hold)
         self._decoder = Decoder()
-        self._listener = Listener()
+        self._listener, self._watch = Listener(), SafetyWatch()
+        self._interruptions = 0
         self._services = Services()
         self._topic = CommandTopic(SOURCE)
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
@@ -66,11 +67,13 @@ class Teleop:
         while signals.going_on():
             data = self._terminal.read(LOOK)
             now = time.monotonic()
+            count, _ = self._watch.interruptions()
+            if count != self._interruptions:
+                self._interruptions = count
+                self._operator.interrupt(now)
             if self._take(data, now, late=backlog.late(data, now)):
                 return
-            safety = self._listener.safety(now)
-            fresh = safety is not None and safety.age < SILENCE
-            self._operator.permit(safety.state in DRIVABLE if safety is not None and fresh else None, now)
+            self._operator.permit(self._watch.drivable(SILENCE), now)
             self._operator.limit(self._limits.newest())
             self._pace.look(self._operator.command(now), now)
             self._take_answers()

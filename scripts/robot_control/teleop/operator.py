@@ -76,7 +76,8 @@ class Operator:
         if name in self._keys.stops:
             self._stop(now)
         elif late:
-            return None
+            if name in self._keys.motions:
+                self._dead_man.block(name, now)
         elif name == "y" and RESET_PAUSE <= now - self._reset_at < RESET_WINDOW:
             self._reset_at = float("-inf")
             self._stop(now)
@@ -106,11 +107,16 @@ class Operator:
     def permit(self, drivable: bool | None, now: float) -> None:  # noqa: FBT001 (a three-valued state)
         """May the robot drive, by its safety monitor? None: it says nothing."""
         if drivable is False and self._drivable is not False:
-            self._dead_man.end(now)
-            self._zeros_until = now + ZEROS
+            self.interrupt(now)
         if drivable is True and self._drivable is False:
             self._e_stopped = False
         self._drivable = drivable
+
+    def interrupt(self, now: float) -> None:
+        """What is held was pressed before a stop, or before this program stood still (interruptions.py)."""
+        self._dead_man.end(now)
+        self._reset_at = float("-inf")
+        self._zeros_until = now + ZEROS
 
     def reset_accepted(self) -> None:
         """The answer to Request.RESET."""
@@ -142,7 +148,7 @@ class Operator:
         elif self._dead_man.overlong:
             text = "stopped: the key was held too long; release it, then press again"
         elif self._dead_man.blocked(now) and self._drivable is not False:
-            text = "a key was held while the robot could not drive: release it, then press again"
+            text = "a key is held since before a stop, or a pause of this program: release it, then press again"
         else:
             text = ""
         if now - self._reset_at < RESET_WINDOW:

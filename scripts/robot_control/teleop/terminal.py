@@ -23,9 +23,17 @@ from typing import Any, Self
 
 from robot_control.teleop.keyboard import END_RELEASES, QUERY_RELEASES, REPORT_RELEASES
 
-BEGIN = b"\x1b[?1049h\x1b[?25l\x1b[2J" + QUERY_RELEASES
-"""alternate screen, no cursor (xterm's control sequences)"""
-END = END_RELEASES + b"\x1b[?25h\x1b[?1049l"
+REPORTING = b"9;1000;1001;1002;1003;1004;1005;1006;1007;1015;1016"
+"""modes in which a terminal reports what is no key: the mouse, its wheel as arrow keys, the focus"""
+PASTE = b"2004"
+"""a paste is marked as one, so that no letter of it is a key"""
+MODES = REPORTING + b";" + PASTE
+BEGIN = (
+    b"\x1b[?1049h\x1b[?25l\x1b[2J\x1b[?" + MODES + b"s\x1b[?" + REPORTING + b"l\x1b[?" + PASTE + b"h" + QUERY_RELEASES
+)
+"""alternate screen, no cursor, modes saved and set (xterm's control sequences)"""
+END = END_RELEASES + b"\x1b[?" + PASTE + b"l\x1b[?" + MODES + b"r\x1b[?25h\x1b[?1049l"
+"""modes as before; where the terminal saves none, off"""
 LONGEST_READ = 4096
 """bytes"""
 SETTINGS, ALL = b"settings", b"all"
@@ -80,6 +88,7 @@ class Terminal:
         for number in (1, 2):
             os.dup2(self._printed.fileno(), number)
         termios.tcsetattr(self._descriptor, termios.TCSANOW, undelayed(self._settings))
+        termios.tcflush(self._descriptor, termios.TCIFLUSH)  # what was typed before was typed for another program
         self.write(BEGIN)
         return self
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from robot_control.common.safety_states import DRIVABLE
+from robot_control.common.zero_request import silent_long_enough
 
 PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)
@@ -74,6 +75,7 @@ class Facts:
     seers: tuple[str, ...] = ()  # on clearance
     limited: tuple[float, float] | None = None  # m/s, rad/s: the command after limits
     measured: tuple[float, float] | None = None  # m/s, rad/s: by odometry
+    command_timeout: float = 0.0  # s, cmd_vel_timeout of the running controller; 0: off, or not known
 
     def there(self, node: str) -> bool:
         """Its last report is recent."""
@@ -214,10 +216,10 @@ def _stopped(facts: Facts) -> Answer | None:
         return None
     absent = missing_nodes(facts)
     if safety.awaiting_zero and not safety.causes and not absent:
-        senders = facts.commanders()
+        senders, silence = facts.commanders(), silent_long_enough(facts.command_timeout)
         return Answer(
             Verdict.STOPPED,
-            "Not ready: it waits for a zero request; stop the sender for 1.25 s or send zero.",
+            f"Not ready: it waits for a zero request; stop the sender{silence} or send zero.",
             (("operator", f"publishing on cmd_vel: {senders_in_words(facts)}"),) if senders else (),
         )
     if safety.state == "INIT" or not safety.causes:

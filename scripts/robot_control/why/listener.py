@@ -9,6 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 
+from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.ros_master import COMMAND_TOPICS, Master, senders_of
 from robot_control.msg import SafetyStatus
 from robot_control.why.diagnosis import LOOP, SILENCE, Facts, Report, Safety
@@ -31,6 +32,7 @@ class Listener:
         self._reports: dict[str, tuple[float, Report]] = {}  # by absolute name
         self._limited: tuple[float, float, float] | None = None  # m/s, rad/s, when
         self._measured: tuple[float, float, float] | None = None
+        self._parameters = LiveParameters()
         self.unknown_to_master = 0  # how often in a row the master did not know this program
         rospy.Subscriber("safety_status", SafetyStatus, self._receive_status)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
@@ -59,6 +61,7 @@ class Listener:
         self._queried_at = now
         self._state = self.master.state()
         known = self._state is None or rospy.get_name() in nodes_of(self._state)
+        self._parameters = LiveParameters()
         self.unknown_to_master = 0 if known else self.unknown_to_master + 1
 
     def complete(self) -> bool:
@@ -83,6 +86,7 @@ class Listener:
             seers=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
             limited=_fresh(self._limited, now),
             measured=_fresh(self._measured, now),
+            command_timeout=self._parameters.command_timeout,
         )
 
     def safety(self, now: float) -> Safety | None:

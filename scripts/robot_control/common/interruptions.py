@@ -1,0 +1,112 @@
+"""Which requests still count, by what safety_status says. Pure: time is an argument.
+
+What is requested, planned, held or waited for belongs to the time in which it began. An interruption ends that time:
+
+    stop     the state was READY or DRIVE, and is not any more
+    reset    `resets` or `run` differ between two messages that permit to drive: a stop and its reset lie between them
+    gap      this program did not look for longer than GAP while it drove: it was suspended, and what it knows is old
+
+A request that was made during a stop is one from before its reset.
+Times are s of any one clock that never turns back. The clock has to run on while a program is suspended.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from robot_control.common.safety_states import DRIVABLE, STOPPED
+
+GAP = 0.5
+"""s; programs look every 0.02 s, and odometry that is silent for so long ends a path, too"""
+RESTARTED = "INIT: a node or the simulation was started again, and releases no command from before"
+
+
+@dataclass(frozen=True)
+class Status:
+    """One message of safety_status."""
+
+    state: str  # INIT, READY, DRIVE, STOPPING, STOPPED, FAULT
+    sentence: str = ""  # of the first cause
+    detail: str = ""  # its value and limit
+    remedy: str = ""
+    causes: int = 0
+    missing: tuple[str, ...] = ()
+    awaiting_zero: bool = False
+    speed_limit: float = math.inf  # m/s
+    resets: int = 0  # that were answered since the monitor began
+    run: int = 0
+
+    @property
+    def drivable(self) -> bool:
+        """A permit to drive."""
+        return self.state in DRIVABLE
+
+    @property
+    def stopped(self) -> bool:
+        """Only a reset ends what stands against motion."""
+        return self.state in STOPPED
+
+    def why(self) -> str:
+        """State and cause: STOPPED: the robot hit something (51 m/s^2, limit 30 m/s^2)."""
+        if self.state == "INIT":
+            return RESTARTED
+        if not self.sentence:
+            return self.state
+        measured = f" ({self.detail})" if self.detail else ""
+        others = f", and {self.causes - 1} more: see why.py" if self.causes > 1 else ""
+        return f"{self.state}: {self.sentence}{measured}{others}"
+
+
+class Interruptions:
+    """Of one program: `step` at every look, with all messages that have come since the last one."""
+
+    def __init__(self, now: float) -> None:
+        self._looked = now
+        self._interrupted = self._stopped = (-math.inf, "")  # when last, why
+        self.status: Status | None = None  # the newest one
+        self.count = 0  # of interruptions
+
+    def step(self, now: float, statuses: Iterable[Status] = (), *, waited: bool = False) -> None:
+        """One look: notes how long there was none, unless it `waited` or planned, and takes in what has come."""
+        gap, self._looked = now - self._looked, now
+        if gap > GAP and not waited:
+            self._interrupt(now, f"this program stood still for {gap:.1f} s")
+        for status in statuses:
+            self.receive(status, now)
+
+    def receive(self, status: Status, now: float) -> None:
+        """One message."""
+        why = self._change(status)
+        if why:
+            self._interrupt(now, why)
+        if status.stopped:
+            self._stopped = now, status.why()
+        elif self.status is not None and self.status.stopped:
+            self._stopped = now, "e_stop_reset was called"
+        self.status = status
+
+    @property
+    def reason(self) -> str:
+        """Of the last interruption; empty: there was none."""
+        return self._interrupted[1]
+
+    def revoked(self, requested: float) -> str:
+        """Why what was requested at `requested` s does not begin any more; empty: it may."""
+        at, why = max(self._stopped, self._interrupted)
+        return why if at >= requested else ""
+
+    def _interrupt(self, now: float, why: str) -> None:
+        self._interrupted = now, why
+        self.count += 1
+
+    def _change(self, status: Status) -> str:
+        before = self.status
+        if before is None or not before.drivable:
+            return ""
+        if not status.drivable:
+            return status.why()
+        if (status.resets, status.run) != (before.resets, before.run):
+            return "the robot was stopped and released, or started again"
+        return ""

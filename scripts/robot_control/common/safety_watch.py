@@ -1,0 +1,86 @@
+"""safety_status as a program hears it: every message, not the newest alone."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import rospy
+
+from robot_control.common.interruptions import Interruptions, Status
+from robot_control.msg import SafetyStatus
+
+LATE = 0.1
+"""s between two looks after which messages may wait that the receiving thread has not taken"""
+CATCH_UP = 0.02
+"""s that it is given then"""
+
+
+def status_of(message: SafetyStatus) -> Status:
+    """Of the causes the one that came first."""
+    first = message.causes.index(message.first_cause) if message.first_cause in message.causes else 0
+    sentence, detail, remedy = (
+        texts[first] if first < len(texts) else "" for texts in (message.sentences, message.details, message.remedies)
+    )
+    return Status(
+        state=message.state_name,
+        sentence=sentence,
+        detail=detail,
+        remedy=remedy,
+        causes=len(message.causes),
+        missing=tuple(message.missing),
+        awaiting_zero=message.awaiting_zero_request,
+        speed_limit=message.speed_limit,
+        resets=message.resets,
+        run=message.run,
+    )
+
+
+class SafetyWatch:
+    """Takes in each message when it comes; looks when it is asked."""
+
+    def __init__(self) -> None:
+        self.message: SafetyStatus | None = None  # the newest one
+        self.received_at = -math.inf  # s, monotonic
+        self._lock = threading.Lock()
+        self._looked = time.monotonic()
+        self._interruptions = Interruptions(self._looked)
+        rospy.Subscriber("safety_status", SafetyStatus, self.receive, tcp_nodelay=True)
+
+    def receive(self, message: SafetyStatus) -> None:
+        """One message."""
+        with self._lock:
+            self.message, self.received_at = message, time.monotonic()
+            self._interruptions.receive(status_of(message), self.received_at)
+
+    def interruptions(self) -> tuple[int, str]:
+        """One look: how many there were, and why the last one."""
+        with self._look(waited=False) as interruptions:
+            return interruptions.count, interruptions.reason
+
+    def revoked(self, requested: float, *, waited: bool) -> str:
+        """Why what was requested at `requested` s (monotonic) does not begin, or go on, any more; empty: it may.
+
+        `waited`: since the last look the program did not drive, but waited or planned.
+        """
+        with self._look(waited=waited) as interruptions:
+            return interruptions.revoked(requested)
+
+    def drivable(self, silence: float) -> bool | None:
+        """Does the monitor permit to drive? None: it has said nothing for `silence` s."""
+        with self._lock:
+            status = self._interruptions.status
+            fresh = time.monotonic() - self.received_at < silence
+            return status.drivable if status is not None and fresh else None
+
+    @contextmanager
+    def _look(self, *, waited: bool) -> Iterator[Interruptions]:
+        if time.monotonic() - self._looked > LATE:
+            time.sleep(CATCH_UP)
+        with self._lock:
+            self._looked = time.monotonic()
+            self._interruptions.step(self._looked, waited=waited)
+            yield self._interruptions

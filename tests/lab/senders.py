@@ -1,0 +1,127 @@
+"""The shipped senders in virtual time: their laws, put together as their programs do it, one `step` per look.
+
+Each is given `now` [s], the messages of safety_status since its last look, and its own input; it answers with the
+command that it sends, None where it sends nothing. To suspend a program is not to call its `step`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from robot_control.common.command import Command
+from robot_control.common.interruptions import Interruptions, Status
+from robot_control.drive.release import Phase, Release
+from robot_control.pad.law import Pad
+from robot_control.path.follower import Follower, Motion, Pose
+from robot_control.path.pieces import route
+from robot_control.path.waypoints import Waypoint
+from robot_control.teleop.backlog import Backlog
+from robot_control.teleop.key_map import ARROWS
+from robot_control.teleop.keyboard import Decoder
+from robot_control.teleop.operator import Limits, Operator
+
+CHOSEN, LIMITS = Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0)
+
+
+class _Watch:
+    """What of safety_status all have in common."""
+
+    def __init__(self, now: float) -> None:
+        self.interruptions = Interruptions(now)
+        self._seen = 0
+
+    def interrupted(self, now: float, statuses: Sequence[Status], *, waited: bool = False) -> bool:
+        self.interruptions.step(now, statuses, waited=waited)
+        new, self._seen = self.interruptions.count > self._seen, self.interruptions.count
+        return new
+
+    @property
+    def drivable(self) -> bool | None:
+        status = self.interruptions.status
+        return None if status is None else status.drivable
+
+
+class TeleopSender:
+    """teleop.py; its input: bytes of the terminal."""
+
+    def __init__(self, now: float) -> None:
+        self._watch, self._decoder, self._backlog = _Watch(now), Decoder(), Backlog(now)
+        self._operator = Operator(ARROWS, CHOSEN, LIMITS)
+        self._operator.start(now)
+
+    def step(self, now: float, statuses: Sequence[Status], data: bytes) -> Command | None:
+        """One look."""
+        late = self._backlog.late(data, now)
+        if self._watch.interrupted(now, statuses):
+            self._operator.interrupt(now)
+        for key in [*self._decoder.feed(data, now), *self._decoder.look(now)]:
+            self._operator.key(key, now, late=late)
+        self._operator.permit(self._watch.drivable, now)
+        return self._operator.command(now)
+
+
+class PadSender:
+    """pad.py; its input: axes, buttons and sender of each message."""
+
+    def __init__(self, now: float) -> None:
+        self._watch, self._pad = _Watch(now), Pad()
+        self._pad.start(now)
+
+    def step(
+        self, now: float, statuses: Sequence[Status], messages: Sequence[tuple[Sequence[float], Sequence[int], str]]
+    ) -> Command | None:
+        """One look."""
+        for axes, buttons, sender in messages:
+            self._pad.receive(axes, buttons, now, sender)
+        if self._watch.interrupted(now, statuses):
+            self._pad.interrupt(now)
+        self._pad.permit(self._watch.drivable)
+        return self._pad.command(now)
+
+
+class PathSender:
+    """drive_path.py, or one goal of follow_path.py: requested when it is made, driven once it is planned."""
+
+    def __init__(self, now: float) -> None:
+        self._watch, self._requested = _Watch(now), now
+        self._follower: Follower | None = None
+        self._odometry_at = now
+        self._driving = False
+        self.reason = ""  # why it ended
+
+    def plan(self, waypoints: Sequence[Waypoint]) -> None:
+        """The plan has come, or is made."""
+        self._follower = Follower(route(waypoints))
+
+    def step(self, now: float, statuses: Sequence[Status], odometry: tuple[Pose, Motion] | None) -> Command | None:
+        """One look; none is needed while it plans."""
+        self._watch.interrupted(now, statuses, waited=not self._driving)
+        stopped = self._watch.interruptions.status is not None and self._watch.interruptions.status.stopped
+        self.reason = (
+            self.reason or self._watch.interruptions.revoked(self._requested) or ("stopped" if stopped else "")
+        )
+        if self.reason or self._follower is None or not self._watch.drivable or odometry is None:
+            return Command()
+        self._driving = True
+        elapsed, self._odometry_at = now - self._odometry_at, now
+        motion = self._follower.step(*odometry, elapsed=min(elapsed, 0.5))
+        self.reason = self._follower.reason
+        return Command(motion.linear, motion.angular)
+
+
+class CommandSender:
+    """send_cmd.py; it has no input."""
+
+    def __init__(self, now: float) -> None:
+        self._release = Release(now)
+        self._due = -math.inf
+
+    def step(self, now: float, statuses: Sequence[Status], _input: object = None) -> Command | None:
+        """One look; it sends once per period, and at once where that changes."""
+        phase = self._release.phase
+        self._release.step(now, statuses)
+        if self._release.phase is Phase.RELEASED or (self._release.phase is phase and now < self._due):
+            return None
+        self._due = now + 0.2
+        return CHOSEN if self._release.phase is Phase.SENDING else Command()
