@@ -25,6 +25,7 @@ from robot_control.common.files import write_text
 from lab import markdown
 from lab.drives.sensor_errors import LEVELS
 from lab.faults.fault_sequence import ALL_RUNS
+from lab.release.sender_sequences import sender_rows
 from lab.runs import seed_programs
 from lab.runs.address import check_address
 from lab.runs.runner import Processes, Runner
@@ -109,7 +110,10 @@ def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, An
     else:
         with opened_runner(given) as runner:
             result = seed_programs.run_seeds(name, given.first, runs, say, runner)
-    return result, all(row["value"] == 0 for row in result["rows"] if row["name"] == "sequences failed")
+    if name == "release":
+        with opened_runner(given) as runner:
+            result["rows"] += sender_rows(given.first, runs, say, runner)
+    return result, all(row["value"] == 0 for row in result["rows"] if row["name"].endswith("sequences failed"))
 
 
 def _replay(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:

@@ -92,7 +92,8 @@ class CommandsTest(RobotTestCase):
 
         wait_for("the refusal", refused, every=lambda: sleeper.publish(message))
         wait_for(
-            "the count", lambda: int(self.desk.values["commands_of_revoked_senders"]) > 0,
+            "the count",
+            lambda: int(self.desk.values["commands_of_revoked_senders"]) > 0,
             every=lambda: sleeper.publish(message),
         )
         self.assertIn(f"motion of {rospy.get_name()} is refused", self.log)

@@ -1,50 +1,11 @@
 """Poses that jump while a path is driven: set_odometry, a localisation. The robot is one that does as commanded."""
 
 import math
-import random
 
 import pytest
-from robot_control.path.follower import Follower, FollowParameters, Motion, Pose, State
-from robot_control.path.pieces import route, turned
-from robot_control.path.shapes import SHAPES
+from lab.release.path_jumps import FARTHEST, LONGEST, PERIOD, STRAIGHT, Jumping, excess
+from robot_control.path.follower import Motion, Pose, State
 from robot_control.path.waypoints import Waypoint
-
-PERIOD = 0.02  # s, odometry
-LONGEST = 60.0  # s, of every path here
-FARTHEST = 0.3  # m beyond what the path is long
-STRAIGHT = [Waypoint(0.0, 0.0), Waypoint(2.0, 0.0)]
-BENT = [Waypoint(0.0, 0.0), Waypoint(0.8, 0.0), Waypoint(0.8, 0.8)]
-BACK = [Waypoint(0.0, 0.0, 0.0), Waypoint(0.8, 0.0, 0.0), Waypoint(0.0, 0.0, 0.0)]
-CURVE = [Waypoint(0.02 * n, 0.3 * math.sin(0.06 * n)) for n in range(100)]
-PATHS = [STRAIGHT, BENT, BACK, CURVE, SHAPES["circle"](0.8), SHAPES["square"](0.6)]
-
-
-class Jumping:
-    """Its pose by odometry jumps; how far it has driven does not."""
-
-    def __init__(self, waypoints):
-        self.route = route(waypoints)
-        self.follower = Follower(self.route, FollowParameters(speed=0.5))
-        self.pose, self.motion = Pose(0.0, 0.0, waypoints[0].yaw or self.route.pieces[0].first_heading), Motion()
-        self.driven = self.turned = 0.0
-
-    def jump(self, x, y, yaw):
-        self.pose = Pose(self.pose.x + x, self.pose.y + y, turned(self.pose.yaw + yaw))
-
-    def step(self):
-        self.motion = self.follower.step(self.pose, self.motion, elapsed=PERIOD)
-        yaw = self.pose.yaw + self.motion.angular * PERIOD / 2
-        distance, angle = self.motion.linear * PERIOD, self.motion.angular * PERIOD
-        self.driven, self.turned = self.driven + abs(distance), self.turned + abs(angle)
-        self.pose = Pose(
-            self.pose.x + distance * math.cos(yaw), self.pose.y + distance * math.sin(yaw), turned(yaw + angle / 2)
-        )
-
-    def drive(self, seconds):
-        for _ in range(round(seconds / PERIOD)):
-            if self.follower.over:
-                return
-            self.step()
 
 
 @pytest.mark.parametrize("jump", [(-5.0, 0.0, 0.0), (0.0, 0.0, math.pi), (1.0, 0.0, 0.0), (0.0, 0.2, 0.0)])
@@ -127,48 +88,6 @@ def test_a_path_that_begins_before_the_robot_is_driven_to():
     robot.pose = Pose(-0.45, 0.1, 0.0)
     robot.drive(LONGEST)
     assert robot.follower.state is State.DONE
-
-
-def jumps(chance):
-    """At random times: once, some, or small ones all the time."""
-    size = chance.choice([0.01, 0.05, 0.1, 0.3, 1.0, 5.0])
-    angle = chance.choice([0.01, 0.05, 0.2, 0.5, math.pi])
-    what = chance.choice(["position", "heading", "both"])
-    often = chance.choice([0.0, 0.02, 0.1, 1.0])
-    direction = chance.uniform(-math.pi, math.pi)
-    wander = chance.random() < 0.5
-    begin = chance.uniform(0.0, 8.0)
-
-    def jump(now, robot):
-        first = begin <= now < begin + PERIOD
-        if not first and (now < begin or chance.random() >= often):
-            return
-        way = chance.uniform(-math.pi, math.pi) if wander else direction
-        length = chance.uniform(0.5, 1.0) * size if what != "heading" else 0.0
-        yaw = chance.uniform(-angle, angle) if what != "position" else 0.0
-        robot.jump(length * math.cos(way), length * math.sin(way), yaw)
-
-    return jump
-
-
-def excess(seed):
-    """m that the robot drives beyond the path's length."""
-    chance = random.Random(seed)
-    robot = Jumping(chance.choice(PATHS))
-    jump = jumps(chance)
-    pause = chance.uniform(0.0, 6.0) if chance.random() < 0.2 else math.inf
-    for number in range(round(LONGEST / PERIOD)):
-        now = number * PERIOD
-        jump(now, robot)
-        if pause <= now < pause + PERIOD:
-            robot.follower.pause()
-        if pause + 1.0 <= now < pause + 1.0 + PERIOD:
-            robot.follower.resume()
-        robot.step()
-        if robot.follower.over:
-            break
-    assert robot.motion == Motion() or not robot.follower.over
-    return robot.driven - robot.route.length
 
 
 def assert_none_drives_farther(seeds):

@@ -315,18 +315,13 @@ def _controller(facts: Facts) -> Answer | None:
     for name in ("bad_sensors", "no_state", "no_permit"):
         if name in reasons:
             return Answer(Verdict.STOPPED, f"The controller brakes: {reasons[name]}.", (("", remedies.get(name, "")),))
-    if "many_senders" in reasons:
-        return Answer(
-            Verdict.STOPPED,
-            f"Commands are refused: {reasons['many_senders']}.",
-            (("operator", f"{remedies.get('many_senders', '')} of {', '.join(facts.commanders())}"),),
-        )
-    if "revoked" in reasons:
-        return Answer(
-            Verdict.STOPPED,
-            f"Commands are refused: {reasons['revoked']}.",
-            (("operator", f"{facts.value(CONTROLLER, 'revoked_senders')}: {remedies.get('revoked', '')}"),),
-        )
+    whose = {
+        "many_senders": f"{remedies.get('many_senders', '')} of {', '.join(facts.commanders())}",
+        "revoked": f"{facts.value(CONTROLLER, 'revoked_senders')}: {remedies.get('revoked', '')}",
+    }
+    for name, action in whose.items():
+        if name in reasons:
+            return Answer(Verdict.STOPPED, f"Commands are refused: {reasons[name]}.", (("operator", action),))
     silent = "timed_out" in reasons or "no_command" in reasons
     for name in ("refused", *(["stale"] if silent else []), "timed_out", "no_command"):
         if name not in reasons:

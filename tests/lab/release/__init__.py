@@ -1,0 +1,1 @@
+"""Whether anything moves that nothing released: the shipped senders in virtual time."""

@@ -1,0 +1,252 @@
+"""Random sequences of stops, resets, suspensions, planning times and inputs for the shipped senders, in virtual time.
+
+Each sequence asks one question: does anything move that was requested, held or planned before the last stop? The judge
+knows when the monitor released the robot, when the program was suspended, and when a person or a client asked for the
+motion. A sequence is given by its seed.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from robot_control.common.command import Command
+from robot_control.common.interruptions import GAP, Status
+from robot_control.path.follower import Motion, Pose
+from robot_control.path.waypoints import Waypoint
+
+from lab.release.path_jumps import FARTHEST, excess
+from lab.release.senders import CommandSender, PadSender, PathSender, TeleopSender
+from lab.runs.runner import Runner
+
+PERIOD = 0.02  # s between two looks
+LONG = 20.0  # s of a sequence
+LOOKS = round(LONG / PERIOD)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Of one sequence."""
+
+    seed: int
+    violation: str = ""  # empty: none
+    moving: int = 0  # looks at which the sender requested motion; a judge that never saw motion proves nothing
+
+    def at(self, now: float, violation: str) -> Outcome:
+        """The same with a violation at `now` s."""
+        return replace(self, violation=f"{now:.2f} s: {violation}")
+
+
+class Monitor:
+    """Stops and resets at random; its messages, of which a subscriber may miss all but the newest."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self._chance = chance
+        self.status = Status("READY", run=1)
+        self.messages = [self.status]
+        self.stop_began = self.released = -1.0  # s
+        self._due = chance.uniform(1.0, 5.0)
+
+    def step(self, now: float) -> None:
+        """One look."""
+        if now < self._due:
+            return
+        resets = self.status.resets
+        if self.status.drivable:
+            self.status, self.stop_began = Status("STOPPED", "e_stop was called", resets=resets, run=1), now
+            self._due = now + self._chance.choice([0.05, 0.3, 1.5, 4.0])
+        else:
+            self.status, self.released = Status("READY", resets=resets + 1, run=1), now
+            self._due = now + self._chance.uniform(0.5, 6.0)
+        self.messages.append(self.status)
+
+    def take(self) -> list[Status]:
+        """What has come since the last call."""
+        taken, self.messages = self.messages, []
+        return taken[-1:] if self._chance.random() < 0.3 else taken
+
+
+class Hand:
+    """A key or a button that is held now and then; since when."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self._chance = chance
+        self.down, self.since, self._due = False, 0.0, 0.5
+
+    def step(self, now: float) -> None:
+        """One look."""
+        if now >= self._due:
+            self.down, self.since = not self.down, now
+            self._due = now + self._chance.choice([0.1, 0.5, 1.5, 4.0])
+
+
+class Keyboard:
+    """Bytes of the held key, which wait in the terminal while the program does not read."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self.hand, self._waiting, self._next = Hand(chance), b"", 0.0
+
+    def step(self, now: float) -> None:
+        """One look."""
+        before = self.hand.down
+        self.hand.step(now)
+        if self.hand.down and (not before or now >= self._next):
+            self._next = now + (0.4 if not before else 0.033)
+            self._waiting += b"w"
+
+    def take(self) -> bytes:
+        """What waits."""
+        taken, self._waiting = self._waiting, b""
+        return taken
+
+
+class Joystick:
+    """The messages of a pad, likewise."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self.hand = Hand(chance)
+        self._waiting: list[tuple[Sequence[float], Sequence[int], str]] = []
+
+    def step(self, now: float) -> None:
+        """One look."""
+        self.hand.step(now)
+        self._waiting.append(((0.0, 1.0), (0, 0, 0, 0, int(self.hand.down), 0), "/pad"))
+
+    def take(self) -> list[tuple[Sequence[float], Sequence[int], str]]:
+        """What waits, at most a subscriber's queue of it."""
+        taken, self._waiting = self._waiting[-100:], []
+        return taken
+
+
+class Suspensions:
+    """When the program does not run."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self._pauses = [(begin, chance.choice([0.1, 0.4, 1.0, 3.0])) for begin in chance.sample(range(18), 2)]
+
+    def lasting(self, now: float) -> float:
+        """s of the suspension that lasts at `now`; 0: it runs."""
+        return max((length for begin, length in self._pauses if begin <= now < begin + length), default=0.0)
+
+
+def moves(command: Command | None) -> bool:
+    """Does it request motion?"""
+    return command not in (None, Command())
+
+
+def held(seed: int, sender: Callable[[float], Any], source: Callable[[random.Random], Any]) -> Outcome:
+    """What a person holds over a stop or a suspension moves nothing before it was let go."""
+    chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
+    monitor, person, suspensions = Monitor(chance), source(chance), Suspensions(chance)
+    made, woke, outcome = sender(0.0), -1.0, Outcome(seed)
+    for number in range(LOOKS):
+        now = number * PERIOD
+        monitor.step(now)
+        person.step(now)
+        if lasting := suspensions.lasting(now):
+            woke = now if lasting > GAP else woke
+            continue
+        if not moves(made.step(now, monitor.take(), person.take())):
+            continue
+        outcome = replace(outcome, moving=outcome.moving + 1)
+        if not monitor.status.drivable:
+            return outcome.at(now, "motion during a stop")
+        if person.hand.since < max(monitor.released, woke):
+            return outcome.at(now, "motion of what was held before the stop or the suspension")
+    return outcome
+
+
+def teleop(seed: int) -> Outcome:
+    """A key of teleop.py."""
+    return held(seed, TeleopSender, Keyboard)
+
+
+def pad(seed: int) -> Outcome:
+    """The hold button of pad.py."""
+    return held(seed, PadSender, Joystick)
+
+
+def path(seed: int) -> Outcome:
+    """A goal of follow_path.py, or a plan for drive_path.py, that is planned or driven over a stop moves nothing."""
+    chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
+    monitor, suspensions, outcome = Monitor(chance), Suspensions(chance), Outcome(seed)
+    requested, made, planned, x, linear = 0.0, PathSender(0.0), chance.uniform(0.0, 3.0), 0.0, 0.0
+    for number in range(LOOKS):
+        now = number * PERIOD
+        monitor.step(now)
+        if planned <= now:
+            made.plan([Waypoint(x, 0.0), Waypoint(x + 3.0, 0.0)])
+            planned = 1e9
+        if suspensions.lasting(now):
+            continue
+        if (made.reason or chance.random() < 0.001) and monitor.status.drivable:
+            requested, made, planned = now, PathSender(now), now + chance.uniform(0.0, 3.0)
+            monitor.messages = [monitor.status]  # it is latched
+        command = made.step(now, monitor.take(), (Pose(x, 0.0, 0.0), Motion(linear, 0.0)))
+        linear = command.linear if command is not None else 0.0
+        x += linear * PERIOD
+        if not moves(command):
+            continue
+        outcome = replace(outcome, moving=outcome.moving + 1)
+        if not monitor.status.drivable:
+            return outcome.at(now, "motion during a stop")
+        if requested < monitor.released:
+            return outcome.at(now, "motion along a path that was requested before the stop")
+    return outcome
+
+
+def command(seed: int) -> Outcome:
+    """A send_cmd.py that was started before a stop moves nothing after it."""
+    chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
+    monitor, suspensions, outcome = Monitor(chance), Suspensions(chance), Outcome(seed)
+    begun, made = 0.0, CommandSender(0.0)
+    for number in range(LOOKS):
+        now = number * PERIOD
+        monitor.step(now)
+        if suspensions.lasting(now):
+            continue
+        if chance.random() < 0.003:
+            begun, made = now, CommandSender(now)
+            monitor.messages = [monitor.status]
+        if not moves(made.step(now, monitor.take())):
+            continue
+        outcome = replace(outcome, moving=outcome.moving + 1)
+        if begun < monitor.stop_began:
+            return outcome.at(now, "motion of a program that was started before the stop")
+    return outcome
+
+
+def jumps(seed: int) -> Outcome:
+    """A path whose pose jumps drives the robot no farther than its length and `FARTHEST`."""
+    farther = excess(seed)
+    violation = "" if farther < FARTHEST else f"{farther:.2f} m farther than the path is long"
+    return Outcome(seed, violation, moving=1)
+
+
+KINDS = (teleop, pad, path, command, jumps)
+
+
+def run_sequence(seed: int) -> Outcome:
+    """The outcome of the sequence of this seed; the kinds take turns."""
+    return KINDS[seed % len(KINDS)](seed)
+
+
+def sender_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[dict[str, Any]]:
+    """Rows of `scripts/bench release`: the sequences of so many seeds, their failures, the looks in motion."""
+    failed = moving = 0
+    for one in runner.outcomes(run_sequence, range(first, first + runs), say, chunk=50):
+        moving += one.moving
+        if one.violation:
+            failed += 1
+            say(f"seed {one.seed}, {KINDS[one.seed % len(KINDS)].__name__}: {one.violation}")
+    figures = {
+        "sender sequences": (runs, "of 20 s"),
+        "sender sequences failed": (failed, ""),
+        "in motion": (moving, ""),
+    }
+    return [
+        {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
+        for name, (value, unit) in figures.items()
+    ]
