@@ -97,14 +97,14 @@ class CommandSourcesTest(RobotTestCase):
             self.pause.publish(Bool(False))
         wait_for("0.5 m/s again", self.robot.driving, every=lambda: self.robot.send(0.5, 0.0))
 
-    def test_a_reset_is_refused_while_a_masked_source_requests_motion_and_names_its_sender(self) -> None:
+    def test_a_reset_is_refused_while_a_revoked_source_requests_motion_and_names_its_sender(self) -> None:
         def send() -> None:
             self.robot.send(0.5, 0.0)
             self.send_key(0.0)
 
         self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)
         self.robot.call("e_stop_trigger")
-        wait_for("cmd_vel is masked", lambda: "cmd_vel: masked by key_vel" in self.state.sources, every=send)
+        wait_for("cmd_vel is revoked", lambda: "cmd_vel: revoked" in self.state.sources, every=send)
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=send)
         end = time.monotonic() + 2.0
         while time.monotonic() < end:
