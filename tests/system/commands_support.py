@@ -13,6 +13,7 @@ class CommandDesk:
     """A sender on cmd_vel_stamped, and what the controller says of commands."""
 
     def __init__(self, robot: Robot) -> None:
+        self.robot = robot
         self.drive: DriveState | None = None
         self.values: dict[str, str] = {}
         self.message = ""
@@ -25,7 +26,7 @@ class CommandDesk:
 
     def send(self, linear: float, angular: float, stamp: rospy.Time) -> None:
         """cmd_vel_stamped, at most every SEND_PERIOD; the zero that it owes first, if it is revoked."""
-        if rospy.get_name() in self.revoked:
+        if rospy.get_name() in self.robot.revoked:
             linear = angular = 0.0
         if time.monotonic() - self._last_send < SEND_PERIOD:
             return
@@ -46,10 +47,6 @@ class CommandDesk:
     def reasons(self) -> set[str]:
         """Of drive_state."""
         return set() if self.drive is None else set(self.drive.reasons)
-
-    @property
-    def revoked(self) -> tuple[str, ...]:
-        return () if self.drive is None else tuple(self.drive.revoked)
 
     def _receive_drive(self, message: DriveState) -> None:
         self.drive = message

@@ -88,7 +88,7 @@ class CommandsTest(RobotTestCase):
 
         def refused() -> bool:
             self.assertLess(abs(self.robot.speed), STANDING)
-            return rospy.get_name() in self.desk.revoked and "revoked" in self.desk.reasons
+            return rospy.get_name() in self.robot.revoked and "revoked" in self.desk.reasons
 
         wait_for("the refusal", refused, every=lambda: sleeper.publish(message))
         wait_for(

@@ -22,7 +22,7 @@ import rospy
 import rosunit_skips
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from robot_control.msg import SafetyStatus
+from robot_control.msg import DriveState, SafetyStatus
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64MultiArray
 from std_srvs.srv import Trigger, TriggerResponse
@@ -188,6 +188,8 @@ class Robot:
         self.joints: JointState | None = None
         self.wheels: tuple[float, ...] = ()
         self.status: SafetyStatus | None = None
+        self.revoked: tuple[str, ...] = ()
+        """Senders whose motion is refused until they send zero."""
         self.odom_count = 0
         self._moved_at = -math.inf  # s, monotonic
         self.joints_count = 0
@@ -196,6 +198,7 @@ class Robot:
             rospy.Subscriber(self.name("joint_states"), JointState, self._receive_joints),
             rospy.Subscriber(self.name("joint_commands"), Float64MultiArray, self._receive_wheels),
             rospy.Subscriber(self.name("safety_status"), SafetyStatus, self._receive_status),
+            rospy.Subscriber(self.name("drive_state"), DriveState, self._receive_drive_state),
         ]
         self._cmd_vel = rospy.Publisher(self.name("cmd_vel"), Twist, queue_size=1, tcp_nodelay=True)
         self._e_stop = rospy.Publisher(self.name("e_stop"), Bool, queue_size=1, tcp_nodelay=True)
@@ -265,14 +268,14 @@ class Robot:
             self.release()
 
     def drive_until(self, what: str, condition: Callable[[], bool], linear: float = 0.5, angular: float = 0.2) -> None:
-        """Sends until the condition holds, zeros while the robot waits for one. Stops that a stalling machine may latch
-        are released on the way."""
+        """Sends until the condition holds, zeros while the robot waits for one or this sender owes one. Stops that a
+        stalling machine may latch are released on the way."""
         end = time.monotonic() + LIMIT
         while not condition():
             if time.monotonic() > end:
                 raise AssertionError(f"not within {LIMIT:g} s of driving: {what}; causes: {self.causes}")
             waits = self.status is not None and self.status.awaiting_zero_request
-            self.send(*((0.0, 0.0) if waits else (linear, angular)))
+            self.send(*((0.0, 0.0) if waits or rospy.get_name() in self.revoked else (linear, angular)))
             self.release_after_a_stall()
             time.sleep(0.02)
 
@@ -334,6 +337,9 @@ class Robot:
 
     def _receive_wheels(self, message: Float64MultiArray) -> None:
         self.wheels = tuple(message.data)
+
+    def _receive_drive_state(self, message: DriveState) -> None:
+        self.revoked = tuple(message.revoked)
 
     def _receive_status(self, message: SafetyStatus) -> None:
         self.status = message
