@@ -23,6 +23,7 @@ STATUS = Path("/var/lib/dpkg/status")
 FILES = Path("/var/lib/dpkg/info")
 NEW_NAMESPACE = 0x00020000
 """CLONE_NEWNS, sched.h"""
+CACHE = "/etc/ld.so.cache"
 REFUSED = 125
 NAME = "only_listed"
 """of the overlay in /proc/mounts"""
@@ -106,7 +107,7 @@ def hide(paths: set[str], layer: Path) -> None:
 
 
 def mount(*arguments: str) -> None:
-    """mount(8)."""
+    """Calls the program mount."""
     subprocess.run(["/bin/mount", *arguments], check=True)
 
 
@@ -121,13 +122,16 @@ def enter(paths: set[str]) -> None:
         raise OSError(ctypes.get_errno(), "unshare")
     mount("--make-rprivate", "/")
     while re.search(rf"^{NAME} /usr ", Path("/proc/self/mounts").read_text(), re.MULTILINE):
-        subprocess.run(["/bin/umount", "--lazy", "/usr"], check=True)  # of a call around this one
+        subprocess.run(["/bin/umount", "--lazy", CACHE, "/usr"], check=True)  # of a call around this one
     layer = Path(tempfile.mkdtemp(prefix=f"{NAME}-"))
     mount("-t", "tmpfs", "-o", "mode=755", NAME, str(layer))
     hide(paths, layer)
     mount("-t", "overlay", "-o", f"lowerdir={layer}:/usr", NAME, "/usr")
     subprocess.run(["/bin/umount", "--lazy", str(layer)], check=True)
     layer.rmdir()
+    with tempfile.NamedTemporaryFile(prefix=f"{NAME}-") as libraries:  # else the hidden ones still stand in it
+        subprocess.run(["/sbin/ldconfig", "-X", "-C", libraries.name], check=True)
+        mount("--bind", libraries.name, CACHE)
 
 
 def main() -> None:
