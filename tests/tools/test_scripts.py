@@ -117,7 +117,7 @@ def make_build_folder(folder):
             for half in halves:
                 half.write_text("x" * (size // 2 - 1) + "\n")
         place, _, inside = name.partition("/CMakeFiles/")
-        command = f"c++ -DNAME=\\\"r\\\" -o CMakeFiles/{inside} -c {source}"
+        command = f'c++ -DNAME=\\"r\\" -o CMakeFiles/{inside} -c {source}'
         entries.append(f'{{\n  "directory": "{folder / place}",\n  "command": "{command}",\n  "file": "{source}"\n}}')
     (folder / "compile_commands.json").write_text("[\n" + ",\n".join(entries) + "\n]")
     (folder / "CMakeFiles").mkdir(exist_ok=True)
