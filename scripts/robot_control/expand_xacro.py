@@ -1,5 +1,7 @@
 """A .xacro file on standard output as the URDF it stands for: python3 -m robot_control.expand_xacro FILE.
 
+Behind it stands a comment, `xacro macros: …`: the macros that were called, for a text without macros does not say so.
+
 PyPI's xacro asks ROS 2's package index for `$(find PACKAGE)`, through the module `ament_index_python.packages`. Here
 that module is ours: rospkg answers, then the folders above the file.
 """
@@ -48,6 +50,19 @@ def answer_find(file: Path) -> None:
     packages.get_package_share_directory = lambda name: package_folder(name, file)  # type: ignore[attr-defined]
     sys.modules["ament_index_python"] = ModuleType("ament_index_python")
     sys.modules["ament_index_python.packages"] = packages
+
+
+def note_macros(called: set[str]) -> None:
+    """Lets xacro add the name of every macro that it calls."""
+    import xacro
+
+    resolve = xacro.resolve_macro
+
+    def resolved(name: str, *tables: object) -> object:
+        called.add(name)
+        return resolve(name, *tables)
+
+    xacro.resolve_macro = resolved
 
 
 def open_text(name: str, mode: str = "r") -> IO[str]:
@@ -116,6 +131,8 @@ def main() -> None:
         sys.exit(NOT_INSTALLED)
     answer_find(Path(sys.argv[1]))
     xacro.open = open_text
+    called: set[str] = set()
+    note_macros(called)
     said = io.StringIO()
     try:
         with redirect_stderr(said):
@@ -124,6 +141,8 @@ def main() -> None:
         macros = [macro.body.getAttribute("name") for macro in xacro.macrostack or []]
         sys.stderr.write(better_reason(said.getvalue(), xacro.filestack or [], macros) or said.getvalue())
         raise
+    if called:
+        print("<!-- xacro macros: " + " ".join(sorted(called)).replace("--", "- -") + " -->")
 
 
 if __name__ == "__main__":

@@ -72,6 +72,7 @@ UrdfDocument parse_urdf(const RobotDescription& description) {
   document.driven = driven_joints(robot);
   document.unsaid_axes = unsaid_axes(robot);
   document.turned_origins = turned_origins(robot);
+  document.sideways_names = sideways_names(robot);
   document.sideways_plugins = plugins_that_say(robot, kSidewaysWords);
   document.steering_plugins = plugins_that_say(robot, kSteeringWords);
   repair_markup(robot);

@@ -9,15 +9,17 @@
 #include <vector>
 
 #include "description/robot_description.h"
+#include "description/sideways_names.h"
 
 namespace robot_control {
 
 struct UrdfDocument {
-  std::string source;                                 ///< for messages
-  urdf::ModelInterfaceSharedPtr model;                ///< never null
-  std::vector<std::string> joint_order;               ///< names as they stand in the file (urdfdom sorts by name)
-  std::vector<std::string> link_order;                ///< likewise
-  std::set<std::string> driven;                       ///< joints (urdf_markup.h)
+  std::string source;                    ///< for messages
+  urdf::ModelInterfaceSharedPtr model;   ///< never null
+  std::vector<std::string> joint_order;  ///< names as they stand in the file (urdfdom sorts by name)
+  std::vector<std::string> link_order;   ///< likewise
+  std::set<std::string> driven;          ///< joints (urdf_markup.h)
+  std::vector<SidewaysName> sideways_names;
   std::set<std::string> sideways_plugins;             ///< their files (urdf_markup.h)
   std::set<std::string> steering_plugins;             ///< likewise
   std::set<std::string> unsaid_axes;                  ///< joints (urdf_markup.h)

@@ -13,6 +13,7 @@
 #include "robot/model_hash.h"
 #include "robot/overrides.h"
 #include "robot/suspicions.h"
+#include "robot/wheels/bearing_joints.h"
 #include "robot/wheels/drive_wheels.h"
 #include "robot/wheels/rockers.h"
 #include "robot/wheels/suspension.h"
@@ -236,6 +237,7 @@ RobotModel read_robot(const RobotDescription& description, const RobotParameters
   model.bodies = bodies;
   check_finite(model);
   check_missing_meshes(model);
+  refuse_unheld_joints(model);
   note_suspicions(model);
   model.notes = merged(model.notes);
   return model;

@@ -134,8 +134,8 @@ struct RobotModel {
   double effective_wheel_base() const noexcept { return wheel_base * wheel_base_multiplier; }
 };
 
-/// Throws RobotError: what read_rigid_bodies, find_drive_train and imu_link_of refuse, overrides that are not above
-/// zero, more than kMaxJoints moving joints, numbers beyond all bounds.
+/// Throws RobotError: what read_rigid_bodies, find_drive_train, refuse_unheld_joints and imu_link_of refuse, overrides
+/// that are not above zero, more than kMaxJoints moving joints, numbers beyond all bounds.
 RobotModel read_robot(const RobotDescription& description, const RobotParameters& parameters);
 
 }  // namespace robot_control

@@ -161,11 +161,6 @@ void note_far_root(RobotModel& robot) {
            "those of this frame. Where it is the world, leave it and its joint out");
 }
 
-void note_mecanum(RobotModel& robot) {
-  if (robot.wheels.size() == 2 || lower_case(robot.urdf).find("mecanum") == std::string::npos) return;
-  note(robot, "<robot>", "it speaks of mecanum wheels: they are driven as plain ones, and do not roll sideways");
-}
-
 }  // namespace
 
 std::string suspicions_of(const RobotModel& robot) {
@@ -183,7 +178,6 @@ void note_suspicions(RobotModel& robot) {
   note_weak_wheels(robot);
   note_limits(robot);
   note_far_root(robot);
-  note_mecanum(robot);
 }
 
 }  // namespace robot_control

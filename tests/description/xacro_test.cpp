@@ -47,6 +47,16 @@ class Xacro : public testing::Test {
     GTEST_SKIP() << "PyPI's xacro is not installed: scripts/setup, with a network, installs it"; \
   }
 
+TEST_F(Xacro, LeavesTheNamesOfTheMacrosThatWereCalledBehindTheText) {
+  SKIP_WITHOUT_XACRO();
+  folder_.write("bot.xacro",
+                "<robot name=\"r\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">"
+                "<xacro:macro name=\"mecanum_wheel\" params=\"name\"><link name=\"${name}\"/></xacro:macro>"
+                "<xacro:macro name=\"unused\" params=\"\"/><xacro:mecanum_wheel name=\"a\"/></robot>");
+  EXPECT_THAT(expand_xacro(folder_.path() / "bot.xacro"),
+              AllOf(HasSubstr("</robot>"), HasSubstr("<!-- xacro macros: mecanum_wheel -->")));
+}
+
 TEST_F(Xacro, FindsPackagesByRospkg) {
   SKIP_WITHOUT_XACRO();
   EXPECT_THAT(expand_xacro(folder_.write("bot.urdf.xacro", kRobot)),

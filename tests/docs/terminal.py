@@ -96,7 +96,7 @@ class Terminal:
         port = free_port()
         uri = f"http://127.0.0.1:{port}"
         self.environment = dict(os.environ, ROS_MASTER_URI=uri, ROS_IP="127.0.0.1", PWD=str(folder))
-        self.environment |= {"ROS_HOME": str(folder / ".ros"), "MPLBACKEND": "Agg", "PYTHONUNBUFFERED": "1"}
+        self.environment |= {"ROS_HOME": str(folder / ".ros"), "MPLBACKEND": "Agg"}
         for name in ("ROS_HOSTNAME", "ROS_NAMESPACE"):
             self.environment.pop(name, None)
         self.master = xmlrpc.client.ServerProxy(uri)

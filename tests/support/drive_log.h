@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,11 +77,11 @@ class DriveLog {
     return since;
   }
 
-  /// m, along the path, from `cycle` on.
-  double way_since(std::uint64_t cycle) const {
+  /// m, along the path, from `cycle` to `last`.
+  double way_since(std::uint64_t cycle, std::uint64_t last = std::numeric_limits<std::uint64_t>::max()) const {
     double way = 0;
     for (std::size_t i = 1; i < cycles_.size(); ++i) {
-      if (cycles_[i].cycle <= cycle) continue;
+      if (cycles_[i].cycle <= cycle || cycles_[i].cycle > last) continue;
       way += std::hypot(cycles_[i].x - cycles_[i - 1].x, cycles_[i].y - cycles_[i - 1].y);
     }
     return way;

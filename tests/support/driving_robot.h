@@ -13,8 +13,13 @@
 #include "signals/names.h"
 #include "support/drive_log.h"
 #include "support/node_processes.h"
+#include "support/stall_witness.h"
 
 namespace robot_control {
+
+/// What a machine that stood still for loss_cycles may latch by itself.
+inline constexpr std::uint64_t kStallCauses = kCauseDriverLost | kCauseControllerLost | kCauseEstimatorLost |
+                                              kCauseMonitorLate | kCauseCommandStale | kCauseGateRefuses;
 
 /// From a signal to standstill.
 struct MeasuredStop {
@@ -35,7 +40,8 @@ class DrivingRobot {
   static constexpr std::size_t kRestCycles = 20;  ///< twice what the monitor asks for
 
   explicit DrivingRobot(const Parameters& parameters)
-      : nodes_(parameters),
+      : witness_(parameters.loop.core),
+        nodes_(parameters),
         log_(nodes_.bus()),
         sensors_(nodes_.bus(), ChannelNames::kSensors),
         permits_(nodes_.bus(), ChannelNames::kPermit),
@@ -172,7 +178,18 @@ class DrivingRobot {
     if (!await([&] { return ask_reset() == 0; })) throw std::runtime_error("is not released: " + situation());
   }
 
-  /// From whatever state the robot is in. What a machine that stalls latches meanwhile is released.
+  /// Stopped by nothing but what a stall latches, after one that the witness saw while the robot was to drive. Of
+  /// loss_cycles periods, command and permit may have survived the first kPermitLife.
+  bool stalled() const {
+    const std::uint64_t causes = permit().causes;
+    const auto& parameters = nodes_.parameters();
+    const double lost = static_cast<double>(parameters.safety.loss_cycles - kPermitLife) * parameters.loop.period();
+    return causes != 0 && (causes & ~kStallCauses) == 0 &&
+           static_cast<double>(witness_.longest_gap_ns(released_ns_)) * 1e-9 >= lost;
+  }
+
+  /// From whatever state the robot is in: its stop may be seen late, so one on the way is released. A second one is
+  /// released after a stall alone; else it throws std::runtime_error.
   void drive_at_full_speed() {
     const auto fast = [&] { return !log_.empty() && log_.last().speed > 0.97 * kFullSpeed; };
     const auto latched = [&] { return permit().state == SupervisorState::kStopped; };
@@ -181,8 +198,11 @@ class DrivingRobot {
       if (unreleased()) ask_for(0);
       if (!await([&] { return !unreleased(); })) throw std::runtime_error("not ready: " + situation());
       if (latched()) release();
+      released_ns_ = monotonic_ns();
       ask_for(kFullSpeed);
       if (await([&] { return fast() || latched() || unreleased(); }) && fast()) return;
+      if (tries > 0 && latched() && !stalled())
+        throw std::runtime_error("stopped without a stall of this machine: " + situation());
     }
     throw std::runtime_error("does not reach full speed: " + situation());
   }
@@ -228,6 +248,7 @@ class DrivingRobot {
   static constexpr std::int64_t kPollNs = 20'000'000;
   static constexpr std::int64_t kLookNs = 500'000;
 
+  StallWitness witness_;
   NodeProcesses nodes_;
   DriveLog log_;
   Input<SensorFrame> sensors_;
@@ -238,6 +259,7 @@ class DrivingRobot {
   std::optional<double> asked_;
   std::int64_t next_send_ns_ = 0;
   std::int64_t next_poll_ns_ = 0;
+  std::int64_t released_ns_ = 0;  // when it was last free to drive
   bool watching_ = true;
   bool mapping_ = true;
 };

@@ -19,7 +19,7 @@ from robot_control.msg import DriveState
 from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
-from system_support import NoBool, Program, RobotTestCase, repository, wait_for
+from system_support import NoBool, Program, RobotTestCase, again_after_a_stall, repository, wait_for
 
 
 class CommandSourcesTest(RobotTestCase):
@@ -129,6 +129,7 @@ class CommandSourcesTest(RobotTestCase):
             "its topic on the screen", lambda: "sent on /key_vel" in terminal.screen, every=lambda: terminal.type("w")
         )
 
+    @again_after_a_stall
     def test_a_pad_on_joy_commands_while_it_is_held_and_its_silence_stops(self) -> None:
         pad = Program("pad.py", "--joy", "_scale_linear:=0.3")
         self.addCleanup(pad.end)

@@ -1,6 +1,8 @@
 """What a shell does to the output of a program, and a name that is taken: one message, no traceback."""
 
+import ast
 import os
+import select
 import subprocess
 import sys
 import threading
@@ -8,6 +10,7 @@ import xmlrpc.server
 from pathlib import Path
 
 import pytest
+import roslib.packages
 from robot_control.common import ros_node
 from robot_control.common.ros_master import living
 
@@ -36,6 +39,41 @@ def test_an_output_that_cannot_be_written_is_one_message():
         ended = helped("estimate.py", full)
     assert ended.returncode == 1
     assert ended.stderr.rstrip() == "estimate.py: No space left on device"
+
+
+def test_a_line_is_in_a_pipe_as_soon_as_it_is_printed():
+    """The program waits for an answer to its line, as one behind `| tee` waits for its user."""
+    code = "from robot_control.common.program import run\ndef main(): print('ready'); input()\nrun(main)"
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment
+    ) as program:
+        printed, _, _ = select.select([program.stdout], [], [], 20.0)
+        program.communicate(b"on\n")
+    assert printed
+    assert program.returncode == 0
+
+
+def test_what_a_program_returns_is_its_exit_code():
+    code = "from robot_control.common.program import run; run(lambda: 7)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 7
+
+
+def begins_with(path, call):
+    """Whether the last statement of a Python program is that call, by itself or below `if __name__ == "__main__"`."""
+    last = ast.parse(path.read_text()).body[-1]
+    return ast.unparse(last.body[-1] if isinstance(last, ast.If) else last) == call
+
+
+def test_every_program_writes_its_lines_at_once():
+    """Python's by `run`, nodes by `run_node`; expand_xacro writes a document for the program that called it."""
+    modules = [path for path in (SCRIPTS / "robot_control").rglob("*.py") if "__main__" in path.read_text()]
+    python = {*SCRIPTS.glob("*.py"), *modules} - {SCRIPTS / "robot_control/expand_xacro.py"}
+    assert [str(path) for path in sorted(python) if not begins_with(path, "run(main)")] == []
+    nodes = set((SCRIPTS.parent / "src/nodes").glob("*.cpp"))
+    assert [str(path) for path in sorted(nodes) if "return run_node(" not in path.read_text()] == []
+    installed = Path(roslib.packages.find_node("robot_control", "telemetry")[0]).parent
+    assert {path.stem for path in installed.iterdir()} <= {path.stem for path in python | nodes}
 
 
 class Answering:

@@ -100,32 +100,60 @@ src/all: src/CMakeFiles/program.dir/all
 """  # docs belongs to a folder that `all` does not build
 
 
-def progress(tmp_path, *lines):
-    """What a build with such a log has done; None: it has no Makefiles yet."""
-    (tmp_path / "log").write_text("".join(f"{line}\n" for line in lines))
+OBJECTS = {"src/CMakeFiles/library.dir/Unity/unity_0.cxx.o": 72_000, "src/CMakeFiles/program.dir/main.cpp.o": 2_000}
+"""bytes of their sources; with 8 kB each the work is 80 and 10"""
+
+
+def make_build_folder(folder):
+    """Configured, nothing compiled; the library is a unity build of two sources."""
+    entries = []
+    for name, size in [*OBJECTS.items(), ("tests/CMakeFiles/docs.dir/docs.cpp.o", 10_000)]:
+        source = folder / name.removesuffix(".o")
+        source.parent.mkdir(parents=True)
+        source.write_text("x" * (size - 1) + "\n")
+        if "Unity" in name:
+            halves = [source.with_name("a.cpp"), source.with_name("b.cpp")]
+            source.write_text("".join(f'#include "{half}"\n' for half in halves))
+            for half in halves:
+                half.write_text("x" * (size // 2 - 1) + "\n")
+        place, _, inside = name.partition("/CMakeFiles/")
+        command = f'c++ -DNAME=\\"r\\" -o CMakeFiles/{inside} -c {source}'
+        entries.append(f'{{\n  "directory": "{folder / place}",\n  "command": "{command}",\n  "file": "{source}"\n}}')
+    (folder / "compile_commands.json").write_text("[\n" + ",\n".join(entries) + "\n]")
+    (folder / "CMakeFiles").mkdir(exist_ok=True)
+    (folder / "CMakeFiles" / "Makefile2").write_text(MAKEFILE)
+
+
+def progress(folder, *lines, target="all"):
+    """What a build with such a log has done."""
+    (folder / "log").write_text("".join(f"{line}\n" for line in lines))
     script = 'source "$0"; build_progress "$@"'
-    return shell(
-        "bash", "-euc", script, str(SCRIPTS / "shell" / "build_progress.sh"), str(tmp_path / "log"), str(tmp_path)
-    ).stdout
+    command = ["bash", "-euc", script, str(SCRIPTS / "shell" / "build_progress.sh"), str(folder / "log"), str(folder)]
+    return shell(*command, target).stdout
 
 
-def test_a_build_says_how_many_of_its_targets_are_done(tmp_path):
+def test_a_build_says_how_much_of_its_work_and_how_many_of_its_targets_are_done(tmp_path):
     assert progress(tmp_path, "-- The CXX compiler identification is GNU") == "configuring\n"
-    (tmp_path / "CMakeFiles").mkdir()
-    (tmp_path / "CMakeFiles" / "Makefile2").write_text(MAKEFILE)
-    log = ["[  5%] Building CXX object a.o", "[ 33%] Built target messages", "[ 40%] Building CXX object b.o"]
-    assert progress(tmp_path, *log) == "40 % of the steps, 1 of 3 targets\n"
-    log += ["[ 66%] Built target library", "[100%] Built target program"]
-    assert progress(tmp_path, *log) == "100 % of the steps, 3 of 3 targets\n"
+    make_build_folder(tmp_path)
+    library, program = OBJECTS
+    log = ["[ 33%] Built target messages", f"[ 50%] Building CXX object {library}"]
+    assert progress(tmp_path, *log) == "0 % of the work, 1 of 3 targets\n"
+    (tmp_path / library).touch()  # compiled, not linked
+    assert progress(tmp_path, *log) == "88 % of the work, 1 of 3 targets\n"
+    assert progress(tmp_path, *log, target="library") == "100 % of the work, 1 of 2 targets\n"
+    log += ["[ 66%] Built target library", f"[ 80%] Building CXX object {program}"]
+    assert progress(tmp_path, *log) == "88 % of the work, 2 of 3 targets\n"
+    log += ["[100%] Built target program"]
+    assert progress(tmp_path, *log) == "100 % of the work, 3 of 3 targets\n"
 
 
 def test_a_long_build_is_not_silent_and_its_exit_code_is_that_of_the_command(tmp_path):
-    command = (
-        f'source "$0"; with_progress {tmp_path}/log {tmp_path} bash -c "echo \'[ 12%] Building\'; sleep 4; exit 7"'
-    )
+    make_build_folder(tmp_path)
+    printed = f"[ 12%] Built target messages\n[ 20%] Building CXX object {next(iter(OBJECTS))}"
+    command = f'source "$0"; with_progress {tmp_path}/log {tmp_path} bash -c "echo \'{printed}\'; sleep 4; exit 7"'
     done = shell("env", "BUILD_PROGRESS_PAUSE=1", "bash", "-euc", command, str(SCRIPTS / "shell" / "build_progress.sh"))
     assert done.returncode == 7
-    assert "12 % of the steps" in done.stdout
+    assert "0 % of the work, 1 of 3 targets" in done.stdout
 
 
 def test_every_build_shows_its_progress():

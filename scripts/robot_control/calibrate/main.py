@@ -99,7 +99,7 @@ class Wizard:
         """All measurements."""
         options = self.options
         self.lengths, self.places = list(options.measured), list(options.returned)
-        print(space(options), flush=True)
+        print(space(options))
         self._permission("Is the path free, and a hand at the emergency stop?")
         straights: list[Straight] = []
         squares: list[Square] = []
@@ -151,7 +151,7 @@ class Wizard:
         if not self.options.truth:
             print(MARKS)
         self._permission(f"{title}: ready?")
-        print(title, flush=True)
+        print(title)
         self._rest()
         begin = self._truth()
         self.robot.begin()

@@ -1,8 +1,9 @@
-"""The outermost call of a program: what a user's shell does to its output is no traceback."""
+"""The outermost call of a program: each line is written at once, and an output that fails is no traceback."""
 
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import signal
 import sys
@@ -13,15 +14,19 @@ from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message
 
 
-def run(main: Callable[[], object]) -> None:
-    """Calls `main`.
+def run(main: Callable[[], int | None]) -> None:
+    """Calls `main`; its result is the exit code, as that of `sys.exit`.
+
+    A line that is printed reaches a file or a pipe at once, not when Python's buffer is full.
 
     Where the reader of the output has left, as after `| head`, the program ends as SIGPIPE ends others: without a word,
     with 141. An output that cannot be written, and any other OSError, is one message and exit code 1.
     """
+    if isinstance(sys.stdout, io.TextIOWrapper):  # it is None after `>&-`
+        sys.stdout.reconfigure(line_buffering=True)
     try:
         try:
-            main()
+            sys.exit(main())
         finally:
             if sys.stdout is not None:
                 sys.stdout.flush()

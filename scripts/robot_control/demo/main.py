@@ -17,6 +17,7 @@ from typing import IO
 
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import printable
+from robot_control.common.program import run
 from robot_control.common.run_log import LogError, read_log
 from robot_control.demo.arguments import parse
 from robot_control.demo.loop_timing import processor_time, stolen_share
@@ -233,4 +234,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run(main)

@@ -45,7 +45,7 @@ def _wait_for_subscriber(publisher: rospy.Publisher, signals: Signals) -> None:
 
 def _say_last(missed: int) -> None:
     """On stdout: rospy's logging may be closed already."""
-    print("cmd_vel: zero" + (f", which {missed} of the subscribers did not take" if missed else ""), flush=True)
+    print("cmd_vel: zero" + (f", which {missed} of the subscribers did not take" if missed else ""))
 
 
 class Statuses:

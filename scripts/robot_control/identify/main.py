@@ -96,8 +96,7 @@ def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, 
     with recording(running, settings.path, signals.going_on) as log:
         print(
             f"driving {excitation.seconds:.0f} s: up to {excitation.linear:.2f} m/s, {excitation.reach:.2f} m ahead "
-            f"and back, then turns on the spot, up to {excitation.angular:.2f} rad/s. Ctrl-C stops",
-            flush=True,
+            f"and back, then turns on the spot, up to {excitation.angular:.2f} rad/s. Ctrl-C stops"
         )
         _follow(robot, excitation, signals)
         return log.read()

@@ -16,6 +16,7 @@ from robot_control import _robot_control
 from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import printable
+from robot_control.common.program import run
 from robot_control.common.run_log import LogError
 from robot_control.drive.send_plan import positive
 from robot_control.installed_files import share_file
@@ -138,4 +139,4 @@ def main(given: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

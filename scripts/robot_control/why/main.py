@@ -49,7 +49,7 @@ class Screen:
 
 
 def _print_once(facts: Facts) -> int:
-    print("\n".join(render(facts, _look_of(sys.stdout))), flush=True)
+    print("\n".join(render(facts, _look_of(sys.stdout))))
     return 1 if judge(facts).verdict is Verdict.STOPPED else 0
 
 

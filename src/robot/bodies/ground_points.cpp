@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace robot_control {
 namespace {
@@ -61,15 +62,18 @@ const WheelModel* rolling_body(const RobotModel& robot, const RigidBody& body) {
   return nullptr;
 }
 
+std::vector<Eigen::Vector3d> ground_points(const RobotModel& robot, const RigidBody& body) {
+  if (const WheelModel* wheel = rolling_body(robot, body))
+    return {lowest(*wheel, body.in_root.linear() * body.joint.axis)};
+  std::vector<Eigen::Vector3d> points;
+  for (const Shape& shape : body.shapes) add_shape(shape, body.in_root * shape.in_body, points);
+  return points;
+}
+
 std::vector<Eigen::Vector3d> ground_points(const RobotModel& robot) {
   std::vector<Eigen::Vector3d> points;
-  for (const RigidBody& body : robot.bodies->bodies) {
-    if (const WheelModel* wheel = rolling_body(robot, body)) {
-      points.push_back(lowest(*wheel, body.in_root.linear() * body.joint.axis));
-      continue;
-    }
-    for (const Shape& shape : body.shapes) add_shape(shape, body.in_root * shape.in_body, points);
-  }
+  for (const RigidBody& body : robot.bodies->bodies)
+    std::ranges::copy(ground_points(robot, body), std::back_inserter(points));
   return points;
 }
 

@@ -13,6 +13,9 @@ namespace robot_control {
 /// Rims of cylinders as 16 points each, the lowest among them; a sphere as its lowest point.
 std::vector<Eigen::Vector3d> ground_points(const RobotModel& robot);
 
+/// Those of one body.
+std::vector<Eigen::Vector3d> ground_points(const RobotModel& robot, const RigidBody& body);
+
 /// m, of the root frame above the plane that the lowest of them touches.
 double standing_height(const RobotModel& robot);
 

@@ -40,6 +40,7 @@ class Lumper {
     result_.driven_joints = document.driven;
     result_.unsaid_axes = document.unsaid_axes;
     note_turned_origins();
+    result_.sideways_names = document.sideways_names;
     result_.sideways_plugins = document.sideways_plugins;
     result_.steering_plugins = document.steering_plugins;
     const auto& links = document.model->links_;

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "description/sideways_names.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {
@@ -81,6 +82,7 @@ struct RigidBodies {
   std::map<std::string, JointType> joints;  ///< all, fixed ones too
   std::vector<std::string> link_order;      ///< in the order of the file
   std::set<std::string> driven_joints;      ///< of all kinds; BodyJoint::driven
+  std::vector<SidewaysName> sideways_names;
   std::set<std::string> sideways_plugins;   ///< UrdfDocument
   std::set<std::string> steering_plugins;   ///< likewise
   std::set<std::string> unsaid_axes;        ///< joints whose axis is 1 0 0 for want of another

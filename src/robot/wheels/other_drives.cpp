@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "description/wording.h"
 #include "robot/bodies/feet.h"
@@ -19,6 +20,9 @@ constexpr double kAlike = 0.1;  // of the radius
 const char* const kRemedy =
     "Only differential and skid-steer drives are supported; to drive it as one all the same, name the wheels by "
     "robot/left_wheel_joints: […] and robot/right_wheel_joints: […]";
+
+constexpr const char* kPlain =
+    "they are driven as plain ones, so the robot will not go sideways, and turns otherwise than with such wheels";
 
 class Judge {
  public:
@@ -99,15 +103,15 @@ class Judge {
 
   /// What the wheel's own names say, and not that of the whole robot.
   void judge_names() {
+    if (named_) return;  // note_sideways_names says it
     for (const RollingBody& wheel : train_.wheels) {
       const RigidBody& body = robot_.bodies[wheel.body];
       for (const std::string word : {"mecanum", "omni"}) {
         const auto says = [&](const std::string& name) { return lower_case(name).find(word) != std::string::npos; };
         if (!says(body.joint.name + " " + body.name) || says(robot_.bodies[0].name + " " + robot_.name)) continue;
-        refuse_or_note(body, "its name says " + word +
-                                 ": such a wheel rolls sideways, too, and only plain wheels are "
-                                 "driven here");
-        break;
+        refuse(robot_.source, joint_element(body.joint.name),
+               "its name says " + word + ": such a wheel rolls sideways, too, and only plain wheels are driven here",
+               kRemedy);
       }
     }
   }
@@ -135,8 +139,7 @@ void note_plugins(const RigidBodies& robot, std::vector<RobotNote>& notes) {
   for (const std::string& plugin : robot.sideways_plugins) {
     notes.push_back(
         {RobotNote::Kind::kSuspicious, "<plugin> " + plugin,
-         "it moves a robot sideways, too: the wheels may be omni or mecanum wheels; they are driven as plain "
-         "ones, and do not roll sideways"});
+         "it moves a robot sideways, too: the wheels may be omni or mecanum wheels; " + std::string(kPlain)});
   }
   for (const std::string& plugin : robot.steering_plugins) {
     notes.push_back({RobotNote::Kind::kSuspicious, "<plugin> " + plugin,
@@ -144,10 +147,36 @@ void note_plugins(const RigidBodies& robot, std::vector<RobotNote>& notes) {
   }
 }
 
+/// A caster may be an omni wheel, and a part that rolls nowhere may be called so. Two wheels are no such base, unless
+/// their own names say it.
+bool is_of_the_drive(const RigidBodies& robot, const DriveTrain& train, const SidewaysName& name) {
+  const std::size_t body = name.link.empty() ? 0 : robot.links.at(name.link).body;
+  if (std::ranges::find(train.wheels, body, &RollingBody::body) != train.wheels.end()) return true;
+  if (train.wheels.size() == 2 || std::ranges::find(train.casters, body, &RollingBody::body) != train.casters.end()) {
+    return false;
+  }
+  return name.link.empty() || name.link == robot.bodies[0].name || name.word != "omni";
+}
+
+void note_sideways_names(const RigidBodies& robot, const DriveTrain& train, std::vector<RobotNote>& notes) {
+  std::set<std::string> others;
+  const SidewaysName* first = nullptr;
+  for (const SidewaysName& name : robot.sideways_names) {
+    if (!is_of_the_drive(robot, train, name)) continue;
+    if (first == nullptr) first = &name;
+    if (name.element != first->element) others.insert(name.element);
+  }
+  if (first == nullptr) return;
+  const std::string more = others.empty() ? "" : ", as " + std::to_string(others.size()) + " other names do";
+  notes.push_back({RobotNote::Kind::kSuspicious, first->element,
+                   "its name says " + first->word + more + ": if the wheels are such, " + kPlain});
+}
+
 }  // namespace
 
 void judge_other_drives(const RigidBodies& robot, const DriveTrain& train, bool named, std::vector<RobotNote>& notes) {
   note_plugins(robot, notes);
+  note_sideways_names(robot, train, notes);
   const Judge judge(robot, train, named, notes);
 }
 

@@ -10,8 +10,9 @@
 ///               has it, where the user named no wheels; else noted
 ///   rollers     (rollers.h) refused where the file drives the wheel, or names no drive at all and the wheel stands as
 ///               high above the floor as the drive wheels do, within 10 % of their radius; likewise
-/// A drive wheel whose joint or link is called mecanum or omni, where the robot and its root are not, likewise.
-/// What moves the robot sideways or steers it, by the names of its plugins, is noted.
+/// A drive wheel whose joint or link is called mecanum or omni, where the robot and its root are not, is refused where
+/// the user named no wheels. What moves the robot sideways or steers it, by the names of its plugins, is noted; so are
+/// other names of the drive that say mecanum, omni or holonomic (sideways_names.h), all in one note.
 
 #include <vector>
 

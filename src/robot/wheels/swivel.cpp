@@ -10,11 +10,13 @@ constexpr double kWholeTurn = 1.9 * M_PI;  // rad: drawings stop a caster at Â±Ï
 
 }  // namespace
 
+bool is_swivel(const RigidBody& body) {
+  return body.joint.type != JointType::kPrismatic && std::abs((body.in_root.linear() * body.joint.axis).z()) > kUpright;
+}
+
 const RigidBody* swivel_of(const RigidBodies& robot, std::size_t body) {
   for (std::size_t i = robot.bodies[body].parent; i != 0; i = robot.bodies[i].parent) {
-    const RigidBody& ancestor = robot.bodies[i];
-    const bool turns = ancestor.joint.type != JointType::kPrismatic;
-    if (turns && std::abs((ancestor.in_root.linear() * ancestor.joint.axis).z()) > kUpright) return &ancestor;
+    if (is_swivel(robot.bodies[i])) return &robot.bodies[i];
   }
   return nullptr;
 }

@@ -9,8 +9,10 @@ namespace robot_control {
 
 inline constexpr double kLeastTrail = 0.05;  ///< of the wheel's radius
 
-/// The nearest joint between `body` and the root that turns about an axis within 37° of the vertical, by the body it
-/// moves; null: there is none.
+/// It turns about an axis within 37° of the vertical.
+bool is_swivel(const RigidBody& body);
+
+/// The nearest joint between `body` and the root that is a swivel, by the body it moves; null: there is none.
 const RigidBody* swivel_of(const RigidBodies& robot, std::size_t body);
 
 /// A caster's swivel turns it into the direction of travel by its trail, the distance by which the wheel follows the

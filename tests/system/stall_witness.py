@@ -1,0 +1,58 @@
+#!/usr/bin/python3
+"""A process that measures its own gaps: an independent witness that this machine stood still.
+
+As a program, `stall_witness.py CORE PRIORITY`, it wakes up again and again on that core (-1: any), under SCHED_FIFO
+where the priority is above 0 and granted. It prints when each gap ended and how long it was, until its parent ends.
+"""
+
+import contextlib
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PERIOD = 0.002
+"""s"""
+SHORTEST = 0.01
+"""s; shorter gaps are not reported"""
+
+
+class StallWitness:
+    """Runs it. Above the loop's priority on the loop's core, nothing of the loop can keep it waiting."""
+
+    def __init__(self, core: int, priority: int) -> None:
+        self._output = tempfile.NamedTemporaryFile(prefix="stall_witness-", suffix=".log")
+        command = [sys.executable, __file__, str(core), str(priority)]
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._output)
+
+    def saw(self, length: float, begin: float, end: float) -> bool:
+        """A gap at least so long, in s, that lies in that time (s, monotonic) in part."""
+        for line in Path(self._output.name).read_text().splitlines():
+            ended, gap = map(float, line.split())
+            if gap >= length and ended >= begin and ended - gap <= end:
+                return True
+        return False
+
+
+def main() -> None:
+    """Entry point of the program."""
+    core, priority = map(int, sys.argv[1:])
+    parent = os.getppid()
+    with contextlib.suppress(OSError):
+        if core >= 0:
+            os.sched_setaffinity(0, {core})
+        if priority > 0:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+    last = time.monotonic()
+    while os.getppid() == parent:
+        time.sleep(PERIOD)
+        now = time.monotonic()
+        if now - last >= SHORTEST:
+            print(f"{now:.6f} {now - last:.6f}", flush=True)
+        last = now
+
+
+if __name__ == "__main__":
+    main()

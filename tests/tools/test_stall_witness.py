@@ -1,0 +1,26 @@
+"""The witness of tests/system sees that this machine, here the witness alone, stood still, and when."""
+
+import signal
+import time
+
+from system.stall_witness import StallWitness
+
+STOPPED = 0.5
+"""s"""
+
+
+def test_a_stop_of_the_witness_is_seen_where_it_was_and_nowhere_else():
+    witness = StallWitness(core=-1, priority=0)
+    time.sleep(2 * STOPPED)  # it has begun
+    begin = time.monotonic()
+    witness.process.send_signal(signal.SIGSTOP)
+    time.sleep(STOPPED)
+    witness.process.send_signal(signal.SIGCONT)
+    end = time.monotonic()
+    while not witness.saw(STOPPED, begin, end):
+        assert time.monotonic() < end + 20.0
+        time.sleep(0.01)
+    assert not witness.saw(STOPPED, begin - 10.0, begin - STOPPED)
+    assert not witness.saw(10 * STOPPED, begin, end)
+    witness.process.kill()
+    witness.process.wait()
