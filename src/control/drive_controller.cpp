@@ -54,7 +54,8 @@ constexpr std::uint64_t kBrakeReasons = kReasonNoPermit | kReasonPermitBrake | k
 }  // namespace
 
 DriveController::DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period)
-    : period_(period),
+    : tuning_(drive_tuning(parameters, robot, period)),
+      period_(period),
       joint_count_(robot.joints.size()),
       kinematics_(robot),
       feed_forward_(measured_robot(robot, parameters.feed_forward)),
@@ -79,6 +80,7 @@ void DriveController::enter_run(const VelocityCommand& inbox, bool with_zero) no
 }
 
 void DriveController::tune(const DriveTuning& tuning) noexcept {
+  tuning_ = tuning;
   watch_.set_timeout(tuning.cmd_vel_timeout);
   limiter_.set_limits(speed_limits(tuning));
   const auto planned = [&](const PlanarTwist& acceleration) {

@@ -90,6 +90,9 @@ class DriveController {
   /// a lowered limit return to it as the limiter does. The values stay after `enter_run`.
   void tune(const DriveTuning& tuning) noexcept;
 
+  /// What it runs with: derived from the parameters, or the last that `tune` got.
+  const DriveTuning& tuning() const noexcept { return tuning_; }
+
   /// Fills everything but `out.head`.
   void step(const ControlInput& input, CommandFrame& out) noexcept;
 
@@ -110,6 +113,7 @@ class DriveController {
   void learn_ground_friction() noexcept;
   void drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept;
 
+  DriveTuning tuning_;
   double period_;
   std::uint64_t joint_count_;
   DriveKinematics kinematics_;

@@ -98,6 +98,21 @@ std::vector<std::string> doubts(const LogHeader& logged, const LogHeader& here) 
   return found;
 }
 
+/// Sentences on what a header says other than its own parameters and URDF, or than when it was written.
+std::vector<std::string> header_differences(const LogHeader& logged, const LogHeader& computed) {
+  std::vector<std::string> found;
+  if (!intact(logged)) found.emplace_back("header: one of its fields was changed: its checksum is that of others");
+  const auto compare = [&](const char* field, const auto& was, const auto& is) {
+    if (was != is) found.push_back(std::string("header: ") + field + " is not that of its parameters and its URDF");
+  };
+  compare("robot", logged.robot, computed.robot);
+  compare("joints", logged.joints, computed.joints);
+  compare("wheels", logged.wheels, computed.wheels);
+  compare("period", logged.period, computed.period);
+  compare("clock", logged.clock, computed.clock);
+  return found;
+}
+
 /// `logged`: the parameters of the log; `varied`: others, or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
   const Parameters parameters = parameters_in(logged, logged.first);
@@ -122,15 +137,25 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     const py::gil_scoped_release release;
     // All snapshots first: a telemetry that finds a node's rows before its snapshots writes the first of these late.
     TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+    if (!reader.of_this_version()) {
+      throw ReplayError(
+          "its messages Trace have other fields than those of this version: replay with the build that "
+          "made the log");
+    }
     header = reader.header();
     cut = reader.cut();
-    reader.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(header.period)); }});
+    reader.read({.message = [&](const TraceRow& row, const BagMessage& message) {
+      replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
+    }});
     replay.finish();
   }
   py::dict result = described(replay.report());
   result["varied"] = columns.arrays();
-  result["doubts"] = doubts(header, log_header(parameters, robot));
+  const LogHeader here = log_header(parameters, robot);
+  result["doubts"] = doubts(header, here);
+  result["header"] = header_differences(header, here);
   result["cut"] = cut;
+  result["record"] = header.record;
   result["live"] = live;
   result["period"] = header.period;
   return result;

@@ -16,12 +16,16 @@ void LoopReplay::note(const ClosedLoop& loop) {
     seal(*copy);
     replay_.add(*copy);
   }
-  rows_.emplace_back(loop.row());
+  encode_trace({.row = loop.row(), .joints = joints_}, messages_.emplace_back());
 }
 
 void LoopReplay::check() {
-  for (const OwnedRow& row : rows_) replay_.add(row.joined());
-  rows_.clear();
+  TraceRow row;
+  for (const std::string& message : messages_) {
+    decoder_.decode(message, row);
+    replay_.add(row, message, 0);
+  }
+  messages_.clear();
 }
 
 py::dict LoopReplay::report() {
@@ -38,6 +42,7 @@ py::dict described(const ReplayReport& report) {
     counts["compared"] = law.compared;
     counts["different"] = law.different;
     counts["not_compared"] = law.not_compared;
+    counts["missing"] = law.missing;
     laws[py::str(name_of(static_cast<LawName>(i)))] = counts;
   }
   py::list differences, gaps;
@@ -46,6 +51,9 @@ py::dict described(const ReplayReport& report) {
   py::dict result;
   result["exact"] = report.exact();
   result["laws"] = laws;
+  result["rows"] = report.rows;
+  result["different_rows"] = report.different_rows;
+  result["damaged_snapshots"] = report.damaged_snapshots;
   result["differences"] = differences;
   result["gaps"] = gaps;
   return result;

@@ -3,9 +3,10 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
 #include <vector>
 
-#include "replay/owned_row.h"
+#include "recording/trace_message.h"
 #include "replay/replay.h"
 #include "simulation/closed_loop.h"
 
@@ -14,7 +15,8 @@ namespace robot_control {
 class LoopReplay {
  public:
   /// Before the first step of `loop`.
-  explicit LoopReplay(const ClosedLoop& loop) : replay_(loop.parameters(), loop.robot()) {}
+  explicit LoopReplay(const ClosedLoop& loop)
+      : replay_(loop.parameters(), loop.robot()), joints_(loop.robot().joints.size()) {}
 
   /// After a step.
   void note(const ClosedLoop& loop);
@@ -27,12 +29,15 @@ class LoopReplay {
 
  private:
   Replay replay_;
-  std::vector<OwnedRow> rows_;
+  std::size_t joints_;
+  TraceDecoder decoder_{trace_definition()};
+  std::vector<std::string> messages_;  ///< of the rows that were noted, as a log has them
 };
 
 void bind_loop_replay(pybind11::module_& module);
 
-/// A report as Python has it: exact, laws {name: {compared, different, not_compared}}, differences, gaps.
+/// A report as Python has it: exact, laws {name: {compared, different, not_compared, missing}}, rows, different_rows,
+/// damaged_snapshots, differences, gaps.
 pybind11::dict described(const ReplayReport& report);
 
 }  // namespace robot_control

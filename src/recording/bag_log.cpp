@@ -72,7 +72,8 @@ void BagLog::write(const JoinedRow& row) {
   const bool moves = motion_.step(row, stamp_ns);
   recording_ =
       requested_ || parameters_.record == RecordMode::kAlways || (parameters_.record == RecordMode::kMotion && moves);
-  encode_trace({.row = row, .lost = lost_before_ + unwritten_, .joints = header_.joints.size()}, message_);
+  encode_trace({.row = row, .lost = lost_before_ + unwritten_, .joints = header_.joints.size(), .time_ns = time_ns},
+               message_);
   chunk_.add(kTrace, time_ns, message_);
   ++chunk_rows_;
   chunk_wanted_ = chunk_wanted_ || recording_;

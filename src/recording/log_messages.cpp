@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstring>
 #include <sstream>
 
+#include "recording/checksum.h"
 #include "recording/fields/trace_fields.h"
 #include "recording/packed_chunk.h"
 #include "recording/trace_message.h"
@@ -71,6 +73,15 @@ void each_header_field(Header& of, Visit visit) {
   visit("processor", of.processor);
   visit("libraries", of.libraries);
   visit("missing", of.missing);
+  visit("checksum", of.checksum);
+}
+
+constexpr std::size_t kChecksumDigits = 8;
+
+std::string checksum_text(std::string_view bytes) {
+  std::array<char, kChecksumDigits + 1> text{};
+  std::snprintf(text.data(), text.size(), "%08x", message_checksum(bytes, 0));
+  return text.data();
 }
 
 /// Of a member in a .msg.
@@ -112,8 +123,15 @@ void each_snapshot_number(Snapshot& of, Visit& visit) {
 
 std::string encode(const LogHeader& header) {
   Put put;
-  each_header_field(header, [&](std::string_view, const auto& member) { put(member); });
+  each_header_field(header, [&](std::string_view name, const auto& member) {
+    name == "checksum" ? put(checksum_text(put.bytes)) : put(member);
+  });
   return put.bytes;
+}
+
+bool intact(const LogHeader& header) {
+  const std::string sealed = encode(header);
+  return sealed.substr(sealed.size() - kChecksumDigits) == header.checksum;
 }
 
 std::string encode(const LawSnapshot& snapshot) {

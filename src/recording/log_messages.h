@@ -30,9 +30,13 @@ struct LogHeader {
   std::string processor = {};
   std::string libraries = {};  ///< C library
   std::string missing = {};    ///< of a black box: what could not be read of it, as a sentence; empty: nothing
+  std::string checksum = {};   ///< of all before it, 8 hexadecimal digits; `encode` writes another one
 };
 
-std::string encode(const LogHeader& header);
+/// Is this header what `encode` sealed?
+bool intact(const LogHeader& header);
+
+std::string encode(const LogHeader& header);      ///< sealed
 std::string encode(const LawSnapshot& snapshot);  ///< sealed
 
 /// By the names in `definition`, the text of the .msg with which it was recorded: a field that it has not keeps its

@@ -65,6 +65,11 @@ TraceDecoder::TraceDecoder(const std::string& definition) {
   }
 }
 
+bool TraceDecoder::of_this_version() const {
+  return std::ranges::equal(steps_, trace_fields(),
+                            [](const Step& step, const TraceField& field) { return step.field == &field; });
+}
+
 void TraceDecoder::decode(std::string_view message, TraceRow& row) const {
   row = {};
   ByteSource from(message);

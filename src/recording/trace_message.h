@@ -29,6 +29,9 @@ class TraceDecoder {
   /// Replaces `row`. Throws TraceError: the message is too short or too long, or a list is longer than its member.
   void decode(std::string_view message, TraceRow& row) const;
 
+  /// Are the fields those of this version, in their order?
+  bool of_this_version() const;
+
   /// Fields of this version that the log does not have.
   const std::vector<std::string>& missing() const noexcept { return missing_; }
 

@@ -1,5 +1,7 @@
 #include "recording/trace_reader.h"
 
+#include <algorithm>
+
 #include "recording/message_types.h"
 
 namespace robot_control {
@@ -27,7 +29,7 @@ void TraceReader::find_header(BagReader& bag, const BagChunk& chunk) {
 
 void TraceReader::look_at_connections(const BagReader& bag, const Use& use) {
   for (const auto& [number, connection] : bag.connections()) {
-    if (use.row && connection.type == trace_type().name && !rows_.contains(number)) {
+    if ((use.row || use.message) && connection.type == trace_type().name && !rows_.contains(number)) {
       rows_.emplace(number, connection.definition);
     }
     if (!use.snapshot || connection.type != snapshot_type().name || !snapshots_.insert(number).second) continue;
@@ -38,15 +40,16 @@ void TraceReader::look_at_connections(const BagReader& bag, const Use& use) {
 }
 
 void TraceReader::take(BagReader& bag, const BagChunk& chunk, const Use& use) {
-  if (use.row || use.snapshot) {
+  if (use.row || use.message || use.snapshot) {
     look_at_connections(bag, use);
     TraceRow row;
     try {
       bag.read(chunk, [&](const BagMessage& message) {
         const auto decoder = rows_.find(message.connection);
-        if (use.row && decoder != rows_.end()) {
+        if (decoder != rows_.end() && (use.row || use.message)) {
           decoder->second.decode(message.data, row);
-          use.row(row, static_cast<std::int64_t>(message.time_ns));
+          if (use.row) use.row(row, static_cast<std::int64_t>(message.time_ns));
+          if (use.message) use.message(row, message);
         } else if (use.snapshot && snapshots_.contains(message.connection)) {
           use.snapshot(decode_snapshot(message.data));
         }
@@ -57,6 +60,13 @@ void TraceReader::take(BagReader& bag, const BagChunk& chunk, const Use& use) {
   }
   const std::uint64_t end = chunk.data.begin + chunk.data.packed;
   if (use.chunk) use.chunk(static_cast<double>(end) / static_cast<double>(bag.size()));
+}
+
+bool TraceReader::of_this_version() const {
+  return std::ranges::all_of(bag_.connections(), [](const auto& each) {
+    const BagConnection& connection = each.second;
+    return connection.type != trace_type().name || TraceDecoder(connection.definition).of_this_version();
+  });
 }
 
 void TraceReader::read(const Use& use) {

@@ -21,6 +21,7 @@ class TraceReader {
   struct Use {
     std::function<void(const LogHeader&)> header = {};  ///< before the first row
     std::function<void(const TraceRow&, std::int64_t ros_time_ns)> row = {};
+    std::function<void(const TraceRow&, const BagMessage&)> message = {};  ///< the same row, and its bytes
     std::function<void(const LawSnapshot&)> snapshot = {};
     std::function<void(double share)> chunk = {};  ///< after each: the share of the file that is read
   };
@@ -33,6 +34,9 @@ class TraceReader {
   TraceReader(const std::string& path, const Use& use);
 
   const LogHeader& header() const noexcept { return *header_; }
+
+  /// Are the fields of its rows those of this version, in their order?
+  bool of_this_version() const;
 
   /// Everything in the order of the file. Throws TraceError for a message that is not as its definition says.
   void read(const Use& use);

@@ -39,6 +39,7 @@ class Continuity {
   template <class Restore>
   StateBefore before(const LawRow& row, const SnapshotStore& snapshots, Restore restore) {
     const bool follows = known_ && row.process == process_ && row.number == next_;
+    if (row.process == process_ && row.number > next_) report().missing += row.number - next_;
     if (known_ && !follows) lose(row.process == process_ ? "rows are missing" : "another process, without a snapshot");
     process_ = row.process;
     next_ = row.number + 1;

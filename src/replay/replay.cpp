@@ -10,6 +10,7 @@
 #include "replay/frame_fields.h"
 #include "replay/owned_row.h"
 #include "replay/replicas.h"
+#include "replay/row_check.h"
 #include "runtime/cycles/monitor_cycle.h"
 #include "runtime/gate_setup.h"
 #include "runtime/safety_limits.h"
@@ -17,25 +18,6 @@
 
 namespace robot_control {
 namespace {
-
-constexpr std::size_t kMostDifferences = 1000;
-
-/// The sensor frame that a node used, as the driver published it or, as paused or ended, published it again.
-bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& of, std::uint64_t checksum,
-                SensorFrame& out) {
-  const SensorFrame* found = published.find(checksum);
-  const bool again = found == nullptr;
-  if (again) found = published.find(of.run, of.cycle);
-  if (found == nullptr) return false;
-  out = *found;
-  if (!again) return true;
-  for (const DriverState state : {DriverState::kPaused, DriverState::kEnded}) {
-    out.driver_state = state;
-    seal(out);
-    if (out.head.checksum == checksum) return true;
-  }
-  return false;
-}
 
 /// Which of the frames that a law used is neither in the log nor computed again; empty: none.
 struct Needed {
@@ -61,7 +43,8 @@ FrameHead own_head(const FrameHead& head) {
 
 struct Replay::Parts {
   Parts(const Parameters& parameters, const RobotModel& robot)
-      : gate{Gate(joint_limits(robot), gate_parameters(parameters), parameters.loop.period()),
+      : row_check(robot.joints.size(), report),
+        gate{Gate(joint_limits(robot), gate_parameters(parameters), parameters.loop.period()),
              Continuity(LawName::kGate, report)},
         estimator{Estimator(parameters.estimator, robot, parameters.loop.period()),
                   Continuity(LawName::kEstimator, report),
@@ -77,11 +60,12 @@ struct Replay::Parts {
                 {},
                 {}} {}
 
-  void work_on(const OwnedRow& row);
-  void run(const OwnedRow& row, const DriverTrace& driver);
-  void run(const OwnedRow& row, const EstimatorTrace& trace);
-  void run(const OwnedRow& row, const ControllerTrace& trace);
-  void run(const OwnedRow& row, const MonitorTrace& trace);
+  void add(const OwnedRow& row);
+  void work_on(OwnedRow& row);
+  void run(const OwnedRow& row, DriverTrace& driver);
+  void run(const OwnedRow& row, EstimatorTrace& trace);
+  void run(const OwnedRow& row, ControllerTrace& trace);
+  void run(const OwnedRow& row, MonitorTrace& trace);
   std::string gate_input(const DriverTrace& driver, GateInput& input) const;
   void apply(const OwnedRow& row, const MonitorTrace& trace);
   void apply(const OwnedRow& row, const MonitorEvent& event);
@@ -95,7 +79,7 @@ struct Replay::Parts {
   }
 
   template <class Frame, class Replica>
-  void compare(const OwnedRow& row, Replica& replica, const LawRow& law, const Frame& logged,
+  void compare(const OwnedRow& row, Replica& replica, LawRow& law, Frame& logged, FaultKind fault,
                FrameHistory<Frame>& published);
   template <class Frame>
   void publish(const LawRow& law, const Frame& logged, const Frame* computed, FrameHistory<Frame>& published);
@@ -106,6 +90,7 @@ struct Replay::Parts {
   void differ(const OwnedRow& row, LawName law, const std::vector<FieldDifference>& fields);
 
   ReplayReport report;
+  RowCheck row_check;
   SnapshotStore snapshots;
   PublishedFrames frames;
   GateReplica gate;
@@ -131,10 +116,11 @@ void Replay::add(const LawSnapshot& snapshot) {
 }
 
 void Replay::add(const JoinedRow& row) {
-  parts_->rows.emplace_back(row);
-  if (parts_->rows.size() <= kAhead) return;
-  parts_->work_on(parts_->rows.front());
-  parts_->rows.pop_front();
+  parts_->add(OwnedRow(row));
+}
+
+void Replay::add(const TraceRow& row, std::string_view message, std::int64_t time_ns) {
+  parts_->add(OwnedRow(row, message, time_ns));
 }
 
 void Replay::finish() {
@@ -145,19 +131,27 @@ const ReplayReport& Replay::report() const noexcept {
   return parts_->report;
 }
 
-void Replay::Parts::work_on(const OwnedRow& row) {
+void Replay::Parts::add(const OwnedRow& row) {
+  rows.push_back(row);
+  if (rows.size() <= kAhead) return;
+  work_on(rows.front());
+  rows.pop_front();
+}
+
+/// Afterwards the row holds what was computed.
+void Replay::Parts::work_on(OwnedRow& row) {
   apply_early();
   if (row.driver() != nullptr) run(row, *row.driver());
   if (row.estimator() != nullptr) run(row, *row.estimator());
   if (row.controller() != nullptr) run(row, *row.controller());
   if (row.monitor() != nullptr) run(row, *row.monitor());
+  if (!row.message().empty()) row_check.check(row);
 }
 
 void Replay::Parts::differ(const OwnedRow& row, LawName law, const std::vector<FieldDifference>& fields) {
   ++report.laws[static_cast<std::size_t>(law)].different;
   for (const FieldDifference& field : fields) {
-    if (report.differences.size() == kMostDifferences) return;
-    report.differences.push_back({law, row.run(), row.cycle(), field.field, field.logged, field.replayed});
+    report.add({law, row.run(), row.cycle(), field.field, field.logged, field.replayed});
   }
 }
 
@@ -174,7 +168,7 @@ void Replay::Parts::publish(const LawRow& law, const Frame& logged, const Frame*
 }
 
 template <class Frame, class Replica>
-void Replay::Parts::compare(const OwnedRow& row, Replica& replica, const LawRow& law, const Frame& logged,
+void Replay::Parts::compare(const OwnedRow& row, Replica& replica, LawRow& law, Frame& logged, FaultKind fault,
                             FrameHistory<Frame>& published) {
   replica.continuity.compare();
   Frame& computed = replica.output;
@@ -189,6 +183,8 @@ void Replay::Parts::compare(const OwnedRow& row, Replica& replica, const LawRow&
     differ(row, replica.continuity.law(), fields);
   }
   publish(law, logged, &computed, published);
+  law.output = computed.head.checksum;
+  expect(computed, fault, logged);
 }
 
 /// Returns what is missing.
@@ -207,18 +203,20 @@ std::string Replay::Parts::gate_input(const DriverTrace& driver, GateInput& inpu
            .command_found = calls.command.found,
            .command = command,
            .sensors = &driver.sensors};
-  return unknown({{"sensor frame", intact(driver.sensors), driver.sensors.head.cycle},
-                  {"permit", permit != nullptr, calls.permit.cycle},
-                  {"command", command != nullptr, calls.command.cycle}});
+  return unknown(
+      {{"permit", permit != nullptr, calls.permit.cycle}, {"command", command != nullptr, calls.command.cycle}});
 }
 
-void Replay::Parts::run(const OwnedRow& row, const DriverTrace& driver) {
-  const LawRow& law = driver.calls.law;
-  if (intact(driver.sensors)) frames.sensors.add(driver.sensors.head.checksum, driver.sensors);
+void Replay::Parts::run(const OwnedRow& row, DriverTrace& driver) {
+  LawRow& law = driver.calls.law;
+  const bool has_sensors = intact(driver.sensors);
+  if (has_sensors) frames.sensors.add(driver.sensors.head.checksum, driver.sensors);
+  seal(driver.sensors);
+  law.sensors = driver.sensors.head.checksum;
   const StateBefore state = before(gate, law);
   if (state == StateBefore::kUnknown) return pass_over(row, gate);
   GateInput input;
-  const std::string missing = gate_input(driver, input);
+  const std::string missing = has_sensors ? gate_input(driver, input) : unknown({{"sensor frame", false, row.cycle()}});
   if (!missing.empty()) {
     gate.continuity.lose(missing);
     return pass_over(row, gate);
@@ -226,14 +224,19 @@ void Replay::Parts::run(const OwnedRow& row, const DriverTrace& driver) {
   if (state == StateBefore::kContinued && law.new_run != 0) gate.law.enter_run();
   const std::span<const JointCommand> commands = gate.law.step(input);
   gate.continuity.compare();
-  if (digest_of(commands, gate.law.report()) == law.output) return;
-  std::vector<FieldDifference> fields = differences(driver.gate, gate.law.report());
-  if (fields.empty()) fields = {{"commands", "others", "what the state and the inputs give"}};
-  differ(row, LawName::kGate, fields);
+  const std::uint64_t output = digest_of(commands, gate.law.report());
+  if (std::exchange(law.output, output) != output) {
+    std::vector<FieldDifference> fields = differences(driver.gate, gate.law.report());
+    if (fields.empty()) fields = {{"commands", "others", "what the state and the inputs give"}};
+    differ(row, LawName::kGate, fields);
+  }
+  driver.gate = gate.law.report();
+  driver.calls.permit = used(input.permit_found, *input.permit);
+  driver.calls.command = used(input.command_found, *input.command);
 }
 
-void Replay::Parts::run(const OwnedRow& row, const EstimatorTrace& trace) {
-  const EstimatorCalls& calls = trace.calls;
+void Replay::Parts::run(const OwnedRow& row, EstimatorTrace& trace) {
+  EstimatorCalls& calls = trace.calls;
   const StateBefore state = before(estimator, calls.law);
   SensorFrame sensors;
   const bool has_sensors = sensors_of(frames.sensors, trace.state.head, calls.law.sensors, sensors);
@@ -248,13 +251,13 @@ void Replay::Parts::run(const OwnedRow& row, const EstimatorTrace& trace) {
   const StateFrame* varied = variant == nullptr ? nullptr : variant->step(calls, sensors);
   estimator.law.step(sensors, estimator.output);
   estimator.output.first_cycle = calls.first_cycle;
-  compare(row, estimator, calls.law, trace.state, frames.state);
+  compare(row, estimator, calls.law, trace.state, fault_of(sensors.injected, FaultComponent::kEstimator), frames.state);
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .state = &estimator.output, .varied_state = varied});
 }
 
-void Replay::Parts::run(const OwnedRow& row, const ControllerTrace& trace) {
-  const ControllerCalls& calls = trace.calls;
+void Replay::Parts::run(const OwnedRow& row, ControllerTrace& trace) {
+  ControllerCalls& calls = trace.calls;
   const StateBefore state = before(controller, calls.law);
   SensorFrame sensors;
   const bool permitted = calls.permit.found == Lookup::kFrame;
@@ -277,13 +280,16 @@ void Replay::Parts::run(const OwnedRow& row, const ControllerTrace& trace) {
   if (calls.tuned != 0) controller.law.tune(trace.tuning);
   const CommandFrame* varied = variant == nullptr ? nullptr : variant->step(calls, input, controller.law);
   controller.law.step(input, controller.output);
-  compare(row, controller, calls.law, trace.command, frames.command);
+  compare(row, controller, calls.law, trace.command, fault_of(sensors.injected, FaultComponent::kController),
+          frames.command);
+  trace.tuning = controller.law.tuning();
+  calls.permit = permitted ? used(Lookup::kFrame, *input.permit) : UsedFrame{};
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .command = &controller.output, .varied_command = varied});
 }
 
-void Replay::Parts::run(const OwnedRow& row, const MonitorTrace& trace) {
-  const MonitorCalls& calls = trace.calls;
+void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
+  MonitorCalls& calls = trace.calls;
   const bool applied = monitor.applied_process == calls.law.process && monitor.applied_number == calls.law.number + 1;
   const StateBefore state = before(monitor, calls.law);
   if (state == StateBefore::kContinued && !applied) apply(row, trace);
@@ -307,7 +313,9 @@ void Replay::Parts::run(const OwnedRow& row, const MonitorTrace& trace) {
   monitor.head = own_head(trace.permit.head);
   const Permit* varied = variant == nullptr ? nullptr : variant->step(calls, monitor.input);
   monitor.law.step(monitor.input, monitor.output);
-  compare(row, monitor, calls.law, trace.permit, frames.permit);
+  compare(row, monitor, calls.law, trace.permit, fault_of(monitor.sensors.injected, FaultComponent::kMonitor),
+          frames.permit);
+  calls.command = used(calls.command.found, monitor.command);
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .permit = &monitor.output, .varied_permit = varied});
 }

@@ -5,6 +5,10 @@
 ///   rows     ─► its inputs: sensors, requests, and which frames of the other laws it used, by checksum
 ///            ─► step ─► checksum of the output, compared with that in the row; the output is what the others used
 ///
+/// Of a row that was read from a log, the whole message is compared: with what the laws gave, and the frames that they
+/// used, its fields are put together again, byte for byte. So what people read is what the laws computed; what no law
+/// computes is covered by the checksum of the message (message_differences.h).
+///
 /// A law whose state is not known (before its first snapshot, after rows that are missing, in another process) is not
 /// compared until its next snapshot; neither is one that used a frame that is neither in the log nor computed again.
 /// What was published instead of a law's output, because a fault was injected, is in the log, and is what the others
@@ -17,8 +21,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string_view>
 
 #include "parameters/parameters.h"
+#include "recording/trace_row.h"
 #include "replay/report.h"
 #include "replay/variant.h"
 #include "robot/robot_model.h"
@@ -41,8 +47,11 @@ class Replay {
   /// In any order, before the row that it belongs to. Throws ReplayError: it is of another build.
   void add(const LawSnapshot& snapshot);
 
-  /// In the order of the log.
+  /// In the order of the log, from memory: what the laws gave is compared by its checksum.
   void add(const JoinedRow& row);
+
+  /// In the order of the log, with its message and the time under which that stands: every field is compared as well.
+  void add(const TraceRow& row, std::string_view message, std::int64_t time_ns);
 
   /// After the last row.
   void finish();

@@ -21,6 +21,23 @@ struct PublishedFrames {
   FrameHistory<Permit> permit;
 };
 
+/// The sensor frame that a node used, as the driver published it or, as paused or ended, published it again.
+inline bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& of, std::uint64_t checksum,
+                       SensorFrame& out) {
+  const SensorFrame* found = published.find(checksum);
+  const bool again = found == nullptr;
+  if (again) found = published.find(of.run, of.cycle);
+  if (found == nullptr) return false;
+  out = *found;
+  if (!again) return true;
+  for (const DriverState state : {DriverState::kPaused, DriverState::kEnded}) {
+    out.driver_state = state;
+    seal(out);
+    if (out.head.checksum == checksum) return true;
+  }
+  return false;
+}
+
 struct GateReplica {
   Gate law;
   Continuity continuity;

@@ -1,6 +1,7 @@
 #include "replay/report.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace robot_control {
 
@@ -8,15 +9,20 @@ std::string_view name_of(LawName law) noexcept {
   return law == LawName::kGate ? "gate" : kLawNodes[static_cast<std::size_t>(law)];
 }
 
+void ReplayReport::add(ReplayDifference difference) {
+  if (differences.size() < kMostDifferences) differences.push_back(std::move(difference));
+}
+
 bool ReplayReport::exact() const noexcept {
   const bool same = std::ranges::all_of(laws, [](const LawReport& law) { return law.different == 0; });
-  return same && std::ranges::any_of(laws, [](const LawReport& law) { return law.compared != 0; });
+  return same && different_rows == 0 && damaged_snapshots == 0 &&
+         std::ranges::any_of(laws, [](const LawReport& law) { return law.compared != 0; });
 }
 
 std::string sentence(const ReplayDifference& difference) {
-  return std::string(name_of(difference.law)) + ", run " + std::to_string(difference.run) + ", cycle " +
-         std::to_string(difference.cycle) + ": " + difference.field + " is " + difference.replayed + ", logged as " +
-         difference.logged;
+  const std::string_view of = difference.law ? name_of(*difference.law) : "row";
+  return std::string(of) + ", run " + std::to_string(difference.run) + ", cycle " + std::to_string(difference.cycle) +
+         ": " + difference.field + " is " + difference.replayed + ", logged as " + difference.logged;
 }
 
 std::string sentence(const ReplayGap& gap) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,10 +15,10 @@ namespace robot_control {
 /// "gate", or the law's node.
 std::string_view name_of(LawName law) noexcept;
 
-/// One number that the law computes differently from the log.
+/// One number that is computed differently from the log.
 struct ReplayDifference {
-  LawName law = LawName::kGate;
-  std::int64_t run = 0;  ///< JoinedRow::run
+  std::optional<LawName> law;  ///< whose output it is; nothing: it is a field of the row
+  std::int64_t run = 0;        ///< JoinedRow::run
   std::uint64_t cycle = 0;
   std::string field;  ///< "joints[1].effort"; "digest" where the log holds no more than the frame's checksum
   std::string logged;
@@ -38,20 +39,28 @@ struct LawReport {
   std::uint64_t compared = 0;      ///< rows
   std::uint64_t different = 0;     ///< of these
   std::uint64_t not_compared = 0;  ///< rows
+  std::uint64_t missing = 0;       ///< rows of a process between two that are there
   std::uint64_t restored = 0;      ///< snapshots that the law was set to
 };
 
 struct ReplayReport {
+  static constexpr std::size_t kMostDifferences = 1000;
+
   std::array<LawReport, kLaws> laws;
+  std::uint64_t rows = 0;                     ///< whose messages were compared
+  std::uint64_t different_rows = 0;           ///< of these
   std::vector<ReplayDifference> differences;  ///< of the first rows that differ, in their order
   std::vector<ReplayGap> gaps;
   std::uint64_t damaged_snapshots = 0;  ///< whose checksum is wrong: not used
 
-  /// Every row that could be compared was computed again, bit for bit, and there was at least one.
+  /// The first kMostDifferences are kept.
+  void add(ReplayDifference difference);
+
+  /// Everything that could be compared was computed again, bit for bit, and there was at least one row.
   bool exact() const noexcept;
 };
 
-/// "diff_drive_controller, run 0, cycle 1234: joints[1].effort is 0.5, logged as 0.25"
+/// "diff_drive_controller, run 0, cycle 1234: joints[1].effort is 0.5, logged as 0.25"; of a field of the row: "row, …"
 std::string sentence(const ReplayDifference& difference);
 
 /// "safety_monitor, run 0, cycles 10 … 29 (20 rows): rows are missing"

@@ -166,9 +166,11 @@ def replayed(bag: Path) -> Replayed:
     """As replay.py does."""
     began = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
-        laws = replay_log(str(bag), recorded_setup(bag, Path(folder)).layers(), None)["laws"].values()
+        report = replay_log(str(bag), recorded_setup(bag, Path(folder)).layers(), None)
     seconds = time.process_time() - began
-    return Replayed(sum(law["different"] for law in laws), sum(law["not_compared"] for law in laws), seconds)
+    laws = report["laws"].values()
+    different = report["different_rows"] + len(report["header"]) + sum(law["different"] for law in laws)
+    return Replayed(different, sum(law["not_compared"] for law in laws), seconds)
 
 
 def run_nodes(programs: Path, folder: Path, settings: dict[str, Any], seconds: float) -> float:

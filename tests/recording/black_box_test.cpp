@@ -46,9 +46,13 @@ TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirst
 
   Replay replay(drive_parameters(), loop.robot());
   TraceReader reader(path("saved/run.bag"));
-  reader.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(reader.header().period)); },
+  reader.read({.message =
+                   [&](const TraceRow& row, const BagMessage& message) {
+                     replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
+                   },
                .snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
   replay.finish();
+  EXPECT_EQ(replay.report().different_rows, 0u);
   for (const LawReport& law : replay.report().laws) {
     EXPECT_EQ(law.different, 0u);
     const std::uint64_t first = (cycles.front() + kSnapshotCycles - 1) / kSnapshotCycles * kSnapshotCycles;

@@ -32,10 +32,15 @@ struct AReplayedLog : testing::Test {
     log->close();
     Replay replay(parameters, loop.robot());
     TraceReader reader(folder.path() / "run.bag");
-    const double period = reader.header().period;
-    reader.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(period)); },
+    EXPECT_TRUE(intact(reader.header()));
+    reader.read({.message =
+                     [&](const TraceRow& row, const BagMessage& message) {
+                       replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
+                     },
                  .snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
     replay.finish();
+    EXPECT_EQ(replay.report().rows, log->rows());
+    EXPECT_EQ(replay.report().different_rows, 0u);
     for (const LawReport& law : replay.report().laws) {
       EXPECT_EQ(law.different, 0u);
       EXPECT_EQ(law.not_compared, 0u);

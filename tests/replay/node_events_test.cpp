@@ -36,6 +36,10 @@ class RandomNodes {
     return recording.replay(parameters(), loop_.robot);
   }
 
+  ReplayReport replay_messages() {
+    return robot_control::replay(messages_, recording.snapshots, parameters(), loop_.robot);
+  }
+
   /// States that an estimator with the same parameters would have given otherwise than the log's.
   int varied_otherwise() {
     join_.finish();
@@ -141,8 +145,12 @@ class RandomNodes {
   }
 
   std::mt19937 random_;
-  Join join_{kPeriod, [this](const JoinedRow& row) { recording.rows.emplace_back(row); }};
+  std::vector<LoggedMessage> messages_;
   Loop loop_{Nodes::kWithFaults};
+  Join join_{kPeriod, [this](const JoinedRow& row) {
+               recording.rows.emplace_back(row);
+               log(row, loop_.robot.joints.size(), messages_);
+             }};
   std::uint64_t count_ = 0;
   std::uint64_t processes_ = 1;
   OperatorInput requests_;
@@ -157,6 +165,9 @@ TEST(ReplayedNodes, AreComputedAgainBitForBitWhateverHappens) {
     const ReplayReport report = nodes.replay();
     EXPECT_TRUE(report.exact()) << "seed " << seed << "\n" << text_of(report);
     EXPECT_TRUE(report.gaps.empty()) << "seed " << seed << "\n" << text_of(report);
+    const ReplayReport of_log = nodes.replay_messages();
+    EXPECT_TRUE(of_log.exact()) << "seed " << seed << "\n" << text_of(of_log);
+    EXPECT_EQ(of_log.different_rows, 0u);
   }
 }
 

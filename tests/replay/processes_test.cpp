@@ -65,7 +65,9 @@ TEST_F(ReplayedProcesses, FromTheLogOfATelemetryThatWasKilled) {
   TraceReader log((folder / "run.bag").string());
   Replay replay(robot_.nodes().parameters(), robot_.nodes().robot());
   log.read({.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
-  log.read({.row = [&](const TraceRow& row, std::int64_t) { replay.add(row.joined(log.header().period)); }});
+  log.read({.message = [&](const TraceRow& row, const BagMessage& message) {
+    replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
+  }});
   replay.finish();
   EXPECT_TRUE(replay.report().exact()) << text_of(replay.report());
   for (const LawReport& law : replay.report().laws) EXPECT_GT(law.compared, 500u) << text_of(replay.report());

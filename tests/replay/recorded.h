@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "recording/trace_message.h"
 #include "replay/owned_row.h"
 #include "replay/replay.h"
 #include "simulation/closed_loop.h"
@@ -81,6 +82,33 @@ struct Recording {
     return again.report();
   }
 };
+
+/// Messages of a log, in their order, each with the time under which it stands there.
+struct LoggedMessage {
+  std::string bytes = {};
+  std::int64_t time_ns = 0;
+};
+
+inline void log(const JoinedRow& row, std::size_t joints, std::vector<LoggedMessage>& messages) {
+  LoggedMessage& message = messages.emplace_back();
+  message.time_ns = 1'000'000 * static_cast<std::int64_t>(messages.size());
+  encode_trace({.row = row, .joints = joints, .time_ns = message.time_ns}, message.bytes);
+}
+
+/// As from a file. Throws TraceError: a message cannot be read.
+inline ReplayReport replay(const std::vector<LoggedMessage>& messages, const std::vector<LawSnapshot>& snapshots,
+                           const Parameters& parameters, const RobotModel& robot) {
+  static const TraceDecoder kDecoder(trace_definition());
+  Replay again(parameters, robot);
+  for (const LawSnapshot& snapshot : snapshots) again.add(snapshot);
+  TraceRow row;
+  for (const LoggedMessage& message : messages) {
+    kDecoder.decode(message.bytes, row);
+    again.add(row, message.bytes, message.time_ns);
+  }
+  again.finish();
+  return again.report();
+}
 
 /// What went wrong, for the output of a test.
 inline std::string text_of(const ReplayReport& report) {

@@ -12,7 +12,15 @@ from pathlib import Path
 
 import pytest
 from robot_control import ClosedLoop, Estimator
-from robot_control.common.files import InputFileError, NewFiles, check_input, fit_for_message, printable, write_text
+from robot_control.common.files import (
+    InputFileError,
+    NewFiles,
+    check_input,
+    escaped_lines,
+    fit_for_message,
+    printable,
+    write_text,
+)
 from robot_control.installed_files import share_file
 
 
@@ -79,6 +87,10 @@ def test_a_program_refuses_such_a_name_in_one_line(program, arguments, tmp_path,
     said = capsys.readouterr().err.rstrip() or str(refusal.value)
     assert re.search(r"udcff\.(urdf|yaml|bag) is not UTF-8", said)
     assert "\n" not in said
+
+
+def test_lines_of_a_report_show_what_does_not_print_and_a_name_begins_no_line():
+    assert escaped_lines(["a robot\nexact\x1b[2J", "·"]) == "a robot\\nexact\\x1b[2J\n·"
 
 
 def test_a_message_repeats_no_control_character_and_no_long_input():

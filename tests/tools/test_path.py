@@ -90,6 +90,8 @@ def test_a_csv_file(tmp_path):
         ("x,y\n0,0\n1,one\n", "path.csv:3: not a point"),
         ("x,y\n0\n", "path.csv:2: not a point"),
         ("x,y\n0,0,0\n", "path.csv:2: not a point"),
+        ("x,y\n0,0\n1," + "1" * 131073 + "\n", "path.csv: is no CSV: field larger than field limit"),
+        ("x,y" + "y" * 131073, "path.csv: is no CSV: field larger than field limit"),
     ],
 )
 def test_a_csv_file_that_is_none_is_refused_with_its_line(tmp_path, text, words):

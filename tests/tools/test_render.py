@@ -62,7 +62,14 @@ def test_height_is_that_of_the_estimate_where_the_robot_tilts_and_none_on_a_plan
     assert read_moments(write_run(tmp_path / "b.csv", rows), 0.04)[2].z == pytest.approx(0.2)
 
 
-@pytest.mark.parametrize(("text", "words"), [("a,b\n1,2\n", "no columns"), (COLUMNS + "\n1,0,0,,,\n", "no pose")])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a,b\n1,2\n", "no columns"),
+        (COLUMNS + "\n1,0,0,,,\n", "no pose"),
+        (COLUMNS + "\n" + "1" * 131073, "run.csv: is no CSV: field larger than field limit"),
+    ],
+)
 def test_what_is_no_log_is_refused(tmp_path, text, words):
     path = tmp_path / "run.csv"
     path.write_text(text)

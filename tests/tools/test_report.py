@@ -177,6 +177,10 @@ def test_decimation_keeps_every_peak_where_it_is():
         ("distance: {most: .nan}", "distance.most: nan is no number"),
         ("distance: {most: yes}", "distance.most: True is no number"),
         ("[1, 2]", "holds no budgets"),
+        ("", "holds no budgets"),
+        ("{}", "holds no budgets"),
+        ("# most: 3", "holds no budgets"),
+        ("0", "holds no budgets"),
         ("a: [", "while parsing"),
     ],
 )
@@ -212,6 +216,16 @@ def test_ci_ends_with_the_verdict(run_csv, log, capsys):
     with pytest.raises(SystemExit, match="1 figures break their budget: gate_brakes"):
         program.main([run_csv(), "--ci", "--budgets", "budgets.yaml"])
     assert not list(Path().glob("*.html"))
+
+
+def test_a_ci_that_judges_nothing_is_refused(run_csv, log, tmp_path):
+    budgets = tmp_path / "budgets.yaml"
+    for name in [name for name in log if name.startswith("truth")]:
+        del log[name]
+    for text, said in (("", "holds no budgets"), ("position_error: {most: 0.02}", "nothing was judged")):
+        budgets.write_text(text)
+        with pytest.raises(SystemExit, match=said):
+            program.main([run_csv(), "--ci", "--budgets", str(budgets)])
 
 
 def test_what_cannot_be_read_is_refused_in_one_message(run_csv):

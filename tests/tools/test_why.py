@@ -55,6 +55,13 @@ def driving() -> Facts:
     )
 
 
+def test_text_of_other_programs_is_shown_without_control_characters(driving: Facts) -> None:
+    hostile = replace(driving, senders=("/a\x1b[2J\nIt moves.",), safety=Safety("DRIVE\x9b", "drive", held=12.0))
+    lines = render(hostile)
+    assert all(line.isprintable() for line in lines)
+    assert "It moves." not in lines[1:]
+
+
 def without(facts: Facts, *nodes: str) -> Facts:
     """These nodes are gone, and the monitor, if there, says so."""
     reports = {name: report for name, report in facts.reports.items() if name not in nodes}

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robot_control._robot_control import RunLogError, TraceError, save_black_box
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, utf8
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, utf8
 
 RING = "ring"
 BEFORE = "ring.before"
@@ -38,9 +38,9 @@ def main(arguments: list[str] | None = None) -> None:
         rows, _, missing = save_black_box(utf8(ring), utf8(bag))
     except (RunLogError, TraceError, OSError, ValueError, RuntimeError) as error:
         sys.exit(f"blackbox.py: {fit_for_message(in_words(error))}{_beside(given)}")
-    print(f"{rows} cycles of {ring} in {bag}{_beside(given)}")
+    print(escaped_lines(f"{rows} cycles of {ring} in {bag}{_beside(given)}".split("\n")))
     if missing:
-        print(f"blackbox.py: {missing}", file=sys.stderr)
+        print(escaped(f"blackbox.py: {missing}"), file=sys.stderr)
 
 
 def ring_of(path: Path) -> Path:

@@ -63,8 +63,17 @@ def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
 
 def printable(text: str, most: int = LARGEST_ECHO) -> str:
     """Text from outside for a message: at most `most` characters of it, those that do not print as escapes."""
-    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text[:most])
-    return shown + ("…" if len(text) > most else "")
+    return escaped(text[:most]) + ("…" if len(text) > most else "")
+
+
+def escaped(line: str) -> str:
+    """A line in which text from outside stands, for a terminal: characters that do not print, as escapes."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in line)
+
+
+def escaped_lines(lines: Iterable[str]) -> str:
+    """`escaped` lines, one below the other: a name that holds the end of a line begins none."""
+    return "\n".join(map(escaped, lines))
 
 
 def listed(names: Iterable[str]) -> str:

@@ -14,7 +14,7 @@ import yaml  # type: ignore[import-untyped]
 
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, fit_for_message
+from robot_control.common.files import NewFiles, escaped, fit_for_message
 from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
 from robot_control.common.run_log import is_run_log
@@ -62,7 +62,7 @@ def main(arguments: list[str] | None = None) -> None:
     except MemoryError:
         sys.exit("estimate.py: the recording needs more memory than there is; cut it into pieces")
     for path in _outputs(options):
-        print(f"wrote {path}", file=sys.stderr)
+        print(escaped(f"wrote {path}"), file=sys.stderr)
 
 
 def _with_negative_lists(arguments: list[str]) -> list[str]:

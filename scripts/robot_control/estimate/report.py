@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from robot_control._robot_control import slip_detection
+from robot_control.common.files import escaped_lines
 from robot_control.estimate.samples import IntArray, Robot, Samples
 from robot_control.offline_estimator import DEGRADED_REASONS, FLAGS, SENSORS, SLIP_REASONS, Estimate
 
@@ -75,7 +76,7 @@ class Summary:
             lines.append(("not valid", f"{self.seconds['invalid']:.1f} s"))
         lines += [("note", note) for note in samples.notes]
         lines = [*(("warning", warning) for warning in samples.warnings), *lines]
-        return "\n".join(f"{name:<16}{text}" for name, text in lines)
+        return escaped_lines(f"{name:<16}{text}" for name, text in lines)
 
     def _slip(self) -> str:
         names = [name for name, bit in SLIP_REASONS.items() if self.reasons & bit]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from robot_control._robot_control import BagError, BagReader, TraceError, write_run_csv
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, fit_for_message, utf8
+from robot_control.common.files import NewFiles, escaped, fit_for_message, utf8
 from robot_control.common.output_files import check_outputs
 from robot_control.common.run_log import LogError, is_bag
 from robot_control.export.mcap_file import McapError, write_mcap
@@ -44,7 +44,7 @@ def main(arguments: list[str] | None = None) -> None:
 
                 write_topics(options.input, files.name(options.topics))
         if cut:
-            print(f"export.py: {options.input}: {fit_for_message(cut)}", file=sys.stderr)
+            print(escaped(f"export.py: {options.input}: {cut}"), file=sys.stderr)
     except BagError as error:
         sys.exit(f"export.py: {fit_for_message(f'{options.input}: {error}')}")
     except REFUSALS as error:

@@ -9,7 +9,7 @@ import rospy
 
 from robot_control import ParameterError, RobotError
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.files import escaped, fit_for_message, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.run_log import FloatArray, LogError, read_log
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
@@ -66,11 +66,11 @@ def _fit(log: dict[str, FloatArray], settings: Settings, options: Options, sourc
     outcome = evaluate(log, settings, options.mass, source)
     print(outcome.table)
     for sentence in outcome.warnings:
-        print(f"! {sentence}")
+        print(escaped(f"! {sentence}"))
     write_text(options.output, outcome.yaml)
     print(
-        f"wrote {options.output}: rosparam load it (in the robot's namespace), start {CONTROLLER} again, then "
-        "rosservice call e_stop_reset: a restart beside the running robot is a stop"
+        escaped(f"wrote {options.output}: rosparam load it (in the robot's namespace), start {CONTROLLER} again, then ")
+        + "rosservice call e_stop_reset: a restart beside the running robot is a stop"
     )
 
 

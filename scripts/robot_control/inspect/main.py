@@ -9,7 +9,7 @@ from pathlib import Path
 
 from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.files import escaped, fit_for_message, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
 from robot_control.inspect.description import Description, describe, mjcf, stand
@@ -41,9 +41,9 @@ def main(arguments: list[str] | None = None) -> None:
     print(_json(robot) if options.json else report(robot))
     for written in (options.mjcf, options.picture):
         if written is not None:
-            print(f"wrote {written}", file=sys.stderr)
+            print(escaped(f"wrote {written}"), file=sys.stderr)
     if fallen is not None:
-        sys.exit(f"inspect_robot.py: understood, but it does not stand: {fallen}")
+        sys.exit(f"inspect_robot.py: understood, but it does not stand: {fit_for_message(str(fallen))}")
 
 
 def _parser() -> argparse.ArgumentParser:

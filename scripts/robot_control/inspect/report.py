@@ -6,6 +6,7 @@ import math
 import textwrap
 from typing import Any
 
+from robot_control.common.files import escaped_lines
 from robot_control.inspect.shapes import ground_height
 
 WIDTH = 110
@@ -25,7 +26,7 @@ def report(robot: dict[str, Any]) -> str:
     for section in (_casters(robot), _joints(robot), *(_notes(robot, kind) for kind in HEADINGS)):
         if section:
             lines += ["", *section]
-    return "\n".join(lines)
+    return escaped_lines(lines)
 
 
 def _body(robot: dict[str, Any]) -> list[str]:

@@ -131,19 +131,25 @@ def read_csv(path: Path) -> list[Waypoint]:
         check_input(path, LARGEST_FILE)
     except InputFileError as error:
         raise PathError(str(error)) from None
-    with path.open(newline="", encoding="utf-8", errors="replace") as file:
-        rows = csv.DictReader(file)
-        names = [name.strip() for name in rows.fieldnames or []]
-        if not {"x", "y"} <= set(names) <= set(COLUMNS) or len(set(names)) < len(names):
-            raise PathError(f"{path}: the first line must be x,y or x,y,yaw or x,y,yaw,speed; it is '{listed(names)}'")
-        rows.fieldnames = names
-        points = []
-        for row in rows:
-            try:
-                if None in row:
-                    raise ValueError  # more values than names
-                values = {name: float(row[name]) for name in names if (row[name] or "").strip()}
-                points.append(Waypoint(**values))
-            except (TypeError, ValueError):
-                raise PathError(f"{path}:{rows.line_num}: not a point of {','.join(names)}") from None
+    try:
+        with path.open(newline="", encoding="utf-8", errors="replace") as file:
+            return _points_of(path, csv.DictReader(file))
+    except csv.Error as error:
+        raise PathError(f"{path}: is no CSV: {error}") from None
+
+
+def _points_of(path: Path, rows: "csv.DictReader[str]") -> list[Waypoint]:
+    names = [name.strip() for name in rows.fieldnames or []]
+    if not {"x", "y"} <= set(names) <= set(COLUMNS) or len(set(names)) < len(names):
+        raise PathError(f"{path}: the first line must be x,y or x,y,yaw or x,y,yaw,speed; it is '{listed(names)}'")
+    rows.fieldnames = names
+    points = []
+    for row in rows:
+        try:
+            if None in row:
+                raise ValueError  # more values than names
+            values = {name: float(row[name]) for name in names if (row[name] or "").strip()}
+            points.append(Waypoint(**values))
+        except (TypeError, ValueError):
+            raise PathError(f"{path}:{rows.line_num}: not a point of {','.join(names)}") from None
     return points

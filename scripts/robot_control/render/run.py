@@ -40,18 +40,21 @@ def read_moments(path: Path, period: float) -> list[Moment]:
     check_input(path, LARGEST_TABLE)
     rows: list[dict[str, float]] = []
     run, due = "", -math.inf
-    with path.open(newline="", errors="replace") as file:
-        table = csv.DictReader(file)
-        names = [name for name in table.fieldnames or [] if _wanted(name)]
-        if not {"run", "time"} <= set(table.fieldnames or []):
-            raise LogError(f"{path}: no columns `run` and `time`: is it a run.csv?")
-        for row in table:
-            if row["run"] != run:
-                run, rows, due = row["run"], [], -math.inf
-            time = _number(row["time"])
-            if time >= due:
-                rows.append({name: _number(row[name]) for name in names})
-                due = (time if due == -math.inf else due) + period
+    try:
+        with path.open(newline="", errors="replace") as file:
+            table = csv.DictReader(file)
+            names = [name for name in table.fieldnames or [] if _wanted(name)]
+            if not {"run", "time"} <= set(table.fieldnames or []):
+                raise LogError(f"{path}: no columns `run` and `time`: is it a run.csv?")
+            for row in table:
+                if row["run"] != run:
+                    run, rows, due = row["run"], [], -math.inf
+                time = _number(row["time"])
+                if time >= due:
+                    rows.append({name: _number(row[name]) for name in names})
+                    due = (time if due == -math.inf else due) + period
+    except csv.Error as error:
+        raise LogError(f"{path}: is no CSV: {error}") from None
     pose = next((pose for pose in POSES if any(math.isfinite(row.get(f"{pose}_x", math.nan)) for row in rows)), None)
     if pose is None:
         raise LogError(f"{path}: no pose, neither true nor estimated")

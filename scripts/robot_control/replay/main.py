@@ -12,7 +12,7 @@ from typing import Any
 from robot_control import ParameterError, RobotError
 from robot_control._robot_control import BagError, replay_log
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, utf8
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, utf8
 from robot_control.common.picture_file import check_picture
 from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup
 
@@ -20,11 +20,11 @@ LAWS = ("gate", "state_estimator", "diff_drive_controller", "safety_monitor")
 VARIED = ("state_estimator.", "safety_monitor.")
 WITHOUT_EFFECT = "the controller reads it at its start alone, or it belongs to no law that is varied"
 MOST_LINES = 20
-EXACT, DIFFERENT, REFUSED = 0, 1, 2
+EXACT, NOT_COMPARED, REFUSED, DIFFERENT = 0, 1, 2, 3
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Entry point of scripts/replay.py: 0 exact, 1 something differs, 2 it cannot be replayed."""
+    """Entry point of scripts/replay.py: 0 exact, 1 rows not compared, 2 no replay, 3 something differs."""
     options = parse(arguments)
     try:
         if options.set or options.params:
@@ -35,12 +35,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
             report = replay_log(utf8(options.log), setup.layers(), varied)
         print(text_of(report, setup, options.law))
         for key in without_effect([key for key, _ in options.set], report["live"]):
-            print(f"! {key} has no effect here: {WITHOUT_EFFECT}")
+            print(escaped(f"! {key} has no effect here: {WITHOUT_EFFECT}"))
         if varied is not None:
             from robot_control.replay.picture import draw  # noqa: PLC0415 (matplotlib takes a second)
 
             draw(report["varied"], report["period"], options.plot)
-            print(f"wrote {options.plot}: what the laws gave, and would have given on the same inputs (open loop)")
+            print(
+                escaped(
+                    f"wrote {options.plot}: what the laws gave, and would have given on the same inputs (open loop)"
+                )
+            )
     except BagError as error:
         print(f"replay.py: {fit_for_message(f'{options.log}: {error}')}", file=sys.stderr)
         sys.exit(REFUSED)
@@ -55,7 +59,8 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="replay.py",
         description="Runs the laws of a log again, from its rows alone, and compares every bit of what they gave. "
-        "Exit code 0: all is the same; 1: something differs; 2: the log cannot be replayed.",
+        "Exit code 0: all is the same; 1: nothing differs, but not every row could be compared; 2: the log cannot be "
+        "replayed; 3: something differs.",
     )
     parser.add_argument("log", type=Path, metavar="LOG", help="run.bag")
     parser.add_argument("--law", choices=[*LAWS, "estimator", "controller", "monitor"], help="of this law alone")
@@ -88,29 +93,60 @@ def without_effect(keys: Sequence[str], live: Sequence[str]) -> list[str]:
 
 def verdict(report: Mapping[str, Any], law: str | None) -> int:
     """The exit code."""
-    laws = [report["laws"][name] for name in chosen(law)]
-    if not any(each["compared"] for each in laws):
+    if _differences(report, law):
+        return DIFFERENT
+    if not any(report["laws"][name]["compared"] for name in chosen(law)):
         return REFUSED
-    return DIFFERENT if any(each["different"] for each in laws) else EXACT
+    return NOT_COMPARED if _left_out(report, law) else EXACT
+
+
+def _differences(report: Mapping[str, Any], law: str | None) -> list[str]:
+    """What differs, in words; empty: nothing does."""
+    rows = max([report["different_rows"], *(report["laws"][name]["different"] for name in chosen(law))])
+    found = [f"{rows} rows DIFFER"] if rows else []
+    if report["header"]:
+        found.append("its header DIFFERS")
+    if report["damaged_snapshots"]:
+        found.append(f"{report['damaged_snapshots']} of its snapshots ARE DAMAGED")
+    return found
+
+
+def _left_out(report: Mapping[str, Any], law: str | None) -> list[str]:
+    """What was not compared, in words; empty: all was."""
+    rows = sum(report["laws"][name]["not_compared"] for name in chosen(law))
+    missing = max(report["laws"][name]["missing"] for name in chosen(law))
+    found = [f"{rows} rows NOT COMPARED"] if rows else []
+    if missing and report["record"] == "always":
+        found.append(f"{missing} rows NOT IN THE LOG")
+    if report["cut"]:
+        found.append("its end NOT COMPARED")
+    return found
 
 
 def text_of(report: Mapping[str, Any], setup: RecordedSetup, law: str | None) -> str:
-    """What was found."""
-    lines = [f"{setup.path}: {setup.robot}", *(f"! {doubt}" for doubt in report["doubts"])]
+    """What was found; in the first line whether all was compared, and whether it is the same."""
+    found = [*_differences(report, law), *_left_out(report, law)]
+    lines = [
+        f"{setup.path}: {', '.join(found) or 'every row is the same, bit for bit'}",
+        f"robot {setup.robot}",
+        *(f"! {doubt}" for doubt in report["doubts"]),
+    ]
     if report["cut"]:
         lines.append(f"! {report['cut']}")
     lines.append(f"{'law':<24}{'compared':>10}{'different':>11}{'not compared':>14}")
     for name in chosen(law):
         counts = report["laws"][name]
         lines.append(f"{name:<24}{counts['compared']:>10}{counts['different']:>11}{counts['not_compared']:>14}")
-    lines += _listed("differs", _of(report["differences"], law)) + _listed("not compared", _of(report["gaps"], law))
+    lines.append(f"{'fields of the rows':<24}{report['rows']:>10}{report['different_rows']:>11}{0:>14}")
+    lines += _listed("differs", [*report["header"], *_of(report["differences"], law)])
+    lines += _listed("not compared", _of(report["gaps"], law))
     if not any(report["laws"][name]["compared"] for name in chosen(law)):
         lines.append("nothing was compared: there is no snapshot of a law in this log")
-    return "\n".join(lines)
+    return escaped_lines(lines)
 
 
 def _of(sentences: Sequence[str], law: str | None) -> list[str]:
-    return [text for text in sentences if text.startswith(tuple(chosen(law)))]
+    return [text for text in sentences if text.startswith(("row", *chosen(law)))]
 
 
 def _listed(what: str, sentences: Sequence[str]) -> list[str]:

@@ -65,15 +65,15 @@ def read_budgets(path: Path, known: Mapping[str, Figure]) -> Budgets:
     """Bounds by the figure's name.
 
     Raises:
-        BudgetError: no such figure or bound, or a bound that is no number.
+        BudgetError: no budget at all, no such figure or bound, or a bound that is no number.
         OSError: it cannot be opened.
     """
     check_input(path, LARGEST_BUDGETS)
     try:
-        tree: Any = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
+        tree: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise BudgetError(f"{path}: {error}") from None
-    if not isinstance(tree, dict):
+    if not isinstance(tree, dict) or not tree:
         raise BudgetError(f"{path}: holds no budgets; a line is NAME: {{most: NUMBER}} or {{least: NUMBER}}")
     problems = [problem for name, bounds in tree.items() for problem in _problems(str(name), bounds, known)]
     if problems:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, write_text
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.pypi import use_packages
 from robot_control.common.run_log import read_run
@@ -30,6 +30,10 @@ def main(arguments: list[str] | None = None) -> None:
         sys.exit(f"report.py: {fit_for_message(in_words(error))}")
     except MemoryError:
         sys.exit("report.py: the log needs more memory than there is; cut it into pieces")
+    for path, of in zip(options.compare or [options.log], judged, strict=True):
+        if options.ci and not any(one.verdict in (Verdict.OK, Verdict.FAILED) for one in of):
+            reason = "none of the figures with a budget is in this log; name others: --budgets FILE"
+            sys.exit(f"report.py: {fit_for_message(str(path))}: nothing was judged: {reason}")
     wrong = [one for of in judged for one in failed(of)]
     if options.ci and wrong:
         sys.exit(f"report.py: {len(wrong)} figures break their budget: {', '.join(one.figure.name for one in wrong)}")
@@ -50,11 +54,11 @@ def report(options: argparse.Namespace) -> list[list[Judged]]:
     judged = [judge(of, budgets) for of in found]
     for drive, of in zip(drives, judged, strict=True):
         if drive.part:
-            print(f"report.py: {drive.name}: {fit_for_message(drive.part)}", file=sys.stderr)
-        print("\n".join(_table(drive, of)))
+            print(escaped(f"report.py: {drive.name}: {drive.part}"), file=sys.stderr)
+        print(escaped_lines(_table(drive, of)))
     if out is not None:
         _write(out, drives, judged)
-        print(f"wrote {out}", file=sys.stderr)
+        print(escaped(f"wrote {out}"), file=sys.stderr)
     return judged
 
 

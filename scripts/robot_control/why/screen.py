@@ -4,6 +4,7 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from robot_control.common.files import escaped
 from robot_control.why.diagnosis import (
     CONTROLLER,
     ESTIMATOR,
@@ -60,11 +61,12 @@ def render(facts: Facts, look: Look = PLAIN) -> list[str]:
 
 
 def _headline(answer: Answer, look: Look) -> str:
-    return "It moves." if answer.verdict is Verdict.MOVING and not look.times else answer.headline
+    return "It moves." if answer.verdict is Verdict.MOVING and not look.times else escaped(answer.headline)
 
 
 def _wrap(text: str, width: int) -> list[str]:
-    return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False) or [""]
+    line = escaped(text.replace("\n", " "))
+    return textwrap.wrap(line, width, subsequent_indent="  ", break_on_hyphens=False) or [""]
 
 
 Rows = Iterator[tuple[str, str, str]]

@@ -1,13 +1,12 @@
 #pragma once
 /// How a black box lies in its file (black_box_file.h): only for its writer and its reader.
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 
+#include "recording/checksum.h"
 #include "telemetry/log_error.h"
 
 namespace robot_control::black_box_layout {
@@ -33,26 +32,6 @@ inline constexpr std::size_t kAlignment = 8;
 inline std::size_t padded(std::size_t bytes) {
   return (bytes + kAlignment - 1) & ~(kAlignment - 1);
 }
-
-/// Sum of words; each mixes into all bits.
-class Checksum {
- public:
-  void mix(std::uint64_t word) {
-    sum_ = (sum_ ^ word) * 0x9E3779B97F4A7C15U;
-    sum_ ^= sum_ >> 29U;
-  }
-  void mix(std::string_view data) {
-    for (std::size_t i = 0; i < data.size(); i += 8) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, data.data() + i, std::min<std::size_t>(8, data.size() - i));
-      mix(word);
-    }
-  }
-  std::uint64_t sum() const { return sum_; }
-
- private:
-  std::uint64_t sum_ = 0xCBF29CE484222325U;
-};
 
 inline std::uint64_t checksum_of(const RecordHead& head, std::string_view data) {
   Checksum sum;

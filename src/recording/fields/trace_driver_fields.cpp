@@ -70,7 +70,7 @@ void add_truth(TraceFields& to) {
   to.push_back(field<D, f32>("truth_position", "m, of base_link from where it was in cycle 0; simulation only",
                              MEMBER(truth.pose_world.position)));
   to.push_back(field<D, f32>("truth_orientation", "x, y, z, w", MEMBER(truth.pose_world.orientation)));
-  to.push_back(shown<D>("truth_yaw", "rad", [](const D& d) { return yaw_of(d.truth.pose_world.orientation); }));
+  to.push_back(yaw<D>("truth_yaw", MEMBER(truth.pose_world.orientation)));
   to.push_back(field<D, f32>("truth_linear", "m/s, base axes", MEMBER(truth.twist_base.linear)));
   to.push_back(field<D, f32>("truth_angular", "rad/s, base axes", MEMBER(truth.twist_base.angular)));
 }

@@ -8,7 +8,7 @@ using namespace trace_words;
 void add_estimate(TraceFields& to) {
   to.push_back(field<E, f64>("estimate_position", "m, base_link in odom", MEMBER(state.pose_odom.position)));
   to.push_back(field<E, f32>("estimate_orientation", "x, y, z, w", MEMBER(state.pose_odom.orientation)));
-  to.push_back(shown<E>("estimate_yaw", "rad", [](const E& e) { return yaw_of(e.state.pose_odom.orientation); }));
+  to.push_back(yaw<E>("estimate_yaw", MEMBER(state.pose_odom.orientation)));
   to.push_back(field<E, f32>("estimate_linear", "m/s, base axes", MEMBER(state.twist_base.linear)));
   to.push_back(field<E, f32>("estimate_angular", "rad/s, base axes", MEMBER(state.twist_base.angular)));
   to.push_back(field<E, f32>("estimate_attitude", "x, y, z, w; base axes to odom axes, z against gravity",

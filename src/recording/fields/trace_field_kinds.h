@@ -25,6 +25,7 @@ using M = MonitorTrace;
 using f64 = double;
 using f32 = float;
 using u8 = std::uint8_t;
+using u32 = std::uint32_t;
 using u64 = std::uint64_t;
 using i64 = std::int64_t;
 }  // namespace trace_words
@@ -154,13 +155,17 @@ TraceField per_wheel(std::string name, std::string comment, Get get) {
       [](const Part*, std::size_t joints) { return std::min(joints, kTunedWheels); }, get);
 }
 
-/// For people alone: computed from the part, not read back.
-template <class Part, class Compute>
-TraceField shown(std::string name, std::string comment, Compute) {
-  TraceField result{.name = std::move(name), .type = wire_name<float>(), .comment = std::move(comment)};
+/// The yaw of an orientation that is recorded as float32, for people alone: computed from what is recorded, not read
+/// back.
+template <class Part, class Get>
+TraceField yaw(std::string name, Get) {
+  TraceField result{.name = std::move(name), .type = wire_name<float>(), .comment = "rad"};
   result.put = [](const TraceSource& source, std::string& to) {
     const Part* part = part_of<Part>(source.row);
-    put_number(to, part != nullptr ? static_cast<float>(Compute{}(*part)) : none<float>());
+    if (part == nullptr) return put_number(to, none<float>());
+    Quaternion recorded = Get{}(*part);
+    for (double& entry : recorded) entry = static_cast<float>(entry);
+    put_number(to, static_cast<float>(yaw_of(recorded)));
   };
   result.take = [](ByteSource& from, TraceRow&) {
     from.number<float>();

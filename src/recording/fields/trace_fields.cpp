@@ -1,5 +1,6 @@
 #include "recording/fields/trace_fields.h"
 
+#include "recording/checksum.h"
 #include "recording/fields/trace_field_groups.h"
 #include "recording/fields/trace_field_kinds.h"
 
@@ -75,6 +76,20 @@ void add_row(TraceFields& to) {
       [](S s) { return s.lost; }, [](R r, u64 value) { r.lost = value; }));
 }
 
+/// Not read back: a replay computes it again.
+void add_checksum(TraceFields& to) {
+  to.push_back({.name = "checksum",
+                .type = wire_name<u32>(),
+                .comment = "of the fields before it and of the message's time in the bag",
+                .put = [](const TraceSource& source,
+                          std::string& message) { put_number(message, message_checksum(message, source.time_ns)); },
+                .take =
+                    [](ByteSource& from, TraceRow&) {
+                      from.number<u32>();
+                      return true;
+                    }});
+}
+
 TraceFields all_fields() {
   TraceFields all;
   const auto group = [&](const char* heading, void (*add)(TraceFields&)) {
@@ -93,6 +108,7 @@ TraceFields all_fields() {
   group("Driver and gate.", add_driver);
   group("What each law was given beside these, and the checksum of what it computed: for a replay.", add_calls);
   group("Limits and gains in force.", add_tuning);
+  group("The message.", add_checksum);
   return all;
 }
 

@@ -3,7 +3,7 @@
 ///
 /// From this table come the writer, the reader and msg/Trace.msg (tests/docs/trace_message.py writes it). A new member
 /// of a row is one line here. What a law takes in is recorded bit for bit (float64, integers); what it puts out, which
-/// a replay computes again, as float32.
+/// a replay computes again, as float32. The last field is the checksum of all before it.
 
 #include <cstdint>
 #include <string>
@@ -49,8 +49,9 @@ class ByteSource {
 /// What a message is made of.
 struct TraceSource {
   const JoinedRow& row;
-  std::uint64_t lost = 0;  ///< rows dropped or overwritten in the rings, or not taken by the disk, until now
-  std::size_t joints = 0;  ///< of the robot: how long the lists of joints are
+  std::uint64_t lost = 0;    ///< rows dropped or overwritten in the rings, or not taken by the disk, until now
+  std::size_t joints = 0;    ///< of the robot: how long the lists of joints are
+  std::int64_t time_ns = 0;  ///< under which the message stands in the bag
 };
 
 struct TraceField {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "control/derived_tuning.h"
-
 namespace robot_control {
 
 ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
@@ -17,7 +15,7 @@ ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, co
       script_(std::move(script)),
       robot_hash_(robot.hash),
       snapshots_(LawName::kController) {
-  trace_.tuning = drive_tuning(parameters, robot, period);
+  trace_.tuning = controller_.tuning();
 }
 
 /// Everything but the command itself, which script and inbox share.

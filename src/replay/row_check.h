@@ -1,0 +1,45 @@
+#pragma once
+/// Compares the message of a row in a log with what the laws gave, field by field.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "replay/owned_row.h"
+#include "replay/report.h"
+#include "signals/frame_head.h"
+#include "signals/injected_fault.h"
+
+namespace robot_control {
+
+/// Makes of the frame in a row the one that the row has to hold: the computed one, or, where `fault` made another one
+/// of it, that one, whole and sealed. A fault breaks the seal of some frames (faults/faulty_frame_output.h); the
+/// content of one that it withheld is not known.
+template <class Frame>
+void expect(const Frame& computed, FaultKind fault, Frame& logged) noexcept {
+  const bool published = logged.head.kind == FrameKind::kFrame;
+  if (fault == FaultKind::kOk || (published && logged.head.checksum == computed.head.checksum)) {
+    logged = computed;
+  } else if (published && logged.head.checksum != ~checksum_of(logged)) {
+    seal(logged);
+  }
+}
+
+class RowCheck {
+ public:
+  /// `joints` of the robot. `report` lives longer.
+  RowCheck(std::size_t joints, ReplayReport& report) noexcept : joints_(joints), report_(report) {}
+
+  /// In the order of the log. `row` holds its message, and what was computed in place of what was logged.
+  void check(OwnedRow& row);
+
+ private:
+  void place(OwnedRow& row) noexcept;
+
+  std::size_t joints_;
+  ReplayReport& report_;
+  std::int64_t run_ = -1;  ///< of the last row that repeats none; -1: there is none
+  std::uint64_t run_id_ = 0;
+  std::uint64_t cycle_ = 0;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,185 @@
+"""replay.py on logs that were changed with ROS's own tools: what people read in a log is what the laws computed."""
+
+import importlib
+
+import pytest
+from robot_control import ClosedLoop
+from robot_control.replay.main import main
+
+rosbag = pytest.importorskip("rosbag", reason="logs are changed with Debian's python3-rosbag")
+
+EXACT, NOT_COMPARED, REFUSED, DIFFERENT = 0, 1, 2, 3
+STOPPED = 400  # cycle of the emergency stop
+LATER = 450
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """Of a drive with an emergency stop."""
+    folder = tmp_path_factory.mktemp("log")
+    loop = ClosedLoop()
+    loop.log_into(folder)
+    loop.run(STOPPED * 1e-3, command=(0.4, 0.3))
+    loop.e_stop()
+    loop.run(0.2, command=(0.0, 0.0))
+    loop.end_log()
+    return folder / "run.bag"
+
+
+def forged(log, folder, edit, later=0):
+    """A copy; `edit(topic, message)` changes each message in its place, False leaves it out. All are `later`, s."""
+    changed = folder / "changed.bag"
+    with rosbag.Bag(str(log)) as source, rosbag.Bag(str(changed), "w") as target:
+        for topic, message, time in source.read_messages():
+            if edit(topic, message) is not False:
+                target.write(topic, message, type(time)(time.secs + later, time.nsecs))
+    return changed
+
+
+@pytest.fixture
+def replayed(log, tmp_path, capsys):
+    """Exit code for a forged copy, and what was printed."""
+
+    def judge(edit, later=0):
+        changed = forged(log, tmp_path, edit, later)
+        with pytest.raises(SystemExit) as end:
+            main([str(changed)])
+        printed = capsys.readouterr()
+        return end.value.code, printed.out + printed.err
+
+    return judge
+
+
+def rows(edit, cycles=None):
+    """Of `edit(row)` for each row, or each row of `cycles`."""
+
+    def of_trace(topic, message):
+        if topic == "trace" and (cycles is None or message.cycle in cycles):
+            return edit(message)
+        return None
+
+    return of_trace
+
+
+def given(**values):
+    def edit(row):
+        for name, value in values.items():
+            assert hasattr(row, name)
+            setattr(row, name, value)
+
+    return edit
+
+
+def moved(row):
+    row.estimate_position = [row.estimate_position[0] + 1, *row.estimate_position[1:]]
+
+
+def test_a_copy_is_as_good_as_its_log(replayed):
+    code, text = replayed(lambda *_: None)
+    assert code == EXACT, text
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        given(permit_causes=0, permit_active=0, permit_first_cause=0, operator_e_stop_services=0, event_call=b""),
+        given(supervisor_state=2),
+        moved,
+        given(estimate_yaw=1.0),
+        given(max_linear_speed=9.0),
+        given(controller_woke_ns=0, command_published_ns=77),
+        given(injected=bytes([1] * 11)),
+        given(faults=1),
+        given(truth_position=[0.0, 0.0, 0.0]),
+        given(lost=5),
+        given(battery_voltage=12.0),
+    ],
+    ids=[
+        "an emergency stop erased",
+        "a state",
+        "an estimate moved",
+        "an angle",
+        "a limit",
+        "timing",
+        "injected",
+        "faults",
+        "truth",
+        "lost",
+        "battery",
+    ],
+)
+@pytest.mark.parametrize("cycles", [None, [LATER]], ids=["in every row", "in one row"])
+def test_a_changed_field_is_noticed(replayed, edit, cycles):
+    code, text = replayed(rows(edit, cycles))
+    assert code == DIFFERENT, text
+    assert cycles is None or f"differs: row, run 0, cycle {LATER}: " in text
+
+
+@pytest.mark.parametrize("field", ["robot", "parameters", "urdf", "scene", "build", "host", "clock", "record"])
+def test_a_changed_header_is_noticed(replayed, field):
+    def edit(topic, message):
+        if topic == "trace_header":
+            setattr(message, field, getattr(message, field).replace("e", "e ", 1) + " ")
+
+    code, text = replayed(edit)
+    assert code in (DIFFERENT, REFUSED), text
+
+
+def test_a_changed_period_is_noticed(replayed):
+    code, text = replayed(lambda topic, message: setattr(message, "period", 0.002) if topic == "trace_header" else None)
+    assert code == DIFFERENT, text
+
+
+def test_a_changed_snapshot_is_noticed(replayed):
+    def edit(topic, message):
+        if topic == "trace_snapshot":
+            message.cycle += 1
+
+    code, text = replayed(edit)
+    assert code == REFUSED or "snapshot" in text
+
+
+def test_a_changed_time_is_noticed(replayed):
+    code, text = replayed(lambda *_: None, later=3600)
+    assert code == DIFFERENT, text
+
+
+def test_rows_that_are_missing_are_the_first_line_and_an_exit_code_of_their_own(replayed):
+    code, text = replayed(rows(lambda _: False, [LATER]))
+    assert code == NOT_COMPARED, text
+    assert "rows NOT COMPARED" in text.splitlines()[0]
+
+
+def test_a_row_that_is_hidden_as_a_repetition_is_noticed(replayed):
+    code, text = replayed(rows(given(repeats=1), [LATER]))
+    assert code == DIFFERENT, text
+
+
+@pytest.fixture
+def hostile_log(log, tmp_path):
+    """Its names, as a terminal must not get them."""
+    name = "\x1b[2J\x07\nexact\x9b"
+
+    def edit(topic, message):
+        if topic == "trace_header":
+            message.robot = message.missing = message.processor = message.host = message.libraries = name
+            message.joints = [name + joint for joint in message.joints]
+
+    return forged(log, tmp_path, edit)
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments"),
+    [("replay", ["%"]), ("report", ["%", "--ci"]), ("estimate", ["%"]), ("export", ["%", "--csv", "%.csv"])],
+)
+def test_text_of_a_log_reaches_no_terminal_as_control_characters(hostile_log, capsys, program, arguments):
+    entry = importlib.import_module(f"robot_control.{program}.main").main
+    try:
+        entry([argument.replace("%", str(hostile_log)) for argument in arguments])
+        said = ""
+    except SystemExit as end:
+        said = str(end.code)
+    printed = capsys.readouterr()
+    lines = (printed.out + printed.err + said).splitlines()
+    assert all(line.isprintable() for line in lines), lines
+    assert not any(line.startswith("exact") for line in lines)
