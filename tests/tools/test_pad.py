@@ -185,6 +185,17 @@ def test_what_is_pressed_during_a_stop_moves_nothing_after_it(pad):
     assert pad.command(now) is None
 
 
+def test_nor_what_was_pressed_during_a_stop_that_is_over_when_it_is_read(pad):
+    pad.permit(False)
+    hold(pad, FORWARD, NONE, 0.1, 1.0)
+    now = hold(pad, FORWARD, ENABLE, 1.2, 0.1)
+    pad.permit(True)
+    assert pad.command(now) is None
+    pad.receive(FORWARD, NONE, now + PERIOD)
+    pad.receive(FORWARD, ENABLE, now + 2 * PERIOD)
+    assert pad.command(now + 2 * PERIOD).linear > 0
+
+
 def test_messages_from_before_an_interruption_arm_nothing(pad):
     now = hold(pad, FORWARD, ENABLE, 0.1, 1.0) + 3.0
     pad.interrupt(now)

@@ -94,6 +94,8 @@ class Pad:
 
     def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
         """May the robot drive, by its safety monitor? None: it says nothing."""
+        if self._drivable is False and drivable is not False:
+            self._armed = False  # it may have been pressed during the stop
         self._drivable = drivable
 
     def lose(self) -> None:

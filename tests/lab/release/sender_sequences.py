@@ -121,10 +121,10 @@ class Joystick:
 
 
 class Suspensions:
-    """When the program does not run."""
+    """When the program does not run; not before its first message of safety_status, for it then knows of no stop."""
 
     def __init__(self, chance: random.Random) -> None:
-        self._pauses = [(begin, chance.choice([0.1, 0.4, 1.0, 3.0])) for begin in chance.sample(range(18), 2)]
+        self._pauses = [(begin, chance.choice([0.1, 0.4, 1.0, 3.0])) for begin in chance.sample(range(1, 18), 2)]
 
     def lasting(self, now: float) -> float:
         """s of the suspension that lasts at `now`; 0: it runs."""
