@@ -23,6 +23,6 @@ PROGRAMS = (
     "view",
     "why",
 )
-packages = ["robot_control", *(f"robot_control.{name}" for name in ("common", *PROGRAMS))]
+packages = ["robot_control", *(f"robot_control.{name}" for name in ("common", "safety", *PROGRAMS))]
 
 setup(**generate_distutils_setup(packages=packages, package_dir={"": "scripts"}))

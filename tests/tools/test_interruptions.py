@@ -2,7 +2,7 @@
 
 import pytest
 from lab.release.sender_sequences import command, pad, path, teleop
-from robot_control.common.interruptions import GAP, RESTARTED, Interruptions, Status
+from robot_control.safety.interruptions import GAP, RESTARTED, Interruptions, Status
 from robot_control.teleop.dead_man import DeadMan, HoldParameters
 
 READY, STOPPED = Status("READY", resets=3, run=7), Status("STOPPED", "e_stop was called", resets=3, run=7)

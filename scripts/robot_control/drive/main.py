@@ -8,14 +8,14 @@ from collections import deque
 import rospy
 from geometry_msgs.msg import Twist
 
-from robot_control.common.interruptions import Status
 from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.ros_node import begin_node
-from robot_control.common.safety_watch import status_of
 from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
 from robot_control.drive.release import Line, Phase, Release
 from robot_control.drive.send_plan import SendPlan, parse_plan
 from robot_control.msg import SafetyStatus
+from robot_control.safety.interruptions import Status
+from robot_control.safety.watch import status_of
 
 TIMEOUT = 10.0
 """s to wait for a subscriber; then it is sent all the same"""

@@ -14,8 +14,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from robot_control.common.interruptions import Interruptions, Status
-from robot_control.common.zero_request import silent_long_enough
+from robot_control.safety.interruptions import Interruptions, Status
+from robot_control.safety.zero_request import silent_long_enough
 
 NO_MONITOR = 3.0
 """s without any safety_status, which comes once per second at least"""

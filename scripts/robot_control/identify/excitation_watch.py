@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from robot_control.common.safety_states import DRIVABLE
+from robot_control.safety.states import DRIVABLE
 
 SILENCE = 1.0
 """s without odometry or safety_status (each comes at least once per second); beyond, the robot is not supervised"""

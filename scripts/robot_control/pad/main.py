@@ -16,11 +16,11 @@ from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.files import printable
 from robot_control.common.ros_node import running_node
-from robot_control.common.safety_watch import SafetyWatch
 from robot_control.common.server_values import ServerValueError, server_tree
 from robot_control.common.topic_sender import Signals
 from robot_control.pad.device import PACKAGE, Device, open_device
 from robot_control.pad.law import Pad, PadParameters
+from robot_control.safety.watch import SafetyWatch
 
 SOURCE = "joy_vel"
 PERIOD = 0.02

@@ -11,10 +11,10 @@ from nav_msgs.msg import Odometry
 
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.orientation import yaw_of
-from robot_control.common.safety_states import DRIVABLE, STOPPED
-from robot_control.common.safety_watch import SafetyWatch
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.path.follower import Pose
+from robot_control.safety.states import DRIVABLE, STOPPED
+from robot_control.safety.watch import SafetyWatch
 
 SOURCE = "path_vel"
 SILENCE = 0.5
@@ -39,6 +39,7 @@ class Robot:
         self.odometry_at = -math.inf
         self.watch = SafetyWatch()
         self.commands = False  # what is sent here reaches the wheels
+        self.refused = False  # the controller awaits a zero from here after a stop
         self.masked_by = ""
         rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
@@ -81,7 +82,9 @@ class Robot:
             return f"odom is silent for {SILENCE:g} s"
         if now - self.watch.received_at > SAFETY_SILENCE:
             return f"safety_status is silent for {SAFETY_SILENCE:g} s"
-        return "" if self.drivable else self.stop_in_words()
+        if not self.drivable:
+            return self.stop_in_words()
+        return "diff_drive_controller refuses what was requested before a stop" if self.refused else ""
 
     def stop_in_words(self) -> str:
         """Why it may not drive."""
@@ -119,4 +122,5 @@ class Robot:
         states = dict(text.split(": ", 1) for text in message.sources)
         state = states.get(SOURCE, "")
         self.masked_by = state if state.startswith(("masked", "locked")) else ""
-        self.commands = state in {"", "commands"}
+        self.refused = rospy.get_name() in message.revoked
+        self.commands = state in {"", "commands"} and not self.refused

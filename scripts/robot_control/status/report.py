@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from robot_control.common.safety_states import DRIVABLE
 from robot_control.msg import RobotStatus, SafetyStatus
+from robot_control.safety.states import DRIVABLE
 
 REQUIRED = ("state_estimator", "diff_drive_controller", "safety_monitor")
 """Nodes of every robot; the driver's has its own name"""

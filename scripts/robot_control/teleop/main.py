@@ -14,9 +14,9 @@ from robot_control.common.command import Command, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
-from robot_control.common.safety_watch import SafetyWatch
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.drive.send_plan import positive
+from robot_control.safety.watch import SafetyWatch
 from robot_control.teleop.backlog import Backlog
 from robot_control.teleop.dead_man import HoldParameters
 from robot_control.teleop.key_map import KEY_MAPS

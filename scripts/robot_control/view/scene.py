@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from robot_control.common.safety_states import DRIVABLE
+from robot_control.safety.states import DRIVABLE
 
 WIDTH = 60
 """columns of the text above the robot"""

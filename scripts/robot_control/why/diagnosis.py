@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
-from robot_control.common.safety_states import DRIVABLE
-from robot_control.common.zero_request import silent_long_enough
+from robot_control.safety.states import DRIVABLE
+from robot_control.safety.zero_request import silent_long_enough
 
 PLANT, ESTIMATOR, CONTROLLER, MONITOR = "mujoco_plant", "state_estimator", "diff_drive_controller", "safety_monitor"
 LOOP = (PLANT, ESTIMATOR, CONTROLLER, MONITOR)

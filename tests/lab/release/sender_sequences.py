@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from robot_control.common.command import Command
-from robot_control.common.interruptions import GAP, Status
 from robot_control.path.follower import Motion, Pose
 from robot_control.path.waypoints import Waypoint
+from robot_control.safety.interruptions import GAP, Status
 
 from lab.release.path_jumps import FARTHEST, excess
 from lab.release.senders import CommandSender, PadSender, PathSender, TeleopSender

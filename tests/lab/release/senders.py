@@ -10,12 +10,12 @@ import math
 from collections.abc import Sequence
 
 from robot_control.common.command import Command
-from robot_control.common.interruptions import Interruptions, Status
 from robot_control.drive.release import Phase, Release
 from robot_control.pad.law import Pad
 from robot_control.path.follower import Follower, Motion, Pose
 from robot_control.path.pieces import route
 from robot_control.path.waypoints import Waypoint
+from robot_control.safety.interruptions import Interruptions, Status
 from robot_control.teleop.backlog import Backlog
 from robot_control.teleop.key_map import ARROWS
 from robot_control.teleop.keyboard import Decoder

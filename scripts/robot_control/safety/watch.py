@@ -10,8 +10,8 @@ from contextlib import contextmanager
 
 import rospy
 
-from robot_control.common.interruptions import Interruptions, Status
 from robot_control.msg import SafetyStatus
+from robot_control.safety.interruptions import Interruptions, Status
 
 LATE = 0.1
 """s between two looks after which messages may wait that the receiving thread has not taken"""

@@ -16,7 +16,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from robot_control.common.safety_states import DRIVABLE, STOPPED
+from robot_control.safety.states import DRIVABLE, STOPPED
 
 GAP = 0.5
 """s; programs look every 0.02 s, and odometry that is silent for so long ends a path, too"""

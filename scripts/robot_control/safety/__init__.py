@@ -1,0 +1,1 @@
+"""What safety_status says, as programs that send commands take it."""
