@@ -1,6 +1,7 @@
 """Paths in frames other than odometry's, and what ends a path: without ROS."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 import rospy
@@ -115,3 +116,11 @@ def test_a_stop_ends_the_path_with_its_sentence(robot):
     robot[0].watch.receive(SafetyStatus(state_name="STOPPED", sentences=["e_stop was called"]))
     words = robot[0].against_driving(robot[1])
     assert words == "STOPPED: e_stop was called. Call e_stop_reset, then start the path again"
+
+
+def test_a_path_whose_requests_the_controller_refuses_since_a_stop_ends(robot, monkeypatch):
+    monkeypatch.setattr(rospy, "get_name", lambda: "/drive_path")
+    for revoked, commands in ((["/planner"], True), (["/planner", "/drive_path"], False)):
+        robot[0]._receive_state(SimpleNamespace(sources=[], revoked=revoked))
+        assert robot[0].commands is commands
+        assert ("refuses what was requested before a stop" in robot[0].against_driving(robot[1])) is not commands
