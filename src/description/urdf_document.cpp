@@ -6,7 +6,7 @@
 
 #include <mutex>
 
-#include "description/urdf_markup.h"
+#include "description/markup/urdf_markup.h"
 #include "description/wording.h"
 
 namespace robot_control {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "description/markup/sideways_names.h"
 #include "description/robot_description.h"
-#include "description/sideways_names.h"
 
 namespace robot_control {
 

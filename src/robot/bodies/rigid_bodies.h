@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "description/sideways_names.h"
+#include "description/markup/sideways_names.h"
 #include "robot/robot_model.h"
 
 namespace robot_control {

@@ -1,4 +1,4 @@
-#include "description/sideways_names.h"
+#include "description/markup/sideways_names.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "description/urdf_markup.h"
+#include "description/markup/urdf_markup.h"
 
 #include <algorithm>
 #include <cmath>
