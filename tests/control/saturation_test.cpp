@@ -151,6 +151,35 @@ TEST(SpeedSaturation, NothingBeyondAWheelsLimitIsOrderedWhateverTheTargetsDo) {
   EXPECT_GT(led_past, 0) << "no sequence led there: the test tests nothing";
 }
 
+/// The smallest speed after a stop from 1 m/s of a robot that is `heavier` than its feed-forward takes it for, with
+/// wheels that brake the described one with 0.8 m/s² at most.
+double swings_back(double heavier, double rate) {
+  constexpr double kSpeed = 1, kNeeded = 0.65;  // N·m at 1 m/s²
+  RobotModel loaded = with_effort_limit(0.8 * kNeeded);
+  loaded.mass *= heavier;
+  ControlBench bench(with_effort_limit(0.8 * kNeeded), patient(), 1 / rate, loaded);
+  bench.run(0.3);
+  bench.send(kSpeed, 0);
+  bench.run(10);
+  bench.send(0, 0);
+  double smallest = kSpeed;
+  for (double t = 0; t < 20 && !(bench.command.reasons & kReasonHolding); t += bench.period) {
+    bench.step();
+    smallest = std::min(smallest, bench.plant.twist.linear);
+  }
+  EXPECT_TRUE(bench.command.reasons & kReasonHolding) << heavier << " at " << rate << " Hz";
+  return smallest;
+}
+
+// 1 % of the speed: what is promised of a swing back.
+TEST(TorqueSaturation, LeavesNothingToUnwindAfterAStop) {
+  for (const double rate : {200.0, 500.0, 1000.0}) {
+    for (const double heavier : {1.0, 1.5, 2.0, 3.0}) {
+      EXPECT_GT(swings_back(heavier, rate), -0.01) << heavier << " at " << rate << " Hz";
+    }
+  }
+}
+
 // Three times as heavy as it thinks, wheels of 0.4 N·m brake with 0.2 m/s² at most: the plan is at zero in time.
 TEST(TorqueSaturation, NeverStretchesARampTowardsZero) {
   RobotModel loaded = with_effort_limit(kWeak);

@@ -46,6 +46,14 @@ def test_a_drive_is_the_same_each_time(scene):
     assert carry_out(drive) == carry_out(drive)
 
 
+# Its targets are where the gate's taper begins, and its joints damp so much that an integrator unwinds for seconds.
+@pytest.mark.skipif(FOLDER is None, reason=NO_CORPUS)
+@pytest.mark.parametrize("seed", [5014, 5026])
+def test_wheels_that_the_gate_clamped_stand_when_they_are_to(seed):
+    driven = carry_out(Drive("diffbot_ros2control", "flat", 500, 20.0, seed))
+    assert (driven.causes, driven.warnings) == ([], [])
+
+
 # Its inner wheel nearly stands and holds its side with 0.8 of its torque limit while the other one goes around it.
 @pytest.mark.skipif(FOLDER is None, reason=NO_CORPUS)
 @pytest.mark.parametrize("seed", [42, 52])

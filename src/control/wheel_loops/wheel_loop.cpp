@@ -49,9 +49,13 @@ void WheelLoop::measure(const JointSample& sample, double periods, bool driven) 
     return;
   }
   // While cycles were skipped the driver held the last command.
-  if (periods > 1) plans_[1] = plans_[0];
+  if (periods > 1) {
+    plans_[1] = plans_[0];
+    efforts_[1] = efforts_[0];
+  }
   const WheelPlan& plan = plans_[1];
   if (!driven) tracking_.know_less(effort_residual_ / gains_.model_inertia);
+  taken_effort_ = driven ? efforts_[1] - sample.effort : 0;
   effort_residual_ = driven ? sample.effort - plan.feed_forward - load_ : 0;
   tracking_.step(sample.position, driven ? plan.acceleration + effort_residual_ / gains_.model_inertia : 0.0, periods);
 }
@@ -60,6 +64,8 @@ void WheelLoop::reset_to_measured() noexcept {
   plans_.fill({.velocity = velocity()});
   planned_hand_over_ = gain_hand_over_ = 0;
   load_ = integral_;
+  efforts_.fill(0);
+  taken_effort_ = excused_ = 0;
   last_gains_.reset();
   saturated_ = false;
 }
@@ -67,6 +73,18 @@ void WheelLoop::reset_to_measured() noexcept {
 void WheelLoop::preload_integrator(double effort) noexcept {
   integral_ = std::clamp(effort + gains_.kd * tracking_.acceleration(), -effort_limit_, effort_limit_);
   load_ = integral_;
+}
+
+void WheelLoop::integrate(double error, double direct, double dt, bool clamped) noexcept {
+  const double sum = direct + integral_;
+  const double beyond = sum - std::clamp(sum, -effort_limit_, effort_limit_);
+  const double taken = beyond + (clamped ? taken_effort_ : 0.0);
+  if (gains_.kp > 0 && (taken != 0 || excused_ != 0)) {
+    excused_ += std::min(1.0, dt * gains_.ki / gains_.kp) * (taken / gains_.kp - excused_);
+    excused_ = std::clamp(excused_, std::min(error, 0.0), std::max(error, 0.0));
+  }
+  if (taken * error > 0) return;
+  integral_ = std::clamp(integral_ + gains_.ki * (error - excused_) * dt, -effort_limit_, effort_limit_);
 }
 
 double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noexcept {
@@ -85,10 +103,7 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
   }
   const double direct = direct_with(gains_);
   if (gains_.ki == 0) integral_ *= kept;
-  const double integral = std::clamp(integral_ + gains_.ki * error * periods * period_, -effort_limit_, effort_limit_);
-  const bool at_limit = clamped || std::abs(direct + integral) > effort_limit_;
-  const bool winds_up = at_limit && (direct + integral) * error > 0;
-  if (!winds_up) integral_ = integral;
+  integrate(error, direct, periods * period_, clamped);
 
   unclamped_effort_ = direct + integral_;
   const double effort = std::clamp(unclamped_effort_, -effort_limit_, effort_limit_);
@@ -96,6 +111,7 @@ double WheelLoop::step(const WheelPlan& plan, double periods, bool clamped) noex
   plans_[1] = plans_[0];
   plans_[0] = plan;
   plans_[0].feed_forward = planned;
+  efforts_ = {effort, efforts_[0]};
   return effort;
 }
 

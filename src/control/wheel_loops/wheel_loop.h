@@ -2,7 +2,7 @@
 /// One driven wheel: planned motion → torque. Feed-forward, PID on the tracked speed, clamp.
 ///
 ///   error    = velocity_plan(k−2) − velocity
-///   integral = integral + ki·error·dt
+///   integral = integral + ki·(error − excused)·dt
 ///   effort   = feed_forward + hand_over + kp·error + integral − kd·acceleration,   |effort| ≤ effort_limit
 ///
 /// velocity, acceleration: of the tracking loop on the encoder angle. The torque of cycle k acts over [t_k+1, t_k+2),
@@ -17,10 +17,19 @@
 /// load or integral have changed since the hand-over. Without it the lag of the tracking loop makes a lifted wheel
 /// unstable at every useful kp. Plan and torque need not be exact: the loop's residual estimates the rest.
 ///
-/// Anti-windup by conditional integration: the integrator stops while its change would increase a clamped sum, clamped
-/// here or by the gate, and |integral| ≤ effort_limit. With ki = 0 a preloaded integrator would never change: it decays
-/// with 0.1 s, the pace of derived gains. Bumpless: `preload_integrator` sets the integrator to the load that the brake
-/// was holding, so that a robot on a slope does not sag.
+/// Anti-windup: a torque that a clamp takes, of this loop or of the gate, leaves an error that the integrator must not
+/// see, because it would have to unwind again. `excused` is a model of that error:
+///
+///   taken    = effort before the clamp − effort after it, and, while the gate clamps, effort(k−2) − effort_measured
+///   excused' = ki/kp·(taken/kp − excused), between 0 and error
+///
+/// For derived gains such an error decays with kp/J = 3·ki/kp (wheel_loop_gains.h). So a robot up to three times as
+/// heavy as described leaves no error above `excused`. In cycles in which torque towards the plan is taken the integral
+/// stands: a blocked wheel is no load. |integral| ≤ effort_limit.
+///
+/// With ki = 0 a preloaded integrator would never change: it decays with 0.1 s, the pace of derived gains. Bumpless:
+/// `preload_integrator` sets the integrator to the load that the brake was holding, so that a robot on a slope does not
+/// sag.
 ///
 /// Bumpless change of gains and feed-forward (`tune`): torque, up to ki·error·dt, and tracked speed continue without a
 /// jump, and nothing remains of it when the present ramp has ended. A difference of feed-forward at constant speed is a
@@ -114,11 +123,17 @@ class WheelLoop {
   double effort_limit() const noexcept { return effort_limit_; }          ///< N·m
 
  private:
+  /// `direct` N·m: the effort without the integral. `dt` s.
+  void integrate(double error, double direct, double dt, bool clamped) noexcept;
+
   WheelLoopGains gains_;
   double effort_limit_;
   double period_;
   TrackingLoop tracking_;
   std::array<WheelPlan, 2> plans_{};  ///< of the last cycle and the one before
+  std::array<double, 2> efforts_{};   ///< N·m, of the last step and the one before
+  double taken_effort_ = 0;           ///< N·m, ordered less measured torque of the last sample
+  double excused_ = 0;                ///< rad/s
   double integral_ = 0;
   double planned_hand_over_ = 0;              ///< N·m, of the feed-forward's part for the acceleration
   double gain_hand_over_ = 0;                 ///< N·m, of the proportional and derivative parts
