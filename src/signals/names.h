@@ -95,7 +95,7 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "stop all but one"},
     {kReasonRevoked, "revoked",
      "a sender goes on requesting motion that was requested before a stop, a restart or a pause, or meanwhile",
-     "let it send a zero velocity, or start it anew"},
+     "let it send a zero velocity, or restart it"},
 });
 
 inline constexpr auto kDriverFaultNames = std::to_array<BitName>({

@@ -122,7 +122,7 @@ class Sequence {
         inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
         mux_.emplace(two_sources(source_timeouts_[0], source_timeouts_[1]), parameters_.cmd_vel_timeout,
                      parameters_.one_sender);
-        for (Sender& sender : senders_) connect_anew(sender);
+        for (Sender& sender : senders_) reconnect(sender);
         break;
       case kMonitorNode:
         monitor_ = std::make_unique<MonitorCycle>(
@@ -163,7 +163,7 @@ class Sequence {
     for (Sender& sender : senders_) sender.owes_zero |= sender.has_requested() && !sender.zero_since;
   }
 
-  static void connect_anew(Sender& sender) {
+  static void reconnect(Sender& sender) {
     sender.left_requesting |= sender.has_requested() && !sender.owes_zero;
     sender.connection = std::make_shared<char>();
     sender.received = Message::kNone;
@@ -298,7 +298,7 @@ class Sequence {
         sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
       }
       if (chance(300)) sender.suspended_until = now_ + below(4 * kTimeoutTicks);
-      if (chance(400)) connect_anew(sender);
+      if (chance(400)) reconnect(sender);
       if (now_ < sender.suspended_until) continue;
       if (sender.message == Message::kNone || now_ - sender.sent < sender.period) continue;
       sender.sent = now_;

@@ -8,7 +8,7 @@
 ///   - by a withdrawal, if it requests motion then or did so within `window` before;
 ///   - when permission is granted again, if it requests motion then and sent no zero velocity since the withdrawal.
 /// It stays revoked until its own next accepted zero velocity. A connection that has ended is forgotten: a sender that
-/// was started anew is another one.
+/// was restarted is another one.
 ///
 /// Time is that of the loop's frames.
 
