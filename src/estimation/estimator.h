@@ -98,7 +98,6 @@ class Estimator : private EstimatorState {
   void end_rest() noexcept;
   void learn_at_rest() noexcept;
   void learn_gyro_bias(const Vector3& mean, double window) noexcept;
-  bool slides_at_rest() noexcept;
   RestWindow watch_rest(double dt) noexcept;
 
   // estimator_motion.cpp
@@ -108,10 +107,10 @@ class Estimator : private EstimatorState {
   void advance_path(const WheelSides::Travel& travel) noexcept;
   std::array<double, 2> tyres_creep(double distance) const noexcept;
   void watch_slip(double dt, double turned) noexcept;
-  void follow_slide() noexcept;
+  void end_slide() noexcept;
   void judge_slip() noexcept;
-  void correct(const PathCorrection& correction) noexcept;
-  SlipCorrection::Input correction_input() const noexcept;
+  void correct(const WheelSlide::Correction& correction) noexcept;
+  WheelSlide::Input slide_input() const noexcept;
   void compare_turns(double dt) noexcept;
   void begin_comparison() noexcept;
   void note(SensorIndex sensor, double nis, double dt) noexcept;

@@ -49,12 +49,11 @@ void Estimator::begin_rest() noexcept {
   resting_ = true;
   gyro_noise_.interrupt();
   open_window_ = last_window_ = {};
-  slip_correction_.end();
+  slide_.end();
   comparison_ = {};
   wheels_.forget_turn();
   flags_ |= kStateStandstill;
   lasting_flags_ |= kStateStandstill;
-  sliding_time_ = 0;
   if (watch_.bias_changed()) {
     learn_at_rest();
   } else {
@@ -112,20 +111,6 @@ void Estimator::learn_gyro_bias(const Vector3& mean, double window) noexcept {
   const double walk = square(parameters_.gyro_bias_walk) * window;
   for (const std::size_t i : {0U, 1U}) gyro_bias_[i].measure(mean[i], noise, walk);
   bias_measured_ = true;
-}
-
-/// Wheels stand, and the accelerometer reads another force than a robot at rest would.
-bool Estimator::slides_at_rest() noexcept {
-  if (!watch_.last_force()) return false;
-  const auto acceleration = tilt_.acceleration(*watch_.last_force());
-  bool slides = false;
-  for (const int axis : {0, 1}) {
-    const double deviation = std::sqrt(tilt_.acceleration_variance(axis));
-    slides = slides || std::abs(acceleration[axis]) > Tuning::kSignificant * (Tuning::kAccelerometerAtRest + deviation);
-  }
-  const bool may_slide = slides && sliding_time_ < Tuning::kLongestShakenSlide;
-  sliding_time_ = slides ? sliding_time_ + parameters_.standstill_time : 0;
-  return may_slide;
 }
 
 }  // namespace robot_control

@@ -65,8 +65,7 @@ class MotionDifference {
   explicit MotionDifference(const SlipParams& params) noexcept : params_(params) {}
 
   void restart() noexcept;  ///< without any point
-  /// The past of the wheels is laid on a straight line of E of that slope, m/s, odom axes, and on a constant W, and the
-  /// path until now is not to be corrected any more: a slide ended.
+  /// A slide ended: the past is laid on a straight line of E of that slope, m/s, odom axes, and on a constant W.
   void restart_on_line(const Planar& slope) noexcept;
   /// The robot was at rest until now.
   void restart_at_rest(double yaw, const Vector3& up) noexcept;

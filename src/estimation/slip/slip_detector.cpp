@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "signals/slip_detection.h"
-
 namespace robot_control {
 
 void SlipDetector::forget_judgement() noexcept {
@@ -61,7 +59,9 @@ void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
   const bool proven = shortest + 1 < residuals.size();
   proven_span_[channel] = proven ? residuals[shortest].span : 0;
   constexpr std::size_t kLevel = ResidualLevels::kLevelSpan;
-  if (residuals[0].known) slope_deviation_[channel] = deviation[0] / residuals[0].span;
+  if (residuals[0].known) {
+    slope_deviation_[channel] = levels_.usual_deviation(0, channel, residuals[0], uncertainty) / residuals[0].span;
+  }
   nis_[channel] = residuals[kLevel].known ? square(residuals[kLevel].value[channel] / deviation[kLevel]) : -1;
 }
 
@@ -86,10 +86,6 @@ double SlipDetector::shortest_proven_span() const noexcept {
     if (span > 0 && (shortest == 0 || span < shortest)) shortest = span;
   }
   return shortest;
-}
-
-bool SlipDetector::sensors_as_specified() const noexcept {
-  return levels_.level() > 0 && levels_.level() < kSlowDetection;
 }
 
 }  // namespace robot_control

@@ -52,8 +52,6 @@ class SlipDetector {
   AccelerationNoise acceleration_noise(double variance) const noexcept {
     return levels_.acceleration_noise(speed_, variance);
   }
-  /// The residuals are those that the data sheets explain.
-  bool sensors_as_specified() const noexcept;
 
  private:
   using Residuals = std::array<SlipResidual, ResidualLevels::kSpans>;

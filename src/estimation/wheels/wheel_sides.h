@@ -54,6 +54,7 @@ class WheelSides {
   double right() const noexcept { return travel(kRight); }  ///< m
   double mean() const noexcept { return (left() + right()) / 2; }
   double turned() const noexcept { return geometry_.turn(left(), right()); }  ///< rad, by the model's wheel base
+  double side_speed(std::size_t side) const noexcept { return sides_[side].speed.speed(); }  ///< m/s
   double speed() const noexcept { return (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2; }  ///< m/s
   double rate() const noexcept {  ///< rad/s, by the model's wheel base
     return geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
