@@ -30,7 +30,7 @@ bool continuable(const StateFrame& last) noexcept {
 }  // namespace
 
 EstimatorState::EstimatorState(const EstimatorParameters& parameters, const RobotModel& robot, double period)
-    : wheels_(robot, parameters.speed_bandwidth, period),
+    : wheels_(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core_(core_params(parameters, robot)),
       tilt_(tilt_params(parameters)),
       gyro_noise_(parameters.gyro_noise),

@@ -14,6 +14,7 @@ void Estimator::move(double dt) noexcept {
   wheels_.turn(turned);
   uncorrected_step_ = {};
   for (const WheelSides::Travel& travel : wheels_.take_travels(core_.ratio())) advance_path(travel);
+  if (wheels_.both_received()) core_.shift(0, 0, wheels_.quantum().travel_variance() / 2);
   tilt_.roll(wheels_.turned());
   if (imu_.gyro()) turn_tilt(*imu_.gyro(), dt);
   if (parameters_.slip_detection) watch_slip(dt, turned);
@@ -113,7 +114,8 @@ void Estimator::judge_slip() noexcept {
   slip_detector_.judge({.acceleration_variance = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
                         .wheel_base = core_.deviation(PlanarCore::kBase),
                         .clock_offset = core_.deviation(PlanarCore::kOffset),
-                        .gyro_bias = std::sqrt(core_.bias_variance())},
+                        .gyro_bias = std::sqrt(core_.bias_variance()),
+                        .speed_step = wheels_.quantum().step()},
                        learns);
   note(kAccelerometer, slip_detector_.nis(SlipResidual::kAlong), Tuning::kPointInterval);
   note(kLateralContact, slip_detector_.nis(SlipResidual::kAcross), Tuning::kPointInterval);

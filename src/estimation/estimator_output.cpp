@@ -117,7 +117,7 @@ void Estimator::fill_twist_covariance(double yaw_rate, StateFrame& out) const no
   if (resting_) wheel = turn = 0;
   const double slides = slide_.active() ? square(slide_.speed_deviation()) : 0;
   out.twist_covariance = {};
-  out.twist_covariance[0] = wheel / 2 + slides + square(geometry_.axle_y) * turn;
+  out.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) + square(geometry_.axle_y) * turn;
   out.twist_covariance[7] =
       wheel / 2 + slides + square(geometry_.axle_x) * turn + square(yaw_rate * core_.deviation(PlanarCore::kIcr));
   out.twist_covariance[35] = turn;

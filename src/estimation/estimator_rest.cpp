@@ -31,7 +31,9 @@ RestWindow Estimator::watch_rest(double dt) noexcept {
 }
 
 void Estimator::rest(double dt) noexcept {
-  open_window_.step(dt, wheels_.left(), wheels_.right(), imu_.gyro());
+  std::array<double, 2> acceleration{};
+  if (imu_.accelerometer()) acceleration = tilt_.acceleration(array(*imu_.accelerometer()));
+  open_window_.step(dt, wheels_.left(), wheels_.right(), imu_.gyro(), {acceleration[0], acceleration[1]});
   if (wheels_.both_fell_silent()) {  // no sensor confirms that it still rests
     watch_.reset();
     lasting_flags_ &= ~std::uint64_t{kStateStandstill};
@@ -83,7 +85,7 @@ void Estimator::end_rest() noexcept {
   advance_path({.distance = (held.left + held.right) / 2, .turn_since = turned / 2});
   wheels_.forget_turn();
   if (stood) {
-    slip_detector_.restart_at_rest(uncorrected_yaw_, tilt_.up());
+    slip_detector_.restart_at_rest(uncorrected_yaw_, tilt_.up(), rotated(held.velocity, uncorrected_yaw_));
   } else {
     slip_detector_.restart();
   }

@@ -49,8 +49,7 @@ WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, cons
   const double wheels = input.wheel_speed();
   const auto [low, high] = std::minmax({0.0, onset_speed_, wheels});
   const double ground = std::clamp(wheels - along, low, high);
-  const bool stand = std::abs(input.side_speed[0]) < Tuning::kLeastSlip && std::abs(input.side_speed[1]) < Tuning::kLeastSlip;
-  excess_speed_ = (slips_[0] || slips_[1]) && !stand ? wheels - ground : 0;
+  excess_speed_ = (slips_[0] || slips_[1]) ? wheels - ground : 0;
   const double apart = sideways_ ? std::hypot(wheels - ground, excess(before, now).across) : wheels - ground;
   speed_deviation_ = std::hypot(std::min(deviation, high - low), Tuning::kChoiceDeviation * apart);
   const double earlier = path_deviation_;
