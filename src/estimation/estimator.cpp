@@ -199,8 +199,7 @@ Estimator::Prediction Estimator::prediction() const noexcept {
   if (resting_) return {};
   Prediction ahead;
   if (core_.offset() > 0) {
-    const double speed =
-        wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slide_.excess_speed();
+    const double speed = wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slide_.excess_speed();
     ahead.distance = speed * core_.offset();
   } else {
     ahead.turn = -yaw_rate_ * core_.offset();

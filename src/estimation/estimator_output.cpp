@@ -77,6 +77,9 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
   covariance += square(imu_.gyro_gap()) / 8 * motion * motion.transpose();
   covariance += (square(encoder_) + square(forward_speed()) * wheels_.stamp_variance()) * along * along.transpose();
+  const double way = (comparison_.left + comparison_.right) / 4;  // m: the heading went apart evenly on the way
+  const Eigen::Vector3d doubted = turning + way * Eigen::Vector3d(-std::sin(yaw), std::cos(yaw), 0);
+  covariance += core_.doubt_variance(comparison_.contradiction) * doubted * doubted.transpose();
   if (pose_set_) covariance.setZero();
   Eigen::Map<PoseMatrix> published(out.pose_covariance.data());
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();
@@ -101,8 +104,7 @@ void Estimator::fill_twist(StateFrame& out) const noexcept {
   const Eigen::Vector3d rate = resting_ ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : rate_.rate();
   const Motion velocity = geometry_.base_motion(forward_speed(), rate.z());
   const std::array<double, 2> creep = resting_ ? std::array<double, 2>{} : tyres_creep(velocity.forward);
-  out.twist_base = {{velocity.forward - creep[0], velocity.left - creep[1], 0},
-                    {0, 0, rate.z()}};
+  out.twist_base = {{velocity.forward - creep[0], velocity.left - creep[1], 0}, {0, 0, rate.z()}};
   if (!parameters_.planar) out.twist_base.angular = array(rate);
   fill_twist_covariance(rate.z(), out);
 }
@@ -117,7 +119,8 @@ void Estimator::fill_twist_covariance(double yaw_rate, StateFrame& out) const no
   if (resting_) wheel = turn = 0;
   const double slides = slide_.active() ? square(slide_.speed_deviation()) : 0;
   out.twist_covariance = {};
-  out.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) + square(geometry_.axle_y) * turn;
+  out.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
+                            square(geometry_.axle_y) * turn;
   out.twist_covariance[7] =
       wheel / 2 + slides + square(geometry_.axle_x) * turn + square(yaw_rate * core_.deviation(PlanarCore::kIcr));
   out.twist_covariance[35] = turn;
@@ -159,7 +162,8 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (!wheels_.any_lost() || (!wheels_.both_lost() && imu_.gyro())) out.flags |= kStateValid;
   if (resting_) out.flags |= lasting_flags_ & kStateStandstill;
   if (out.slip != 0) out.flags |= kStateSlip;
-  out.degraded = 0;
+  out.degraded = slide_.active() ? kDegradedPosition : 0;
+  if (core_.doubts() || comparison_.contradiction != 0) out.degraded |= kDegradedHeading;
   const bool unknown_bias = core_.bias_variance() > square(Tuning::kUnknownBias);
   if (!resting_ && imu_.gyro() && unknown_bias) out.degraded |= kDegradedHeading;
   if (out.degraded != 0) out.flags |= kStateDegraded;

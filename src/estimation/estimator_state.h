@@ -14,8 +14,8 @@
 #include "estimation/rest/gyro_noise.h"
 #include "estimation/rest/held_motion.h"
 #include "estimation/rest/rest_watch.h"
-#include "estimation/slip/wheel_slide.h"
 #include "estimation/slip/slip_detector.h"
+#include "estimation/slip/wheel_slide.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/wheels/wheel_sides.h"
 #include "estimation/wheels/wheel_velocities.h"
@@ -31,6 +31,8 @@ class EstimatorState {
   /// Wheels' turn against the gyro's, over one block.
   struct TurnComparison {
     bool open = false;
+    bool learns = true;                    ///< no wheel has slipped
+    double contradiction = 0;              ///< rad, so far
     double time = 0, left = 0, right = 0;  ///< s, m
   };
 

@@ -47,11 +47,12 @@ struct Tuning {
   static constexpr double kStampMemory = 50;      ///< readings, of the stamps' jitter: its deviation is known to 10 %
   static constexpr double kNoisePrior = 4;        ///< windows that kMountedGyro is worth: 1 s
   static constexpr double kProof = 5;             ///< deviations that prove slip: 1 of 1.7 million normal residuals
-  static constexpr double kChoiceDeviation = 0.577;  ///< of a choice between two speeds: the true one lies evenly within their difference
-  static constexpr double kNormal90 = 1.645;             ///< deviations, 90 % quantile of |normal|
-  static constexpr std::uint64_t kFirstResiduals = 8;    ///< whose largest is the first level: their 90 % quantile
-  static constexpr double kQuantileStep = 0.5;           ///< of the logarithm of a level: 1.6 up, 1/1.05 down
-  static constexpr double kUsualSpeedShare = 0.1;        ///< of the speed of one residual in the usual one
+  static constexpr double kChoiceDeviation =
+      0.577;  ///< of a choice between two speeds: the true one lies evenly within their difference
+  static constexpr double kNormal90 = 1.645;           ///< deviations, 90 % quantile of |normal|
+  static constexpr std::uint64_t kFirstResiduals = 8;  ///< whose largest is the first level: their 90 % quantile
+  static constexpr double kQuantileStep = 0.5;         ///< of the logarithm of a level: 1.6 up, 1/1.05 down
+  static constexpr double kUsualSpeedShare = 0.1;      ///< of the speed of one residual in the usual one
 
   // Time scales.
 

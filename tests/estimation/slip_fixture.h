@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "estimation/slip/wheel_slide.h"
 #include "estimation/slip/slip_detector.h"
+#include "estimation/slip/wheel_slide.h"
 
 namespace robot_control {
 

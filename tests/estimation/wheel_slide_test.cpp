@@ -134,6 +134,7 @@ TEST_F(SlipFixture, ARobotThatIsTippedOnStandingWheelsDoesNotMove) {
   drive(0.5, 1.0);
   drive(20);
   drive(0.5, -1.0);
+  drive(2);
   WheelSlide slide;
   Planar moved;
   for (int i = 0; i < 600; ++i) {

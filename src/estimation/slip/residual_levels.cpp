@@ -13,7 +13,8 @@ double ResidualLevels::at_speed(double level, double speed) const noexcept {
 
 double ResidualLevels::usual_deviation(std::size_t span, Channel channel, const SlipResidual& residual,
                                        const SlipUncertainty& uncertainty) const noexcept {
-  return at_speed(level_[span][channel], residual.speed()) * residual_deviation(channel, residual, uncertainty, params_);
+  return at_speed(level_[span][channel], residual.speed()) *
+         residual_deviation(channel, residual, uncertainty, params_);
 }
 
 double ResidualLevels::deviation(std::size_t span, Channel channel, const SlipResidual& residual,

@@ -71,7 +71,8 @@ void SlipDetector::compare_gravity(const SlipResidual& residual, double speed_st
   const double interval = difference_.time() - gravity_compared_at_;
   if (!residual.known || !learns || interval < residual.span) return;
   const double squared = square(residual.span);
-  const double deviation = levels_.deviation(ResidualLevels::kTiltSpan, SlipResidual::kAlong, residual, {.speed_step = speed_step});
+  const double deviation =
+      levels_.deviation(ResidualLevels::kTiltSpan, SlipResidual::kAlong, residual, {.speed_step = speed_step});
   gravity_error_ = {.known = true,
                     .along = -residual.value[SlipResidual::kAlong] / squared,
                     .across = -residual.value[SlipResidual::kAcross] / squared,

@@ -40,7 +40,8 @@ double residual_deviation(SlipResidual::Channel channel, const SlipResidual& res
   }
   const double slow = square(Tuning::kSlowAcceleration) + uncertainty.acceleration_variance[channel];
   return std::sqrt(6 * square(params.encoder) + square(params.accelerometer) * span * span * span * 2 / 3 +
-                   slow * square(span * span) + 2 * square(Tuning::kPathSlip) * residual.distance + square(uncertainty.speed_step * span) / 12);
+                   slow * square(span * span) + 2 * square(Tuning::kPathSlip) * residual.distance +
+                   square(uncertainty.speed_step * span) / 12);
 }
 
 }  // namespace robot_control

@@ -42,19 +42,29 @@ WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, cons
   judge(now.time, excess(before, now), deviation, input);
   const double dt = now.time - corrected_.time;
   if (!(dt > 0)) return {};
-  const Excess since = excess(corrected_, now);
-  const double along = slips_[0] == slips_[1] ? since.along : slips_[0] ? -since.turn / 2 : since.turn / 2;
   const double yaw = (now.yaw + corrected_.yaw) / 2;
+  const double slipped = slipped_speed(excess(corrected_, now), input) * dt;
   corrected_ = now;
+  const Excess latest = excess(before, now);
+  excess_speed_ = slipped_speed(latest, input);
+  const auto [low, high] = std::minmax({0.0, onset_speed_, input.wheel_speed()});
+  const double apart = sideways_ ? std::hypot(latest.along, latest.across) : latest.along;
+  const double choice = Tuning::kChoiceDeviation * std::clamp(apart, low - high, high - low);
+  const double path_speed_deviation = std::hypot(std::min(high - low, deviation), choice);
+  const double changed = std::max(std::abs(excess_speed_), std::abs(input.wheel_speed() - onset_speed_));
+  speed_deviation_ = std::max(path_speed_deviation, changed / 2);
+  const double earlier = path_deviation_;
+  path_deviation_ += path_speed_deviation * dt;
+  return {rotated({-slipped, 0}, yaw), square(path_deviation_) - square(earlier)};
+}
+
+/// Where one side rolls, it gives the speed without the accelerometer.
+double WheelSlide::slipped_speed(const Excess& excess, const Input& input) const noexcept {
+  if (!slips_[0] && !slips_[1]) return 0;
+  const double along = slips_[0] && slips_[1] ? excess.along : (slips_[1] ? 1 : -1) * excess.turn / 2;
   const double wheels = input.wheel_speed();
   const auto [low, high] = std::minmax({0.0, onset_speed_, wheels});
-  const double ground = std::clamp(wheels - along, low, high);
-  excess_speed_ = (slips_[0] || slips_[1]) ? wheels - ground : 0;
-  const double apart = sideways_ ? std::hypot(wheels - ground, excess(before, now).across) : wheels - ground;
-  speed_deviation_ = std::hypot(std::min(deviation, high - low), Tuning::kChoiceDeviation * apart);
-  const double earlier = path_deviation_;
-  path_deviation_ += speed_deviation_ * dt;
-  return {rotated({-excess_speed_ * dt, 0}, yaw), square(path_deviation_) - square(earlier)};
+  return wheels - std::clamp(wheels - along, low, high);
 }
 
 Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexcept {
@@ -84,7 +94,8 @@ void WheelSlide::judge(double time, const Excess& excess, double deviation, cons
   if (sideways_) reasons_ |= kSlipSideways;
   for (const std::size_t i : {0U, 1U}) {
     if (!slips_[i]) continue;
-    const bool faster = std::abs(input.side_speed[i]) > std::abs(input.side_speed[i] - excess.side(i));  // than the ground
+    const bool faster =
+        std::abs(input.side_speed[i]) > std::abs(input.side_speed[i] - excess.side(i));  // than the ground
     reasons_ |= faster ? kSlipSpinning : kSlipStalled;
   }
 }

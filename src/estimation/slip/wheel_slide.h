@@ -6,9 +6,11 @@
 ///
 ///   σ_u² = σ² + (slow t)² + white² t        t: time since the onset; σ: of the line's slope at the onset
 ///
-/// A side slips while its share of the slope exceeds kSignificant σ. While one does, the path takes the speed u instead
-/// of that of the wheels, clamped between zero and the speed at the onset. It does not where all wheels stand: a robot
-/// that is lifted or tipped looks the same. Sideways the path is never moved.
+/// A side slips while its share of the slope exceeds kSignificant σ_u. Where the slip came so suddenly that its largest
+/// slope exceeds kSignificantTurn σ, a side slips until half of that slope is gone: no drift explains it. While one
+/// does, the path takes the speed u instead of that of the wheels, clamped between zero, the speed at the onset and
+/// that of the wheels: a robot that is lifted or tipped while its wheels stand does not move. Sideways the path is
+/// never moved.
 ///
 /// The variance that a slide adds is that of the speed which the path takes, integrated as one error: σ_u within its
 /// bounds, and kChoiceDeviation times what wheels and accelerometer are apart, for either of them may be right.
@@ -33,7 +35,7 @@ class WheelSlide {
     double turn_slope_deviation = 0;     ///< m/s, of W, likewise
     std::array<double, 2> side_speed{};  ///< m/s, of the treads, left and right
 
-    bool sideways = false;               ///< slip across is proven now
+    bool sideways = false;  ///< slip across is proven now
 
     double wheel_speed() const noexcept { return (side_speed[0] + side_speed[1]) / 2; }
   };
@@ -53,7 +55,7 @@ class WheelSlide {
   std::uint64_t reasons() const noexcept { return reasons_; }  ///< SlipReason
   bool slips(std::size_t side) const noexcept { return slips_[side]; }
   bool sideways() const noexcept { return sideways_; }
- /// m/s, odom axes, of E while all wheels rolled at the end.
+  /// m/s, odom axes, of E while all wheels rolled at the end.
   Planar rolling_slope(const MotionDifference& difference) const noexcept;
   double excess_speed() const noexcept { return excess_speed_; }        ///< m/s, wheels minus the path's speed
   double speed_deviation() const noexcept { return speed_deviation_; }  ///< m/s, of the path's speed
@@ -69,6 +71,7 @@ class WheelSlide {
   };
 
   Excess excess(const Point& from, const Point& to) const noexcept;
+  double slipped_speed(const Excess& excess, const Input& input) const noexcept;      ///< m/s, wheels minus ground
   double line_deviation(double time, const AccelerationNoise& noise) const noexcept;  ///< m/s: σ_u
   void judge(double time, const Excess& excess, double deviation, const Input& input) noexcept;
 

@@ -55,7 +55,7 @@ class WheelSides {
   double right() const noexcept { return travel(kRight); }  ///< m
   double mean() const noexcept { return (left() + right()) / 2; }
   double turned() const noexcept { return geometry_.turn(left(), right()); }  ///< rad, by the model's wheel base
-  double side_speed(std::size_t side) const noexcept { return sides_[side].speed.speed(); }  ///< m/s
+  double side_speed(std::size_t side) const noexcept { return sides_[side].speed.speed(); }                   ///< m/s
   double speed() const noexcept { return (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2; }  ///< m/s
   double rate() const noexcept {  ///< rad/s, by the model's wheel base
     return geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
@@ -66,7 +66,7 @@ class WheelSides {
   double recent_speed() const noexcept { return recent_time_ > 0 ? recent_distance_ / recent_time_ : 0; }
   /// m, of the middle: what a side without a reading in this step rolled since its last one, at its speed.
   double unread_distance(std::size_t side) const noexcept;
-  const SpeedQuantum& quantum() const noexcept { return quantum_; }         ///< of either side
+  const SpeedQuantum& quantum() const noexcept { return quantum_; }      ///< of either side
   double stamp_variance() const noexcept { return jitter_.variance(); }  ///< s²
 
   bool received(std::size_t side) const noexcept { return sides_[side].encoder.received(); }
