@@ -7,8 +7,7 @@
 ///
 /// The pose is wheels for the distance and gyro for the heading (planar/planar_core.h). The accelerometer enters it by
 /// the tilt, which shortens the distance, and the creep of tyres, parts of a percent; else only while slip is proven
-/// (slip/slip_detector.h, slip/wheel_slide.h), and then within bounds. Slip widens the covariance, and so does a turn
-/// in which wheels and gyro contradict each other.
+/// (slip/slip_detector.h, slip/wheel_slide.h), and then within bounds. Slip widens the covariance.
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay, the gyro's bias and the tilt
 /// (tilt/tilt.h) are learned; until the first rest is over the pose is corrected by that bias, too. Every run begins at
@@ -29,7 +28,7 @@
 /// biases follow every sample.
 ///
 /// kStateDegraded, with a reason: kDegradedHeading, the gyro's bias is known no better than kUnknownBias, which is
-/// so before the first rest, or wheels and gyro contradict each other; kDegradedPosition, wheels slip.
+/// so before the first rest; kDegradedPosition, wheels slip.
 ///
 /// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kBlock.
 
@@ -114,7 +113,6 @@ class Estimator : private EstimatorState {
   WheelSlide::Input slide_input() const noexcept;
   void compare_turns(double dt) noexcept;
   void begin_comparison() noexcept;
-  void end_comparison() noexcept;
   void note(SensorIndex sensor, double nis, double dt) noexcept;
 
   // estimator_output.cpp

@@ -154,20 +154,10 @@ void Estimator::compare_turns(double dt) noexcept {
   comparison_.time += dt;
   comparison_.left += wheels_.left();
   comparison_.right += wheels_.right();
-  if (slide_.active()) comparison_.learns = false;
-  if (!wheels_.both_received() || !imu_.gyro() || gyro_turn_.silent()) return;
+  if (slide_.active()) comparison_.open = false;
+  if (!wheels_.both_received() || (comparison_.open && comparison_.time < Tuning::kBlock)) return;
+  if (!imu_.gyro() || gyro_turn_.silent()) return;
   if (comparison_.open) {
-    comparison_.contradiction = core_.contradiction(comparison_.left, comparison_.right, rate_.rate().z(),
-                                                    comparison_.time, wheels_.stamp_variance());
-    if (comparison_.time < Tuning::kBlock) return;
-    end_comparison();
-  }
-  begin_comparison();
-}
-
-/// The doubt comes last: in the block's own comparison it would pull the heading towards the wheels.
-void Estimator::end_comparison() noexcept {
-  if (comparison_.learns) {
     const auto [nis, used] = core_.end_block(comparison_.left, comparison_.right, rate_.rate().z(), comparison_.time,
                                              wheels_.stamp_variance());
     for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
@@ -175,13 +165,12 @@ void Estimator::end_comparison() noexcept {
       if (!used) ++rejected_[sensor];
     }
   }
-  const double distance = (comparison_.left + comparison_.right) / 2;
-  if (comparison_.contradiction != 0) core_.doubt(comparison_.contradiction, distance);
+  begin_comparison();
 }
 
 void Estimator::begin_comparison() noexcept {
   core_.begin_block(rate_.rate().z());
-  comparison_ = {.open = true, .learns = !slide_.active()};
+  comparison_ = {.open = true};
 }
 
 void Estimator::note(SensorIndex sensor, double nis, double dt) noexcept {

@@ -77,9 +77,6 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
   covariance += square(imu_.gyro_gap()) / 8 * motion * motion.transpose();
   covariance += (square(encoder_) + square(forward_speed()) * wheels_.stamp_variance()) * along * along.transpose();
-  const double way = (comparison_.left + comparison_.right) / 4;  // m: the heading went apart evenly on the way
-  const Eigen::Vector3d doubted = turning + way * Eigen::Vector3d(-std::sin(yaw), std::cos(yaw), 0);
-  covariance += core_.doubt_variance(comparison_.contradiction) * doubted * doubted.transpose();
   if (pose_set_) covariance.setZero();
   Eigen::Map<PoseMatrix> published(out.pose_covariance.data());
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();
@@ -163,7 +160,6 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (resting_) out.flags |= lasting_flags_ & kStateStandstill;
   if (out.slip != 0) out.flags |= kStateSlip;
   out.degraded = slide_.active() ? kDegradedPosition : 0;
-  if (core_.doubts() || comparison_.contradiction != 0) out.degraded |= kDegradedHeading;
   const bool unknown_bias = core_.bias_variance() > square(Tuning::kUnknownBias);
   if (!resting_ && imu_.gyro() && unknown_bias) out.degraded |= kDegradedHeading;
   if (out.degraded != 0) out.flags |= kStateDegraded;

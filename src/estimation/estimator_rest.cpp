@@ -52,10 +52,6 @@ void Estimator::begin_rest() noexcept {
   gyro_noise_.interrupt();
   open_window_ = last_window_ = {};
   slide_.end();
-  if (comparison_.contradiction != 0) {
-    core_.doubt(comparison_.contradiction, (comparison_.left + comparison_.right) / 2);
-  }
-  core_.end_doubt();
   comparison_ = {};
   wheels_.forget_turn();
   flags_ |= kStateStandstill;

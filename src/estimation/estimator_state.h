@@ -31,8 +31,6 @@ class EstimatorState {
   /// Wheels' turn against the gyro's, over one block.
   struct TurnComparison {
     bool open = false;
-    bool learns = true;                    ///< no wheel has slipped
-    double contradiction = 0;              ///< rad, so far
     double time = 0, left = 0, right = 0;  ///< s, m
   };
 

@@ -150,25 +150,6 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   return {square(normalised), used};
 }
 
-double PlanarCore::contradiction(double left, double right, double rate, double dt, double jitter) const noexcept {
-  const double angle = turned() - offset() * (rate - anchor_rate_);
-  const double b = params_.wheel_base * (1 + base());
-  const WheelNoise::Variances parts = noise_.variances(std::abs(left) + std::abs(right), angle, b);
-  const double apart = right - left + ratio() * (left + right) / 2 - b * angle;
-  const double gyro = square(gyro_noise_) * dt + own_bias_variance() * dt * dt +
-                      square(rate - anchor_rate_) * covariance_(kOffset, kOffset);
-  const double variance = parts.slips + parts.twists + 4 * square(params_.encoder) +
-                          square(angle * params_.wheel_base) * covariance_(kBase, kBase) +
-                          b * b * (gyro + jitter * (square(rate) + square(anchor_rate_)));
-  return square(apart) > square(Tuning::kGate) * variance ? apart / b : 0;
-}
-
-void PlanarCore::doubt(double angle, double distance) noexcept {
-  add_yaw_variance(doubt_variance(angle));
-  shift(0, 0, square(angle * distance / 2));
-  doubt_ += std::abs(angle);
-}
-
 /// What is held has no variance and does not walk.
 void PlanarCore::walk(double mean, double rolled, double dt) noexcept {
   const auto grow = [&](int i, double variance) {

@@ -17,10 +17,6 @@
 /// sees it. An innovation pulls no harder than Huber's bound; beyond kGate deviations it is not used. The walks of ε
 /// and β are in proportion to the slip noise (wheel_noise.h).
 ///
-/// Where the block's turns contradict each other, wheels slip or the gyro fails, and nothing tells which: the heading
-/// stays the gyro's, and its deviation grows by the whole difference. The differences until the next rest add up, for
-/// it is one cause.
-///
 /// Before the first rest b looks like an ε, and that of wheels which a turn drags over the floor changes with load and
 /// floor. Corrections of pose and b are held back, and P is that of a pose without them, until a rest or wheels that
 /// are not dragged prove another b than the path was driven by. The first rest corrects the pose by ∂(x, y, ψ)/∂b
@@ -99,16 +95,6 @@ class PlanarCore {
   /// It ends, after `left` and `right` m in `dt` s. `rate` rad/s: the gyro's at either end. `jitter` s²: variance of
   /// the stamps of the wheels.
   Innovation end_block(double left, double right, double rate, double dt, double jitter = 0) noexcept;
-  /// rad: by how much wheels and gyro have turned apart in the block so far, where that is beyond kGate
-  /// deviations of what slip, scatter and both sensors explain; else 0. Arguments as of end_block.
-  double contradiction(double left, double right, double rate, double dt, double jitter) const noexcept;
-  /// rad²: what a contradiction by `angle` more adds to the variance of the heading. Either sensor may be wrong, and
-  /// until a rest it is the same one.
-  double doubt_variance(double angle) const noexcept { return square(doubt_ + std::abs(angle)) - square(doubt_); }
-  /// The block ends with a contradiction by `angle` after `distance` m.
-  void doubt(double angle, double distance) noexcept;
-  bool doubts() const noexcept { return doubt_ > 0; }
-  void end_doubt() noexcept { doubt_ = 0; }  ///< a rest: what was doubted stays in the covariance
   /// The gyro's mean at rest, rad/s. `keeps_pose`: it stays where it is.
   void rest(double mean, double variance, bool keeps_pose) noexcept;
   void set_gyro_noise(double density) noexcept { gyro_noise_ = density; }  ///< rad/s/√Hz, learned
@@ -155,7 +141,6 @@ class PlanarCore {
   Vector by_bias_ = Vector::Unit(kBias);                    ///< derivative of the pose by the bias that drove it
   Eigen::Vector2d second_order_ = Eigen::Vector2d::Zero();  ///< m: q
   WheelNoise noise_;
-  double doubt_ = 0;        ///< rad, by contradictions since the last rest
   double anchor_rate_ = 0;  ///< rad/s, at the beginning of the block
   double gyro_noise_;       ///< rad/s/√Hz, learned
   bool bias_known_ = true;
