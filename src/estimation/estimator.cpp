@@ -30,7 +30,7 @@ bool continuable(const StateFrame& last) noexcept {
 }  // namespace
 
 EstimatorState::EstimatorState(const EstimatorParameters& parameters, const RobotModel& robot, double period)
-    : wheels_(robot, parameters.speed_bandwidth, period),
+    : wheels_(robot, parameters.speed_bandwidth, period, std::sqrt(12.0) * encoder_deviation(parameters, robot)),
       core_(core_params(parameters, robot)),
       tilt_(tilt_params(parameters)),
       gyro_noise_(parameters.gyro_noise),
@@ -140,7 +140,6 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   } else if (dt > 0) {
     integrate_wheels();
     if (wheels_.both_received()) wheels_.average_speed(std::abs(core_.offset()));
-    slip_correction_.age(dt);
     if (resting_) {
       rest(dt);
     } else {
@@ -154,7 +153,6 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
     place(*pose_set_);
     open_window_ = last_window_ = {};
     slip_detector_.begin_path();
-    slip_correction_.begin_path(slip_detector_.difference());
   }
 }
 
@@ -169,8 +167,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   if (readings.restarted) comparison_ = {};
   if (readings.lost_travels == 0) return;
   core_.shift(0, 0, readings.lost_travels * square(Tuning::kRestart));
-  slip_detector_.restart();
-  slip_correction_.end();
+  end_slide();
 }
 
 /// Raw odometry: the travel of either side since its last reading.
@@ -202,8 +199,7 @@ Estimator::Prediction Estimator::prediction() const noexcept {
   if (resting_) return {};
   Prediction ahead;
   if (core_.offset() > 0) {
-    const double speed =
-        wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slip_correction_.excess_speed();
+    const double speed = wheels_.any_lost() ? forward_speed() : wheels_.recent_speed() - slide_.excess_speed();
     ahead.distance = speed * core_.offset();
   } else {
     ahead.turn = -yaw_rate_ * core_.offset();
@@ -214,7 +210,7 @@ Estimator::Prediction Estimator::prediction() const noexcept {
 }
 
 double Estimator::forward_speed() const noexcept {
-  return resting_ ? 0 : wheels_.speed_at(rate_.rate().z()) - slip_correction_.excess_speed();
+  return resting_ ? 0 : wheels_.speed_at(rate_.rate().z()) - slide_.excess_speed();
 }
 
 }  // namespace robot_control

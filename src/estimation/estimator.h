@@ -7,7 +7,7 @@
 ///
 /// The pose is wheels for the distance and gyro for the heading (planar/planar_core.h). The accelerometer enters it by
 /// the tilt, which shortens the distance, and the creep of tyres, parts of a percent; else only while slip is proven
-/// (slip/slip_detector.h, slip/slip_correction.h), and then within bounds.
+/// (slip/slip_detector.h, slip/wheel_slide.h), and then within bounds. Slip widens the covariance.
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay, the gyro's bias and the tilt
 /// (tilt/tilt.h) are learned; until the first rest is over the pose is corrected by that bias, too. Every run begins at
@@ -28,7 +28,7 @@
 /// biases follow every sample.
 ///
 /// kStateDegraded, with a reason: kDegradedHeading, the gyro's bias is known no better than kUnknownBias, which is
-/// so before the first rest; kDegradedPosition, the correction of a slide was not plausible and was undone.
+/// so before the first rest; kDegradedPosition, wheels slip.
 ///
 /// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kBlock.
 
@@ -98,7 +98,6 @@ class Estimator : private EstimatorState {
   void end_rest() noexcept;
   void learn_at_rest() noexcept;
   void learn_gyro_bias(const Vector3& mean, double window) noexcept;
-  bool slides_at_rest() noexcept;
   RestWindow watch_rest(double dt) noexcept;
 
   // estimator_motion.cpp
@@ -108,10 +107,10 @@ class Estimator : private EstimatorState {
   void advance_path(const WheelSides::Travel& travel) noexcept;
   std::array<double, 2> tyres_creep(double distance) const noexcept;
   void watch_slip(double dt, double turned) noexcept;
-  void follow_slide() noexcept;
+  void end_slide() noexcept;
   void judge_slip() noexcept;
-  void correct(const PathCorrection& correction) noexcept;
-  SlipCorrection::Input correction_input() const noexcept;
+  void correct(const WheelSlide::Correction& correction) noexcept;
+  WheelSlide::Input slide_input() const noexcept;
   void compare_turns(double dt) noexcept;
   void begin_comparison() noexcept;
   void note(SensorIndex sensor, double nis, double dt) noexcept;

@@ -14,6 +14,7 @@ void Estimator::move(double dt) noexcept {
   wheels_.turn(turned);
   uncorrected_step_ = {};
   for (const WheelSides::Travel& travel : wheels_.take_travels(core_.ratio())) advance_path(travel);
+  if (wheels_.both_received()) core_.shift(0, 0, wheels_.quantum().travel_variance() / 2);
   tilt_.roll(wheels_.turned());
   if (imu_.gyro()) turn_tilt(*imu_.gyro(), dt);
   if (parameters_.slip_detection) watch_slip(dt, turned);
@@ -21,7 +22,7 @@ void Estimator::move(double dt) noexcept {
   const RestWindow window = watch_rest(dt);
   if (wheels_.any_lost()) {
     watch_.reset();
-  } else if (window == RestWindow::kQuiet && !slides_at_rest()) {
+  } else if (window == RestWindow::kQuiet) {
     begin_rest();
   }
 }
@@ -83,8 +84,7 @@ void Estimator::advance_path(const WheelSides::Travel& travel) noexcept {
 void Estimator::watch_slip(double dt, double turned) noexcept {
   const bool inertial = imu_.gyro() && imu_.accelerometer() && !wheels_.any_lost() && !wheels_.in_a_batch();
   if (!inertial) {
-    slip_detector_.restart();
-    slip_correction_.end();
+    end_slide();
     return;
   }
   const double left = wheels_.left();
@@ -100,51 +100,52 @@ void Estimator::watch_slip(double dt, double turned) noexcept {
                            .distance = (std::abs(left) + std::abs(right)) / 2,
                            .both_sides_read = wheels_.both_received(),
                            .yaw_rate = yaw_rate_});
-  if (slip_correction_.active() && wheels_.both_received()) follow_slide();
   if (point && !slip_detector_.difference().empty()) judge_slip();
 }
 
-/// While a slide is going on.
-void Estimator::follow_slide() noexcept {
-  correct(slip_correction_.step(slip_detector_.difference(), correction_input()));
-  if (slip_correction_.active()) return;
-  if (!slip_correction_.given_up()) return slip_detector_.restart_on_line(slip_correction_.line_slope());
+void Estimator::end_slide() noexcept {
+  slide_.end();
   slip_detector_.restart();
 }
 
 void Estimator::judge_slip() noexcept {
-  if (!slip_correction_.active()) slip_detector_.set_clock_offset(core_.offset());
-  const bool learns = !slip_correction_.active() && slip_correction_.since_end() > Tuning::kSettling;
+  const bool learns = !slide_.active();
+  if (learns) slip_detector_.set_clock_offset(core_.offset());
   slip_detector_.judge({.acceleration_variance = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
                         .wheel_base = core_.deviation(PlanarCore::kBase),
                         .clock_offset = core_.deviation(PlanarCore::kOffset),
-                        .gyro_bias = std::sqrt(core_.bias_variance())},
+                        .gyro_bias = std::sqrt(core_.bias_variance()),
+                        .speed_step = wheels_.quantum().step()},
                        learns);
   note(kAccelerometer, slip_detector_.nis(SlipResidual::kAlong), Tuning::kPointInterval);
   note(kLateralContact, slip_detector_.nis(SlipResidual::kAcross), Tuning::kPointInterval);
   note(kGyro, slip_detector_.nis(SlipResidual::kTurn), Tuning::kPointInterval);
-  if (slip_correction_.active()) return;
+  if (slide_.active()) {
+    correct(slide_.step(slip_detector_.difference(), slide_input()));
+    if (!slide_.active()) slip_detector_.restart_on_line(slide_.rolling_slope(slip_detector_.difference()));
+    return;
+  }
   const SlipDetector::GravityError& gravity = slip_detector_.gravity_error();
   if (const double span = slip_detector_.shortest_proven_span(); span > 0) {
     if (drags_wheels_ && !bias_measured_) return;
     if (slip_detector_.proven(SlipResidual::kAcross)) ++rejected_[kLateralContact];
-    correct(slip_correction_.begin(slip_detector_.difference(), span, correction_input()));
+    correct(slide_.begin(slip_detector_.difference(), span, slide_input()));
   } else if (gravity.known) {
     tilt_.correct(gravity.along, gravity.across, gravity.interval, gravity.deviation);
   }
 }
 
-SlipCorrection::Input Estimator::correction_input() const noexcept {
+WheelSlide::Input Estimator::slide_input() const noexcept {
   const double variance = std::max(tilt_.acceleration_variance(0), tilt_.acceleration_variance(1));
   return {.noise = slip_detector_.acceleration_noise(variance),
           .path_slope_deviation = slip_detector_.slope_deviation(SlipResidual::kAlong),
           .turn_slope_deviation = slip_detector_.slope_deviation(SlipResidual::kTurn),
-          .wheel_speed = wheels_.speed(),
-          .sensors_as_specified = slip_detector_.sensors_as_specified()};
+          .side_speed = {wheels_.side_speed(kLeft), wheels_.side_speed(kRight)},
+          .sideways = slip_detector_.proven(SlipResidual::kAcross)};
 }
 
 /// The axes of the slip detector are turned against odom's.
-void Estimator::correct(const PathCorrection& correction) noexcept {
+void Estimator::correct(const WheelSlide::Correction& correction) noexcept {
   const Planar shift = rotated(correction.shift, core_.pose().yaw - uncorrected_yaw_);
   core_.shift(shift.x, shift.y, correction.variance);
 }
@@ -153,8 +154,7 @@ void Estimator::compare_turns(double dt) noexcept {
   comparison_.time += dt;
   comparison_.left += wheels_.left();
   comparison_.right += wheels_.right();
-  if (slip_correction_.active() || (parameters_.slip_detection && slip_correction_.since_end() < Tuning::kSettling))
-    comparison_.open = false;
+  if (slide_.active()) comparison_.open = false;
   if (!wheels_.both_received() || (comparison_.open && comparison_.time < Tuning::kBlock)) return;
   if (!imu_.gyro() || gyro_turn_.silent()) return;
   if (comparison_.open) {

@@ -101,8 +101,7 @@ void Estimator::fill_twist(StateFrame& out) const noexcept {
   const Eigen::Vector3d rate = resting_ ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : rate_.rate();
   const Motion velocity = geometry_.base_motion(forward_speed(), rate.z());
   const std::array<double, 2> creep = resting_ ? std::array<double, 2>{} : tyres_creep(velocity.forward);
-  out.twist_base = {{velocity.forward - creep[0], velocity.left + slip_correction_.lateral_speed() - creep[1], 0},
-                    {0, 0, rate.z()}};
+  out.twist_base = {{velocity.forward - creep[0], velocity.left - creep[1], 0}, {0, 0, rate.z()}};
   if (!parameters_.planar) out.twist_base.angular = array(rate);
   fill_twist_covariance(rate.z(), out);
 }
@@ -115,14 +114,10 @@ void Estimator::fill_twist_covariance(double yaw_rate, StateFrame& out) const no
                 square(parameters_.gyro_scale_deviation * yaw_rate);
   if (!imu_.gyro()) turn = 4 * wheel / square(geometry_.wheel_base);
   if (resting_) wheel = turn = 0;
-  double slides = 0;
-  if (slip_correction_.active()) {
-    const double changed =
-        std::max(std::abs(slip_correction_.excess_speed()), std::abs(wheels_.speed() - slip_correction_.onset_speed()));
-    slides = (square(changed) + square(slip_correction_.lateral_speed())) / 4;
-  }
+  const double slides = slide_.active() ? square(slide_.speed_deviation()) : 0;
   out.twist_covariance = {};
-  out.twist_covariance[0] = wheel / 2 + slides + square(geometry_.axle_y) * turn;
+  out.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
+                            square(geometry_.axle_y) * turn;
   out.twist_covariance[7] =
       wheel / 2 + slides + square(geometry_.axle_x) * turn + square(yaw_rate * core_.deviation(PlanarCore::kIcr));
   out.twist_covariance[35] = turn;
@@ -144,7 +139,7 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   wheel_velocities_.write(out.wheel_velocity);
   out.nis = nis_;
   out.rejected = rejected_;
-  out.slip = resting_ ? 0 : slip_correction_.reasons();
+  out.slip = resting_ ? 0 : slide_.reasons();
   out.residual_level = slip_detector_.levels().level();
   out.distance = distance_;
   out.skipped = skipped_;
@@ -153,19 +148,18 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
     out.confidence[sensor] = used ? 1 / std::max(1.0, out.nis[sensor]) : 0;
   };
   out.confidence = {};
-  confidence(kLeftEncoder, wheels_.received(kLeft) && !slip_correction_.contacts().slips[kLeft]);
-  confidence(kRightEncoder, wheels_.received(kRight) && !slip_correction_.contacts().slips[kRight]);
+  confidence(kLeftEncoder, wheels_.received(kLeft) && !slide_.slips(kLeft));
+  confidence(kRightEncoder, wheels_.received(kRight) && !slide_.slips(kRight));
   confidence(kGyro, imu_.gyro().has_value());
   confidence(kAccelerometer, imu_.accelerometer().has_value());
-  confidence(kLateralContact, !slip_correction_.contacts().sideways);
+  confidence(kLateralContact, !slide_.sideways());
   confidence(kVerticalContact, true);
 
   out.flags = flags_;
   if (!wheels_.any_lost() || (!wheels_.both_lost() && imu_.gyro())) out.flags |= kStateValid;
   if (resting_) out.flags |= lasting_flags_ & kStateStandstill;
   if (out.slip != 0) out.flags |= kStateSlip;
-  out.degraded = 0;
-  if (slip_correction_.undone()) out.degraded |= kDegradedPosition;
+  out.degraded = slide_.active() ? kDegradedPosition : 0;
   const bool unknown_bias = core_.bias_variance() > square(Tuning::kUnknownBias);
   if (!resting_ && imu_.gyro() && unknown_bias) out.degraded |= kDegradedHeading;
   if (out.degraded != 0) out.flags |= kStateDegraded;

@@ -8,6 +8,7 @@ namespace robot_control {
 
 struct EstimatorParameters {
   double wheel_slip_noise = 8e-5;  ///< m/√m: standard deviation of travelled distance per √distance, per wheel
+  double wheel_radius_deviation = 0.017;  ///< of the mean radius, relative: evenly within ±3 %, as of tyres under load
   double tyre_creep = 0.003;    ///< s²/m: slip per specific force, 1/(g C) of tyres as stiff as C = 34 loads; 0: none
   double gyro_noise = 2.44e-4;  ///< rad/s/√Hz, white noise density of the gyro
   double standstill_speed = 0.01;  ///< rad/s, wheel and yaw rate below which the robot may be standing

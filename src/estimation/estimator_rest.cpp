@@ -31,7 +31,9 @@ RestWindow Estimator::watch_rest(double dt) noexcept {
 }
 
 void Estimator::rest(double dt) noexcept {
-  open_window_.step(dt, wheels_.left(), wheels_.right(), imu_.gyro());
+  std::array<double, 2> acceleration{};
+  if (imu_.accelerometer()) acceleration = tilt_.acceleration(array(*imu_.accelerometer()));
+  open_window_.step(dt, wheels_.left(), wheels_.right(), imu_.gyro(), {acceleration[0], acceleration[1]});
   if (wheels_.both_fell_silent()) {  // no sensor confirms that it still rests
     watch_.reset();
     lasting_flags_ &= ~std::uint64_t{kStateStandstill};
@@ -49,12 +51,11 @@ void Estimator::begin_rest() noexcept {
   resting_ = true;
   gyro_noise_.interrupt();
   open_window_ = last_window_ = {};
-  slip_correction_.end();
+  slide_.end();
   comparison_ = {};
   wheels_.forget_turn();
   flags_ |= kStateStandstill;
   lasting_flags_ |= kStateStandstill;
-  sliding_time_ = 0;
   if (watch_.bias_changed()) {
     learn_at_rest();
   } else {
@@ -84,7 +85,7 @@ void Estimator::end_rest() noexcept {
   advance_path({.distance = (held.left + held.right) / 2, .turn_since = turned / 2});
   wheels_.forget_turn();
   if (stood) {
-    slip_detector_.restart_at_rest(uncorrected_yaw_, tilt_.up());
+    slip_detector_.restart_at_rest(uncorrected_yaw_, tilt_.up(), rotated(held.velocity, uncorrected_yaw_));
   } else {
     slip_detector_.restart();
   }
@@ -112,20 +113,6 @@ void Estimator::learn_gyro_bias(const Vector3& mean, double window) noexcept {
   const double walk = square(parameters_.gyro_bias_walk) * window;
   for (const std::size_t i : {0U, 1U}) gyro_bias_[i].measure(mean[i], noise, walk);
   bias_measured_ = true;
-}
-
-/// Wheels stand, and the accelerometer reads another force than a robot at rest would.
-bool Estimator::slides_at_rest() noexcept {
-  if (!watch_.last_force()) return false;
-  const auto acceleration = tilt_.acceleration(*watch_.last_force());
-  bool slides = false;
-  for (const int axis : {0, 1}) {
-    const double deviation = std::sqrt(tilt_.acceleration_variance(axis));
-    slides = slides || std::abs(acceleration[axis]) > Tuning::kSignificant * (Tuning::kAccelerometerAtRest + deviation);
-  }
-  const bool may_slide = slides && sliding_time_ < Tuning::kLongestShakenSlide;
-  sliding_time_ = slides ? sliding_time_ + parameters_.standstill_time : 0;
-  return may_slide;
 }
 
 }  // namespace robot_control

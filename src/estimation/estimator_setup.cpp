@@ -28,6 +28,7 @@ const EstimatorParameters& checked(const EstimatorParameters& parameters, const 
   }
   for (const WheelModel& wheel : robot.wheels) positive(wheel.radius, "radius of a wheel must be > 0 m");
   no_less(parameters.wheel_slip_noise, "wheel_slip_noise must be >= 0 m/√m");
+  no_less(parameters.wheel_radius_deviation, "wheel_radius_deviation must be >= 0");
   no_less(parameters.tyre_creep, "tyre_creep must be >= 0 s²/m");
   positive(parameters.encoder_noise, "encoder_noise must be > 0 rad");
   positive(parameters.gyro_noise, "gyro_noise must be > 0 rad/s/√Hz");
@@ -74,6 +75,7 @@ PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotM
           .drags_wheels = drags_wheels(robot),
           .ratio_deviation = learns * parameters.calibration.radius_ratio_deviation,
           .wheel_base_deviation = learns * parameters.calibration.wheel_base_deviation,
+          .radius_deviation = parameters.wheel_radius_deviation,
           .icr_deviation = icr_deviation(robot)};
 }
 

@@ -14,8 +14,8 @@
 #include "estimation/rest/gyro_noise.h"
 #include "estimation/rest/held_motion.h"
 #include "estimation/rest/rest_watch.h"
-#include "estimation/slip/slip_correction.h"
 #include "estimation/slip/slip_detector.h"
+#include "estimation/slip/wheel_slide.h"
 #include "estimation/tilt/tilt.h"
 #include "estimation/wheels/wheel_sides.h"
 #include "estimation/wheels/wheel_velocities.h"
@@ -58,7 +58,7 @@ class EstimatorState {
 
   // Slip. Its axes are odom's but for the corrections of the yaw, which would bend a path that is integrated twice.
   SlipDetector slip_detector_;
-  SlipCorrection slip_correction_;
+  WheelSlide slide_;
   double uncorrected_yaw_ = 0;  ///< rad
   Planar uncorrected_step_;     ///< m, path of this step
 
@@ -67,7 +67,6 @@ class EstimatorState {
   bool resting_ = true;         ///< nothing is integrated until a window is not quiet
   HeldMotion open_window_;      ///< not over yet
   HeldMotion last_window_;      ///< the one before
-  double sliding_time_ = 0;     ///< s, of quiet windows in a row in which it seems to slide
   bool bias_measured_ = false;  ///< a rest was seen in this run
   bool rested_ = false;         ///< likewise, and it was over
   bool moved_ = false;          ///< in this run

@@ -25,7 +25,6 @@ struct Tuning {
   static constexpr double kMountedGyro = 2;  ///< noise of a mounted gyro over its data sheet's; recordings: 1.5 … 1.9
   static constexpr double kTipping = 0.5;    ///< rad/s about x and y, beyond which a gyro is taken to fail; faults
   static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: it is the gyro's bias; faults
-  static constexpr double kSettling = 0.5;       ///< s after a slide in which nothing is learned; recordings
   static constexpr double kBatch = 0.3;      ///< of the usual gap between readings, below which they came in a batch;
                                              ///< recordings
   static constexpr double kGapFading = 0.9;  ///< of the largest gap per reading; recordings, of stamps with jitter
@@ -36,10 +35,6 @@ struct Tuning {
   static constexpr double kWindUp = 1.6e-3;  ///< rad/√(rad/s), of treads and gears in a turn that changes; recordings
   static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error, as of 2 mrad of tilt; recordings
   static constexpr double kFirstLevel = 10;          ///< of residuals, before one is learned: it shakes; recordings
-  static constexpr double kLineGain = 0.5;      ///< of a decision, in the line that a rolling side renews; recordings
-  static constexpr double kRollingTime = 0.15;  ///< s, of rolling or of standing that ends a slide; recordings
-  static constexpr double kLongestSlide = 6.0;  ///< s, without a side that rolls; recordings
-  static constexpr double kLongestShakenSlide = 1.5;  ///< s, likewise, on a robot that shakes, or at rest; recordings
 
   // Conventions of statistics.
 
@@ -52,17 +47,17 @@ struct Tuning {
   static constexpr double kStampMemory = 50;      ///< readings, of the stamps' jitter: its deviation is known to 10 %
   static constexpr double kNoisePrior = 4;        ///< windows that kMountedGyro is worth: 1 s
   static constexpr double kProof = 5;             ///< deviations that prove slip: 1 of 1.7 million normal residuals
-  static constexpr double kCorrectionDeviation = 0.577;  ///< of a correction: slip lies evenly between 0 and its double
-  static constexpr double kNormal90 = 1.645;             ///< deviations, 90 % quantile of |normal|
-  static constexpr std::uint64_t kFirstResiduals = 8;    ///< whose largest is the first level: their 90 % quantile
-  static constexpr double kQuantileStep = 0.5;           ///< of the logarithm of a level: 1.6 up, 1/1.05 down
-  static constexpr double kUsualSpeedShare = 0.1;        ///< of the speed of one residual in the usual one
+  static constexpr double kChoiceDeviation =
+      0.577;  ///< of a choice between two speeds: the true one lies evenly within their difference
+  static constexpr double kNormal90 = 1.645;           ///< deviations, 90 % quantile of |normal|
+  static constexpr std::uint64_t kFirstResiduals = 8;  ///< whose largest is the first level: their 90 % quantile
+  static constexpr double kQuantileStep = 0.5;         ///< of the logarithm of a level: 1.6 up, 1/1.05 down
+  static constexpr double kUsualSpeedShare = 0.1;      ///< of the speed of one residual in the usual one
 
   // Time scales.
 
   static constexpr std::array<double, 4> kResidualSpans{0.1, 0.2, 0.4, 0.8};  ///< s: T of slip_residual.h
   static constexpr double kPointInterval = 0.05;  ///< s between two points of the differences: half the shortest T
-  static constexpr double kUndoneTime = 5.0;      ///< s, for which an undone correction is reported
   static constexpr double kBlock = 1.0;           ///< s, between two comparisons of wheels and gyro; of the confidences
   static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings: as long as a command lives (hal/gate.h)
   static constexpr double kShortestHold = 0.02;   ///< s, for which a sample of an IMU holds at least: 50 Hz
@@ -81,7 +76,6 @@ struct Tuning {
   static constexpr double kInitialTilt = 0.1;          ///< rad, deviation at switch-on: the steepest road
   static constexpr double kFloor = 0.01;               ///< rad, of the tilt of two places; twice what DIN 18202 allows
   static constexpr double kLargestOffset = 0.4;        ///< s, twice the largest clock offset of the recordings
-  static constexpr double kLongestDrift = 1.0;         ///< s, on wheels that roll: ice (0.1) stops 1 m/s in that time
   static constexpr double kLeastTwist = 5e-4;          ///< rad/√rad, a hard tyre on a hard floor
   static constexpr double kLargestSlip = 0.05;         ///< m/√m, ten times that of skid steers
   static constexpr double kLargestTwist = 1.0;         ///< rad/√rad, nothing is known of a turn

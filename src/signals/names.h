@@ -121,14 +121,15 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
     {kStateNoRightEncoder, "no_right_encoder", "no valid readings of the right encoders", "look at the right encoder"},
     {kStateNoAccelerometer, "no_accelerometer", "tilt, and slip of all wheels together, are not noticed",
      "look at the IMU"},
-    {kStateDegraded, "degraded", "the pose does without a correction of slip or without the gyro's bias",
+    {kStateDegraded, "degraded", "the pose is less certain than usual: slip, or no gyro bias yet",
      "read the reason in degraded"},
 });
 
 inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
-    {kDegradedPosition, "position", "the correction of a slide was not plausible and was undone",
+    {kDegradedPosition, "position", "wheels slip: the path takes the speed that the accelerometer carries on",
      "look at the IMU's mounting; a robot that shakes: slip_detection false"},
-    {kDegradedHeading, "heading", "the gyro's bias is not known before the first rest", "let the robot rest for a second"},
+    {kDegradedHeading, "heading", "the gyro's bias is not known before the first rest",
+     "let the robot rest for a second"},
     {kDegradedSpeed, "speed", "of an earlier version: the accelerometer contradicted the wheels' speed", ""},
     {kDegradedTilt, "tilt", "of an earlier version: the estimated tilt contradicted gravity", ""},
 });

@@ -35,13 +35,13 @@ enum StateFlag : std::uint64_t {
   kStateNoLeftEncoder = 1u << 7,    ///< No valid readings of the left encoders.
   kStateNoRightEncoder = 1u << 8,   ///< No valid readings of the right encoders.
   kStateNoAccelerometer = 1u << 9,  ///< Tilt and slip of all wheels together are not noticed.
-  kStateDegraded = 1u << 10,        ///< The pose is plainer than it could be; StateFrame::degraded says why.
+  kStateDegraded = 1u << 10,        ///< The pose is less certain than usual; StateFrame::degraded says why.
 };
 
 /// Bits of StateFrame::degraded: what the pose does without.
 enum DegradedReason : std::uint64_t {
-  kDegradedPosition = 1u << 0,  ///< The correction of a slide: not plausible, undone (slip/slip_correction.h).
-  kDegradedHeading = 1u << 1,   ///< The gyro's bias: the robot moves before its first rest.
+  kDegradedPosition = 1u << 0,  ///< Wheels slip (estimation/slip/wheel_slide.h).
+  kDegradedHeading = 1u << 1,   ///< No rest has shown the gyro's bias yet.
   kDegradedSpeed = 1u << 2,     ///< No longer set; in earlier logs.
   kDegradedTilt = 1u << 3,      ///< No longer set; in earlier logs.
 };

@@ -102,17 +102,17 @@ TEST_F(EstimatorSlipTest, LockedWheelsOfARobotThatSlidesOn) {
   for (int i = 0; i < 450; ++i) {
     drive(0, 0, 1);
     flagged += has(kStateSlip) ? 1 : 0;
-    ASSERT_FALSE(has(kStateStandstill)) << "wheels that stand are not a robot that stands";
-    if (i == 250) {
+    if (i == 200) {
       EXPECT_TRUE(names(kSlipLeft | kSlipRight | kSlipStalled));
     }
   }
-  EXPECT_GT(flagged, 350);
+  EXPECT_GT(flagged, 150) << "until wheels and gyro stand";
   drive(0, 0, 3000);
   EXPECT_TRUE(has(kStateStandstill));
   EXPECT_EQ(state_.slip, 0u);
   EXPECT_GT(raw_error(), 0.1);
-  EXPECT_LT(position_error(), raw_error() / 3);  // what the verdict of the first 0.1 s leaves
+  EXPECT_LT(position_error(), raw_error());
+  EXPECT_LT(position_error(), 3 * std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
 }
 
 /// Has not turned yet: wheels and accelerometer may be a tenth of a second apart.
@@ -138,23 +138,20 @@ TEST_F(EstimatorSlipTest, SlidingSidewaysIsNamed) {
   EXPECT_GT(flagged(500), 450);
   EXPECT_TRUE(names(kSlipSideways));
   EXPECT_EQ(state_.confidence[kLateralContact], 0);
-  const double late = 0.25 * Tuning::kPointInterval;  // m: 0.25 m/s, and the path is corrected once per point
-  EXPECT_LT(position_error(), raw_error() / 5 + late);
+  const double across = 0.25 * (0.5 / 2 + 0.5);  // m: pushed for 0.5 s, then at 0.25 m/s
+  EXPECT_LT(position_error(), 1.2 * across) << "sideways nothing moves the path";
+  EXPECT_LT(position_error(), 3 * std::sqrt(state_.pose_covariance[0] + state_.pose_covariance[7]));
 }
 
-// The body leans by 2°: the accelerometer shows a slide without end. What one drift adds to the path is undone.
+// The body leans by 2°: the accelerometer shows a slide without end. The path does not move.
 TEST_F(EstimatorSlipTest, ABodyThatLeansDoesNotDriftAway) {
-  constexpr double kLeans = 0.34;  // m/s²
-  robot_.accelerometer_bias.y() += kLeans;
+  robot_.accelerometer_bias.y() += 0.34;
   double farthest = 0;
-  bool degraded = false;
   for (int i = 0; i < 20000; ++i) {
     drive(0.5, 0, 1);
     farthest = std::max(farthest, position_error());
-    degraded = degraded || has(kStateDegraded);
   }
-  EXPECT_TRUE(degraded);
-  EXPECT_LT(farthest, kLeans * square(Tuning::kLongestDrift));
+  EXPECT_LT(farthest, 0.1);  // 1 % of the way
 }
 
 // The wheels jump by 1 m/s, which no real wheel does; the first verdict comes within the shortest span.
@@ -200,7 +197,7 @@ TEST_F(EstimatorSlipTest, IsNotForgottenWhereThePoseIsSet) {
 // However long it spun.
 TEST_F(EstimatorSlipTest, EndsWhenTheWheelRollsAgain) {
   robot_.tread[0] = 1.0;
-  const int cycles = static_cast<int>(Tuning::kLongestSlide / kPeriod);
+  constexpr int cycles = 6000;
   EXPECT_GT(flagged(cycles), 0.9 * cycles);
   flagged(cycles / 2);
   ASSERT_TRUE(all_finite(state_));

@@ -14,7 +14,7 @@ namespace {
 static_assert(kCopyableState<Estimator>);
 static_assert(kCopyableState<PlanarCore>);
 static_assert(std::is_trivially_copyable_v<SlipDetector>);
-static_assert(std::is_trivially_copyable_v<SlipCorrection>);
+static_assert(std::is_trivially_copyable_v<WheelSlide>);
 static_assert(std::is_trivially_copyable_v<RestWatch>);
 static_assert(kCopyableState<Tilt>);
 

@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "estimation/slip/slip_correction.h"
 #include "estimation/slip/slip_detector.h"
+#include "estimation/slip/wheel_slide.h"
 
 namespace robot_control {
 
@@ -114,7 +114,7 @@ class SlipFixture : public testing::Test {
  protected:
   explicit SlipFixture(const SlipParams& params = {}) : body_(params) {
     body_.noise = params.accelerometer;
-    body_.detector.restart_at_rest(0, {0, 0, 1});
+    body_.detector.restart_at_rest(0, {0, 0, 1}, {});
   }
 
   void judge(bool learns) {

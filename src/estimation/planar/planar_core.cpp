@@ -14,6 +14,7 @@ PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
   covariance_(kBase, kBase) = square(params.wheel_base_deviation);
   covariance_(kScale, kScale) = square(params.gyro_scale);
   covariance_(kIcr, kIcr) = square(params.icr_deviation);
+  covariance_(kRadius, kRadius) = square(params.radius_deviation);
 }
 
 void PlanarCore::forget(int first, int count) noexcept {
@@ -95,6 +96,8 @@ void PlanarCore::roll(double x, double y, double rate) noexcept {
   add(kX, -y, kYaw);
   add(kY, x, kYaw);
   if (!bias_known_) second_order_ += std::min(1.0, std::sqrt(0.75) * covariance(kYaw, kYaw)) * Eigen::Vector2d(x, y);
+  add(kX, x, kRadius);
+  add(kY, y, kRadius);
   add(kX, rate * y, kOffset);
   add(kY, -rate * x, kOffset);
   shift(x, y, square(slip()) / 2 * std::hypot(x, y));

@@ -11,7 +11,8 @@
 /// State: τ, x, y, ψ, ψ₀ (yaw at the beginning of the block), b, ε (radius_ratio − 1), β (wheel_base_factor − 1).
 /// Considered and not corrected (S. F. Schmidt, 1966) are κ (gyro scale), which rolling does not distinguish from β;
 /// the part of b's error that comes from a gyro noisier than its data sheet during rests: the wheels' errors, alike for
-/// a while, would be taken for that; and x_ICR, by how far ahead of the wheels' middle the robot turns, −x_ICR dψ
+/// a while, would be taken for that; the mean radius of the wheels, which scales the path and
+/// which no turn shows; and x_ICR, by how far ahead of the wheels' middle the robot turns, −x_ICR dψ
 /// sideways, which wheels and gyro do not see. What the noise of such a gyro adds to the yaw enters ψ₀, too: no block
 /// sees it. An innovation pulls no harder than Huber's bound; beyond kGate deviations it is not used. The walks of ε
 /// and β are in proportion to the slip noise (wheel_noise.h).
@@ -51,14 +52,15 @@ struct PlanarCoreParams {
   bool drags_wheels = true;               ///< in a turn, over the floor
   double ratio_deviation = 0.01;          ///< 0: held
   double wheel_base_deviation = 0.03;     ///< 0: held
+  double radius_deviation = 0;            ///< of the wheels' mean radius, relative
   double icr_deviation = 0;               ///< m, of the instantaneous centre of rotation along x; 0: between two wheels
   double clock_offset = Tuning::kOffset;  ///< s, standard deviation; 0: held
 };
 
 class PlanarCore {
  public:
-  enum Index : int { kOffset, kX, kY, kYaw, kAnchor, kBias, kRatio, kBase, kScale, kRestBias, kIcr, kSize };
-  static constexpr int kConsidered = 3;  ///< the last ones
+  enum Index : int { kOffset, kX, kY, kYaw, kAnchor, kBias, kRatio, kBase, kScale, kRestBias, kIcr, kRadius, kSize };
+  static constexpr int kConsidered = 4;  ///< the last ones
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   using Vector = Eigen::Matrix<double, kSize, 1>;
 

@@ -5,18 +5,23 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "estimation/values.h"
+
 namespace robot_control {
 
 struct HeldMotion {
   double time = 0;                                 ///< s
   double left = 0, right = 0;                      ///< m
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< rad, base axes, gyro bias included
+  Planar velocity{};                               ///< m/s, base axes, integral of the acceleration
   bool gyro = true;                                ///< there was a gyro all the time
 
-  void step(double dt, double left_travel, double right_travel, const std::optional<Eigen::Vector3d>& rate) noexcept {
+  void step(double dt, double left_travel, double right_travel, const std::optional<Eigen::Vector3d>& rate,
+            const Planar& acceleration) noexcept {
     time += dt;
     left += left_travel;
     right += right_travel;
+    velocity = velocity + acceleration * dt;
     gyro = gyro && rate;
     if (rate) turn += *rate * dt;
   }
@@ -25,6 +30,7 @@ struct HeldMotion {
     left += other.left;
     right += other.right;
     turn += other.turn;
+    velocity = velocity + other.velocity;
     gyro = gyro && other.gyro;
   }
 };

@@ -26,7 +26,7 @@ void MotionDifference::restart_on_line(const Planar& slope) noexcept {
   }
 }
 
-void MotionDifference::restart_at_rest(double yaw, const Vector3& up) noexcept {
+void MotionDifference::restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept {
   restart();
   now_.inertial.yaw = yaw;
   now_.inertial.lever = lever(yaw, up);
@@ -37,6 +37,7 @@ void MotionDifference::restart_at_rest(double yaw, const Vector3& up) noexcept {
     record = now_;
     record.inertial.time = -static_cast<double>(i) * Tuning::kPointInterval;
   }
+  now_.inertial.velocity = velocity;
 }
 
 /// Nose up, an IMU above the contacts moves backwards.

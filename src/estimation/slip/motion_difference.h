@@ -65,11 +65,10 @@ class MotionDifference {
   explicit MotionDifference(const SlipParams& params) noexcept : params_(params) {}
 
   void restart() noexcept;  ///< without any point
-  /// The past of the wheels is laid on a straight line of E of that slope, m/s, odom axes, and on a constant W, and the
-  /// path until now is not to be corrected any more: a slide ended.
+  /// A slide ended: the past is laid on a straight line of E of that slope, m/s, odom axes, and on a constant W.
   void restart_on_line(const Planar& slope) noexcept;
-  /// The robot was at rest until now.
-  void restart_at_rest(double yaw, const Vector3& up) noexcept;
+  /// The robot was at rest until a moment ago. `velocity` m/s, odom axes: what the accelerometer has integrated since.
+  void restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept;
   /// The pose was set: the path until now is not to be corrected any more.
   void begin_path() noexcept { path_begin_ = time(); }
   double path_begin() const noexcept { return path_begin_; }  ///< s

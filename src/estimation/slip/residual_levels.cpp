@@ -11,13 +11,17 @@ double ResidualLevels::at_speed(double level, double speed) const noexcept {
   return std::sqrt(1 + (square(level) - 1) * square(faster));
 }
 
+double ResidualLevels::usual_deviation(std::size_t span, Channel channel, const SlipResidual& residual,
+                                       const SlipUncertainty& uncertainty) const noexcept {
+  return at_speed(level_[span][channel], residual.speed()) *
+         residual_deviation(channel, residual, uncertainty, params_);
+}
+
 double ResidualLevels::deviation(std::size_t span, Channel channel, const SlipResidual& residual,
                                  const SlipUncertainty& uncertainty) const noexcept {
-  const double usual =
-      at_speed(level_[span][channel], residual.speed()) * residual_deviation(channel, residual, uncertainty, params_);
   const double change =
       channel == SlipResidual::kTurn ? params_.wheel_base * residual.yaw_rate_change : residual.speed_change;
-  return std::hypot(usual, uncertainty.clock_offset * change);
+  return std::hypot(usual_deviation(span, channel, residual, uncertainty), uncertainty.clock_offset * change);
 }
 
 void ResidualLevels::learn(double time, std::size_t span, const SlipResidual& residual,

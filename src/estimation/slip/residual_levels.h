@@ -40,6 +40,10 @@ class ResidualLevels {
   double deviation(std::size_t span, Channel channel, const SlipResidual& residual,
                    const SlipUncertainty& uncertainty) const noexcept;
 
+  /// The same without the clock offset: of a robot that keeps its speed.
+  double usual_deviation(std::size_t span, Channel channel, const SlipResidual& residual,
+                         const SlipUncertainty& uncertainty) const noexcept;
+
   /// At `time`, s; once per span. Where nothing was learned yet it learns although wheels may slip.
   void learn(double time, std::size_t span, const SlipResidual& residual, const SlipUncertainty& uncertainty,
              bool slip) noexcept;

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "signals/slip_detection.h"
-
 namespace robot_control {
 
 void SlipDetector::forget_judgement() noexcept {
@@ -24,8 +22,8 @@ void SlipDetector::restart_on_line(const Planar& slope) noexcept {
   forget_judgement();
 }
 
-void SlipDetector::restart_at_rest(double yaw, const Vector3& up) noexcept {
-  difference_.restart_at_rest(yaw, up);
+void SlipDetector::restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept {
+  difference_.restart_at_rest(yaw, up, velocity);
   levels_.restart();
   forget_judgement();
 }
@@ -41,7 +39,7 @@ void SlipDetector::judge(const SlipUncertainty& uncertainty, bool learns) noexce
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     levels_.learn(difference_.time(), i, residuals[i], uncertainty, !learns);
   }
-  compare_gravity(tilt, learns);
+  compare_gravity(tilt, uncertainty.speed_step, learns);
 }
 
 void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
@@ -61,17 +59,20 @@ void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
   const bool proven = shortest + 1 < residuals.size();
   proven_span_[channel] = proven ? residuals[shortest].span : 0;
   constexpr std::size_t kLevel = ResidualLevels::kLevelSpan;
-  if (residuals[0].known) slope_deviation_[channel] = deviation[0] / residuals[0].span;
+  if (residuals[0].known) {
+    slope_deviation_[channel] = levels_.usual_deviation(0, channel, residuals[0], uncertainty) / residuals[0].span;
+  }
   nis_[channel] = residuals[kLevel].known ? square(residuals[kLevel].value[channel] / deviation[kLevel]) : -1;
 }
 
 /// Its noise is that of the residual alone: gravity's own uncertainty is what it reduces.
-void SlipDetector::compare_gravity(const SlipResidual& residual, bool learns) noexcept {
+void SlipDetector::compare_gravity(const SlipResidual& residual, double speed_step, bool learns) noexcept {
   gravity_error_.known = false;
   const double interval = difference_.time() - gravity_compared_at_;
   if (!residual.known || !learns || interval < residual.span) return;
   const double squared = square(residual.span);
-  const double deviation = levels_.deviation(ResidualLevels::kTiltSpan, SlipResidual::kAlong, residual, {});
+  const double deviation =
+      levels_.deviation(ResidualLevels::kTiltSpan, SlipResidual::kAlong, residual, {.speed_step = speed_step});
   gravity_error_ = {.known = true,
                     .along = -residual.value[SlipResidual::kAlong] / squared,
                     .across = -residual.value[SlipResidual::kAcross] / squared,
@@ -86,10 +87,6 @@ double SlipDetector::shortest_proven_span() const noexcept {
     if (span > 0 && (shortest == 0 || span < shortest)) shortest = span;
   }
   return shortest;
-}
-
-bool SlipDetector::sensors_as_specified() const noexcept {
-  return levels_.level() > 0 && levels_.level() < kSlowDetection;
 }
 
 }  // namespace robot_control

@@ -21,7 +21,7 @@ class SlipDetector {
 
   void restart() noexcept;  ///< of the differences (motion_difference.h); the levels stay
   void restart_on_line(const Planar& slope) noexcept;
-  void restart_at_rest(double yaw, const Vector3& up) noexcept;
+  void restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept;
   void begin_path() noexcept { difference_.begin_path(); }
   void set_clock_offset(double offset) noexcept { difference_.set_clock_offset(offset); }  ///< s; not in a slide
   /// True: a point was added, which may be judged.
@@ -52,15 +52,13 @@ class SlipDetector {
   AccelerationNoise acceleration_noise(double variance) const noexcept {
     return levels_.acceleration_noise(speed_, variance);
   }
-  /// The residuals are those that the data sheets explain.
-  bool sensors_as_specified() const noexcept;
 
  private:
   using Residuals = std::array<SlipResidual, ResidualLevels::kSpans>;
 
   void forget_judgement() noexcept;
   void judge_channel(Channel channel, const Residuals& residuals, const SlipUncertainty& uncertainty) noexcept;
-  void compare_gravity(const SlipResidual& residual, bool learns) noexcept;
+  void compare_gravity(const SlipResidual& residual, double speed_step, bool learns) noexcept;
 
   MotionDifference difference_;
   ResidualLevels levels_;

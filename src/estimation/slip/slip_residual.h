@@ -9,8 +9,8 @@
 /// (white n of its data sheet, slow a = kSlowAcceleration), the slip of rolling wheels (wheel_slip_noise in the turn)
 /// and the uncertainties of calibration (base factor β, gyro bias b) and gravity:
 ///
-///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance
-///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (B σ_b T)²
+///   σ_D² = 6 encoder² + n² 2T³/3 + (a² + σ_g²) T⁴ + 2 kPathSlip² distance + (q T)²/12
+///   σ_V² = 4 encoder² + 2 slip² distance + (B σ_β Δψ)² + (B kWindUp)² |Δω| + (B σ_b T)² + (q T)²/6
 
 #include <array>
 #include <cstddef>
@@ -43,6 +43,7 @@ struct SlipUncertainty {
   double wheel_base = 0.03;                       ///< σ_β, of the factor of the wheel base
   double clock_offset = 0;                        ///< s
   double gyro_bias = 0;                           ///< rad/s: σ_b
+  double speed_step = 0;                          ///< m/s: q, in which the wheels' speeds are reported
 };
 
 /// m, by the data sheets

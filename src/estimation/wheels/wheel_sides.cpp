@@ -8,11 +8,12 @@
 
 namespace robot_control {
 
-WheelSides::WheelSides(const RobotModel& robot, double bandwidth, double period)
+WheelSides::WheelSides(const RobotModel& robot, double bandwidth, double period, double count)
     : geometry_(robot),
       longest_held_(static_cast<double>(Tuning::kMaxHeld) * period),
       sides_{SideState{SideEncoder(robot, Side::kLeft), SpeedTracker(bandwidth, period)},
-             SideState{SideEncoder(robot, Side::kRight), SpeedTracker(bandwidth, period)}} {}
+             SideState{SideEncoder(robot, Side::kRight), SpeedTracker(bandwidth, period)}},
+      quantum_(count) {}
 
 WheelSides::Readings WheelSides::step(const SensorFrame& sensors, double dt) noexcept {
   Readings readings;
@@ -21,7 +22,10 @@ WheelSides::Readings WheelSides::step(const SensorFrame& sensors, double dt) noe
     if (reading == EncoderReading::kTravel && side.encoder.time() > 0) {
       side.speed.step(side.encoder.travel(), side.encoder.time());
     }
-    if (reading == EncoderReading::kTravel && &side == &sides_[kLeft]) jitter_.add(side.encoder.time());
+    if (reading == EncoderReading::kTravel && &side == &sides_[kLeft] && side.encoder.time() > 0) {
+      jitter_.add(side.encoder.time());
+      quantum_.add(side.encoder.travel(), side.encoder.time());
+    }
     if (reading == EncoderReading::kRejected) readings.refused = true;
     if (reading == EncoderReading::kOffset || reading == EncoderReading::kLost) readings.restarted = true;
     if (reading == EncoderReading::kLost) {

@@ -12,6 +12,7 @@
 #include <cstddef>
 
 #include "estimation/wheels/side_encoder.h"
+#include "estimation/wheels/speed_quantum.h"
 #include "estimation/wheels/speed_tracker.h"
 #include "estimation/wheels/stamp_jitter.h"
 #include "estimation/wheels/wheel_geometry.h"
@@ -38,8 +39,8 @@ class WheelSides {
     double turn_since = 0;  ///< rad, turned since half of it
   };
 
-  /// `bandwidth` Hz of the speeds, `period` s.
-  WheelSides(const RobotModel& robot, double bandwidth, double period);
+  /// `bandwidth` Hz of the speeds, `period` s, `count` m: of an encoder.
+  WheelSides(const RobotModel& robot, double bandwidth, double period, double count);
 
   Readings step(const SensorFrame& sensors, double dt) noexcept;
   void turn(double angle) noexcept;  ///< rad, of the robot in this step
@@ -54,6 +55,7 @@ class WheelSides {
   double right() const noexcept { return travel(kRight); }  ///< m
   double mean() const noexcept { return (left() + right()) / 2; }
   double turned() const noexcept { return geometry_.turn(left(), right()); }  ///< rad, by the model's wheel base
+  double side_speed(std::size_t side) const noexcept { return sides_[side].speed.speed(); }                   ///< m/s
   double speed() const noexcept { return (sides_[kLeft].speed.speed() + sides_[kRight].speed.speed()) / 2; }  ///< m/s
   double rate() const noexcept {  ///< rad/s, by the model's wheel base
     return geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
@@ -64,6 +66,7 @@ class WheelSides {
   double recent_speed() const noexcept { return recent_time_ > 0 ? recent_distance_ / recent_time_ : 0; }
   /// m, of the middle: what a side without a reading in this step rolled since its last one, at its speed.
   double unread_distance(std::size_t side) const noexcept;
+  const SpeedQuantum& quantum() const noexcept { return quantum_; }      ///< of either side
   double stamp_variance() const noexcept { return jitter_.variance(); }  ///< s²
 
   bool received(std::size_t side) const noexcept { return sides_[side].encoder.received(); }
@@ -91,6 +94,7 @@ class WheelSides {
   double longest_held_;  ///< s
   std::array<SideState, 2> sides_;
   StampJitter jitter_;
+  SpeedQuantum quantum_;
   double recent_distance_ = 0, recent_time_ = 0;  ///< m, s, both fading
   double usual_gap_ = 0;                          ///< s, between two readings
 };

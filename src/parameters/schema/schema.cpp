@@ -170,6 +170,7 @@ constexpr auto kStateEstimator = std::to_array<Key>({
     {"standstill_time", in<&P::estimator, &EstimatorParameters::standstill_time>, "s", 0.01, 60},
     {"standstill_acceleration", in<&P::no_effect>, "m/s²", 0.001, 10, kOptional | kNoEffect},
     {"encoder_noise", in<&P::estimator, &EstimatorParameters::encoder_noise>, "rad", 1.0e-6, 1},
+    {"wheel_radius_deviation", in<&P::estimator, &EstimatorParameters::wheel_radius_deviation>, {}, 0, 0.1},
     {"gyro_scale_deviation", in<&P::estimator, &EstimatorParameters::gyro_scale_deviation>, {}, 0, 0.1},
     {"gyro_bias_initial", in<&P::estimator, &EstimatorParameters::gyro_bias_initial>, "rad/s", 1.0e-6, 10},
     {"gyro_bias_walk", in<&P::estimator, &EstimatorParameters::gyro_bias_walk>, "rad/s/√s", 1.0e-9, 1},

@@ -1,0 +1,103 @@
+#include "estimation/slip/wheel_slide.h"
+
+#include <cmath>
+
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+WheelSlide::Correction WheelSlide::begin(const MotionDifference& difference, double span, const Input& input) noexcept {
+  const Point onset = difference.before(difference.last().time - 0.9 * span);
+  const Point older = difference.before(onset.time - span);
+  const double time = onset.time - older.time;
+  if (!(time > 0)) return {};
+  *this = {};
+  active_ = true;
+  line_ = (onset.path_difference - older.path_difference) / time;
+  line_deviation_ = std::sqrt(square(input.path_slope_deviation) + square(input.noise.slow * time / 2) +
+                              square(input.noise.white) * time / 3);
+  onset_ = onset.time;
+  onset_speed_ = rotated(onset.velocity + line_, -onset.yaw).x;
+  slipped_ = difference.time();
+  corrected_ = difference.before(std::max(onset.time, difference.path_begin()));
+  return step(difference, input);
+}
+
+WheelSlide::Excess WheelSlide::excess(const Point& from, const Point& to) const noexcept {
+  const double dt = to.time - from.time;
+  const Planar off = rotated((to.path_difference - from.path_difference) / dt - line_, -(to.yaw + from.yaw) / 2);
+  return {.along = off.x, .across = off.y, .turn = (to.turn_difference - from.turn_difference) / dt};
+}
+
+double WheelSlide::line_deviation(double time, const AccelerationNoise& noise) const noexcept {
+  const double t = time - onset_;
+  return std::sqrt(square(line_deviation_) + square(noise.slow * t) + square(noise.white) * t);
+}
+
+WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, const Input& input) noexcept {
+  const Point now = difference.last();
+  const Point before = difference.before(now.time - 2 * Tuning::kPointInterval * (1 - 1e-9));
+  if (!(now.time > before.time)) return {};
+  const double deviation = line_deviation(now.time, input.noise);
+  judge(now.time, excess(before, now), deviation, input);
+  const double dt = now.time - corrected_.time;
+  if (!(dt > 0)) return {};
+  const double yaw = (now.yaw + corrected_.yaw) / 2;
+  const double slipped = slipped_speed(excess(corrected_, now), input) * dt;
+  corrected_ = now;
+  const Excess latest = excess(before, now);
+  excess_speed_ = slipped_speed(latest, input);
+  const auto [low, high] = std::minmax({0.0, onset_speed_, input.wheel_speed()});
+  const double apart = sideways_ ? std::hypot(latest.along, latest.across) : latest.along;
+  const double choice = Tuning::kChoiceDeviation * std::clamp(apart, low - high, high - low);
+  const double path_speed_deviation = std::hypot(std::min(high - low, deviation), choice);
+  const double changed = std::max(std::abs(excess_speed_), std::abs(input.wheel_speed() - onset_speed_));
+  speed_deviation_ = std::max(path_speed_deviation, changed / 2);
+  const double earlier = path_deviation_;
+  path_deviation_ += path_speed_deviation * dt;
+  return {rotated({-slipped, 0}, yaw), square(path_deviation_) - square(earlier)};
+}
+
+/// Where one side rolls, it gives the speed without the accelerometer.
+double WheelSlide::slipped_speed(const Excess& excess, const Input& input) const noexcept {
+  if (!slips_[0] && !slips_[1]) return 0;
+  const double along = slips_[0] && slips_[1] ? excess.along : (slips_[1] ? 1 : -1) * excess.turn / 2;
+  const double wheels = input.wheel_speed();
+  const auto [low, high] = std::minmax({0.0, onset_speed_, wheels});
+  return wheels - std::clamp(wheels - along, low, high);
+}
+
+Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexcept {
+  const Point now = difference.last();
+  const Point before = difference.before(now.time - kRolls);
+  return (now.path_difference - before.path_difference) / (now.time - before.time);
+}
+
+/// A side that the other one's slip explains rolls.
+void WheelSlide::judge(double time, const Excess& excess, double deviation, const Input& input) noexcept {
+  const auto significant = [](double sigma) { return std::max(Tuning::kLeastSlip, Tuning::kSignificant * sigma); };
+  largest_ = std::max({largest_, std::abs(excess.side(0)), std::abs(excess.side(1))});
+  const bool sudden = largest_ > Tuning::kSignificantTurn * line_deviation_;
+  const double carried = significant(std::hypot(deviation, input.path_slope_deviation));
+  const double tolerance = sudden ? std::min(carried, largest_ / 2) : carried;
+  for (const std::size_t i : {0U, 1U}) slips_[i] = std::abs(excess.side(i)) > tolerance;
+  if (!slips_[0] && !slips_[1] && std::abs(excess.turn) > significant(input.turn_slope_deviation)) {
+    slips_[std::abs(excess.side(0)) > std::abs(excess.side(1)) ? 0 : 1] = true;
+  }
+  sideways_ = input.sideways;
+  if (slips_[0] || slips_[1]) slipped_ = time;
+  active_ = time - slipped_ < kRolls;
+  reasons_ = 0;
+  if (slips_[0]) reasons_ |= kSlipLeft;
+  if (slips_[1]) reasons_ |= kSlipRight;
+  if (slips_[0] != slips_[1]) reasons_ |= kSlipTurn;
+  if (sideways_) reasons_ |= kSlipSideways;
+  for (const std::size_t i : {0U, 1U}) {
+    if (!slips_[i]) continue;
+    const bool faster =
+        std::abs(input.side_speed[i]) > std::abs(input.side_speed[i] - excess.side(i));  // than the ground
+    reasons_ |= faster ? kSlipSpinning : kSlipStalled;
+  }
+}
+
+}  // namespace robot_control

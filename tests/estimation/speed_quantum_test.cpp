@@ -1,0 +1,62 @@
+// Wheel speeds in steps, at whatever rate and stamps, and those without.
+
+#include "estimation/wheels/speed_quantum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <utility>
+
+namespace robot_control {
+namespace {
+
+class SpeedReadings : public testing::Test {
+ protected:
+  /// A speed that changes, read every `gap` s or so; rounded to `step` m/s.
+  SpeedQuantum read(double step, double gap, double count = 1e-4) {
+    SpeedQuantum quantum(count);
+    for (int i = 1; i < 400; ++i) {
+      const double time = gap * (1 + 0.02 * normal_(random_));
+      const double speed = 0.5 + 0.4 * std::sin(0.3 * i * gap) + 0.01 * normal_(random_);
+      quantum.add((step > 0 ? step * std::round(speed / step) : speed) * time, time);
+    }
+    return quantum;
+  }
+  std::mt19937 random_{1};
+  std::normal_distribution<double> normal_;
+};
+
+class SpeedSteps : public SpeedReadings, public testing::WithParamInterface<std::pair<double, double>> {};
+
+TEST_P(SpeedSteps, AreFound) {
+  const auto [step, gap] = GetParam();
+  EXPECT_NEAR(read(step, gap).step(), step, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, SpeedSteps,
+                         testing::Values(std::pair{0.08, 0.154}, std::pair{0.02, 0.1}, std::pair{0.05, 0.02},
+                                         std::pair{0.2, 0.2}));
+
+TEST_F(SpeedReadings, ASmoothSpeedHasNone) {
+  EXPECT_LT(read(0, 0.1).step(), 0.005);
+}
+
+TEST_F(SpeedReadings, StepsThatTheEncodersCountExplainsAreNone) {
+  EXPECT_EQ(read(0.08, 0.02, 0.001).step(), 0);
+}
+
+// Ten equal readings are all off alike: ten times the error of one.
+TEST_F(SpeedReadings, EqualReadingsAreOffAlike) {
+  SpeedQuantum quantum;
+  quantum.add(0.5 * 0.1, 0.1);
+  double variance = 0;
+  for (int i = 0; i < 10; ++i) {
+    quantum.add(0.58 * 0.1, 0.1);
+    variance += quantum.travel_variance();
+  }
+  EXPECT_NEAR(variance, square(10 * quantum.step() * 0.1) / 12, 1e-12);
+}
+
+}  // namespace
+}  // namespace robot_control

@@ -1,0 +1,185 @@
+// A slide as the estimator follows it: the path takes the carried-on speed, within its bounds, and the slide ends.
+
+#include "estimation/slip_fixture.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+namespace {
+
+class WheelSlideTest : public SlipFixture {
+ protected:
+  WheelSlideTest() { learn(); }
+
+  WheelSlide::Input input() const {
+    return {.noise = body_.detector.acceleration_noise(1e-6),
+            .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong),
+            .turn_slope_deviation = body_.detector.slope_deviation(SlipResidual::kTurn),
+            .side_speed = {body_.speed + body_.left, body_.speed + body_.right},
+            .sideways = body_.detector.proven(SlipResidual::kAcross)};
+  }
+  void add(const WheelSlide::Correction& correction) {
+    corrected_ = corrected_ + correction.shift;
+    variance_ += correction.variance;
+  }
+  /// s until the slide ends, or `seconds`.
+  double go(double seconds, double ahead = 0, double across = 0) {
+    for (double t = 0; t < seconds - SlidingBody::kStep / 2; t += SlidingBody::kStep) {
+      if (!body_.step(ahead, across)) continue;
+      judge(false);
+      if (slide_.active()) {
+        add(slide_.step(body_.detector.difference(), input()));
+        if (!slide_.active()) return t;
+      } else if (const double span = body_.detector.shortest_proven_span(); span > 0) {
+        add(slide_.begin(body_.detector.difference(), span, input()));
+      }
+    }
+    return seconds;
+  }
+  /// Both treads are `faster` than the ground until a slide has begun.
+  void spin(double faster) {
+    body_.left = body_.right = faster;
+    for (int i = 0; i < 200 && !slide_.active(); ++i) go(SlidingBody::kStep);
+    ASSERT_TRUE(slide_.active());
+  }
+  /// m, of the path by wheels and slide.
+  double error() const {
+    return std::hypot(body_.wheels().x + corrected_.x - body_.x, body_.wheels().y + corrected_.y - body_.y);
+  }
+  double wheels_error() const { return std::hypot(body_.wheels().x - body_.x, body_.wheels().y - body_.y); }
+
+  WheelSlide slide_;
+  Planar corrected_;
+  double variance_ = 0;  ///< m²
+};
+
+TEST_F(WheelSlideTest, TakesASpinOffThePath) {
+  spin(0.5);
+  go(1.0);
+  EXPECT_GT(wheels_error(), 0.4);
+  EXPECT_LT(error(), wheels_error() / 10);
+  EXPECT_LT(error(), 3 * std::sqrt(variance_));
+  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipSpinning);
+  EXPECT_NEAR(slide_.excess_speed(), 0.5, 0.03);
+}
+
+TEST_F(WheelSlideTest, AddsThePathOfASkid) {
+  spin(-0.4);
+  go(1.0);
+  EXPECT_GT(wheels_error(), 0.3);
+  EXPECT_LT(error(), wheels_error() / 10);
+  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipRight | kSlipStalled);
+}
+
+TEST_F(WheelSlideTest, TheOtherSideGivesThePathOfASpinOfOne) {
+  body_.left = 0.5;
+  go(10.0);
+  EXPECT_TRUE(slide_.active());
+  EXPECT_EQ(slide_.reasons(), kSlipLeft | kSlipTurn | kSlipSpinning);
+  EXPECT_GT(wheels_error(), 2);
+  EXPECT_LT(error(), wheels_error() / 20);
+}
+
+// A wall stops it within 0.1 s, and the accelerometer is off by 0.03 m/s².
+TEST_F(WheelSlideTest, ABlockedRobotStaysWhereItIsHoweverLongItsWheelsSpin) {
+  body_.error = 0.03;
+  while (body_.speed > 0) {
+    const double brakes = std::min(5.0, body_.speed / SlidingBody::kStep);
+    body_.left = body_.right = 0.5 - body_.speed;
+    go(SlidingBody::kStep, -brakes);
+  }
+  body_.left = body_.right = 0.5;
+  go(5.0);
+  EXPECT_TRUE(slide_.active());
+  EXPECT_GT(wheels_error(), 2.4);
+  EXPECT_LT(error(), 0.5);
+}
+
+class WheelSlideBounds : public WheelSlideTest, public testing::WithParamInterface<double> {};
+
+// Whatever the accelerometer reads in a slide, the path moves between standstill and the wheels.
+TEST_P(WheelSlideBounds, ThePathStaysBetweenRestAndTheWheels) {
+  spin(0.7);
+  body_.error = GetParam();
+  const double began = body_.wheels().x + corrected_.x;
+  for (int i = 1; i < 2000 && slide_.active(); ++i) {
+    go(SlidingBody::kStep);
+    const double time = i * SlidingBody::kStep;
+    const double late = body_.wheel_speed() * 2 * Tuning::kPointInterval;
+    const double path = body_.wheels().x + corrected_.x - began;
+    ASSERT_GT(path, -late) << i;
+    ASSERT_LT(path, body_.wheel_speed() * time + late) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, WheelSlideBounds, testing::Values(-30.0, -3.0, -0.3, 0.3, 3.0, 30.0));
+
+TEST_F(WheelSlideTest, EndsWhenTheWheelsAgreeWithTheBody) {
+  spin(0.5);
+  go(1.0);
+  body_.left = body_.right = 0;
+  EXPECT_LT(go(2), 0.6);  // two residuals of 0.2 s, and the slope over two points
+  EXPECT_FALSE(slide_.active());
+}
+
+// An accelerometer that drifts would show slip without end, and wheels that grip show no bend.
+TEST_F(WheelSlideTest, AWeakSlideEndsWhereTheAccelerometerNoLongerProvesIt) {
+  body_.left = body_.right = 0.08;
+  for (int i = 0; i < 400 && !slide_.active(); ++i) go(SlidingBody::kStep);
+  ASSERT_TRUE(slide_.active());
+  EXPECT_LT(go(60), 30);
+}
+
+// It is lifted and tipped: the accelerometer reads gravity, and its wheels stand.
+TEST_F(SlipFixture, ARobotThatIsTippedOnStandingWheelsDoesNotMove) {
+  drive(0.5, 1.0);
+  drive(20);
+  drive(0.5, -1.0);
+  drive(2);
+  WheelSlide slide;
+  Planar moved;
+  for (int i = 0; i < 600; ++i) {
+    body_.error = i < 200 ? 3.0 : -2.0;
+    if (!body_.step()) continue;
+    judge(false);
+    const WheelSlide::Input input{.noise = body_.detector.acceleration_noise(1e-6),
+                                  .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong)};
+    const double span = body_.detector.shortest_proven_span();
+    if (slide.active()) {
+      moved = moved + slide.step(body_.detector.difference(), input).shift;
+    } else if (span > 0) {
+      moved = moved + slide.begin(body_.detector.difference(), span, input).shift;
+    }
+  }
+  EXPECT_LT(std::hypot(moved.x, moved.y), 0.02);
+}
+
+// It is proven 0.1 … 0.8 s after it began.
+TEST_F(WheelSlideTest, NothingFromBeforeThePoseWasSetIsCorrectedByASlideThatIsProvenLater) {
+  body_.left = body_.right = 0.5;
+  while (!slide_.active()) {
+    corrected_ = {};
+    body_.detector.begin_path();
+    go(SlidingBody::kStep);
+  }
+  EXPECT_LE(std::hypot(corrected_.x, corrected_.y), 0.5 * Tuning::kPointInterval * 1.1);
+}
+
+TEST_F(WheelSlideTest, TheEndLeavesNoExcess) {
+  spin(0.5);
+  slide_.end();
+  EXPECT_FALSE(slide_.active());
+  EXPECT_EQ(slide_.excess_speed(), 0);
+  EXPECT_EQ(slide_.reasons(), 0u);
+}
+
+// The path does not move sideways, but it is uncertain.
+TEST_F(WheelSlideTest, SlidingSidewaysIsNamedAndWidens) {
+  go(0.5, 0, 1.0);
+  ASSERT_TRUE(slide_.active());
+  EXPECT_NE(slide_.reasons() & kSlipSideways, 0u);
+  EXPECT_LT(std::abs(corrected_.y), 0.01);
+  EXPECT_LT(wheels_error(), 3 * std::sqrt(variance_));
+}
+
+}  // namespace
+}  // namespace robot_control
