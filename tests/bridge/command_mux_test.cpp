@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <boost/make_shared.hpp>
 #include <limits>
-#include <memory>
 #include <string>
 
 #include "bridge/nanoseconds.h"
@@ -48,8 +48,8 @@ class CommandMuxTest : public testing::Test {
 
   ArrivalTime now_{.ros_ns = 1'700'000'000 * kSecond, .loop_ns = 5000 * kSecond};
   CommandMux mux_{shipped(), 1.25, false};
-  std::array<std::shared_ptr<const void>, 4> connections_{std::make_shared<char>(), std::make_shared<char>(),
-                                                          std::make_shared<char>(), std::make_shared<char>()};
+  std::array<boost::shared_ptr<const void>, 4> connections_{boost::make_shared<char>(), boost::make_shared<char>(),
+                                                            boost::make_shared<char>(), boost::make_shared<char>()};
 };
 
 TEST_F(CommandMuxTest, TheLiveSourceOfTheHighestPriorityCommands) {
@@ -147,7 +147,7 @@ TEST_F(CommandMuxTest, AZeroOfTheWinnerIsContestedByWhatItMasks) {
 }
 
 TEST_F(CommandMuxTest, AZeroIsContestedByAMaskedSenderWhoseMessagesAreRefused) {
-  mux_.receive(kPath, {.sender = {"/late", std::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
+  mux_.receive(kPath, {.sender = {"/late", boost::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
                now_);
   receive(kKey, 0);
   EXPECT_EQ(mux_.value().contested, 1u);
@@ -194,7 +194,7 @@ TEST_F(CommandMuxTest, AMaskedSenderEndsTheSilence) {
 
 TEST_F(CommandMuxTest, TwoNodesOnOneSourceContestAsWithoutAList) {
   receive(kCmd, 0.2);
-  mux_.receive(kCmd, {.sender = {"/other", std::make_shared<char>()}, .twist = {}, .stamp_ns = 0}, now_);
+  mux_.receive(kCmd, {.sender = {"/other", boost::make_shared<char>()}, .twist = {}, .stamp_ns = 0}, now_);
   EXPECT_EQ(mux_.value().contested, 1u);
 }
 
@@ -223,7 +223,7 @@ TEST_F(CommandMuxTest, NaNOfAMaskedSourceHasNoEffect) {
 }
 
 TEST_F(CommandMuxTest, AStampTooOldMakesNoSourceLive) {
-  mux_.receive(kKey, {.sender = {"/late", std::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
+  mux_.receive(kKey, {.sender = {"/late", boost::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
                now_);
   EXPECT_EQ(mux_.winner(), "");
   EXPECT_EQ(mux_.value().stale, 1u);

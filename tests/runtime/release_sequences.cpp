@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/make_shared.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -41,7 +42,7 @@ CommandSourceList two_sources(double first_timeout, double second_timeout) {
 
 struct Sender {
   std::string name;
-  std::shared_ptr<const void> connection = std::make_shared<char>();
+  boost::shared_ptr<const void> connection = boost::make_shared<char>();
   std::int64_t suspended_until = 0;
   Message message = Message::kNone;
   bool zero_first = false;            // the next message is a zero, as of a sender that begins a motion properly
@@ -165,7 +166,7 @@ class Sequence {
 
   static void reconnect(Sender& sender) {
     sender.left_requesting |= sender.has_requested() && !sender.owes_zero;
-    sender.connection = std::make_shared<char>();
+    sender.connection = boost::make_shared<char>();
     sender.received = Message::kNone;
     sender.motion_at = kNever;
     sender.zero_since = true;

@@ -102,7 +102,7 @@ class CommandsTest(RobotTestCase):
         self.drive_stamped()
 
     def why(self) -> str:
-        program = Program("why.py")
+        program = Program("why.py", "--once")
         program.wait()
         return program.output
 

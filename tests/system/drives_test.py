@@ -105,7 +105,7 @@ class DrivesTest(RobotTestCase):
         self.assertIn("STOPPED: e_stop_topic: ", robot.nodes[MONITOR].output[said[MONITOR] :])
         wait_for(
             "what is done with the command",
-            lambda: "has no effect: the permit orders the brake" in robot.nodes[CONTROLLER].output[said[CONTROLLER] :],
+            lambda: f"motion of {rospy.get_name()} is refused" in robot.nodes[CONTROLLER].output[said[CONTROLLER] :],
             every=lambda: robot.send(0.5, 0.2),
         )
         self.assertNotIn("left 0.45 m/s", robot.nodes[CONTROLLER].output[said[CONTROLLER] :])

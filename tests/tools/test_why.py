@@ -278,6 +278,17 @@ def test_a_revoked_sender_is_named(driving):
     assert answer.actions == (("operator", "/planner: let it send a zero"),)
 
 
+def test_where_the_revoked_sender_is_gone_the_silence_is_the_answer(driving):
+    facts = saying(
+        driving,
+        CONTROLLER,
+        revoked_senders="",
+        command__revoked=("a sender goes on requesting motion", "let it send a zero"),
+        command__timed_out=("the last cmd_vel is older than cmd_vel_timeout", "publish more often"),
+    )
+    assert "older than cmd_vel_timeout" in judge(replace(facts, measured=(0.0, 0.0))).headline
+
+
 def test_received_senders_count_and_registered_ones_do_not(driving):
     facts = saying(replace(driving, senders=("/idle", "/send_cmd")), CONTROLLER, senders="/send_cmd")
     assert "published by /send_cmd\n" in text(facts)

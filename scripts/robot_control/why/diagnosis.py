@@ -315,12 +315,13 @@ def _controller(facts: Facts) -> Answer | None:
     for name in ("bad_sensors", "no_state", "no_permit"):
         if name in reasons:
             return Answer(Verdict.STOPPED, f"The controller brakes: {reasons[name]}.", (("", remedies.get(name, "")),))
+    revoked = facts.value(CONTROLLER, "revoked_senders")
     whose = {
         "many_senders": f"{remedies.get('many_senders', '')} of {', '.join(facts.commanders())}",
-        "revoked": f"{facts.value(CONTROLLER, 'revoked_senders')}: {remedies.get('revoked', '')}",
+        "revoked": f"{revoked}: {remedies.get('revoked', '')}",
     }
     for name, action in whose.items():
-        if name in reasons:
+        if name in reasons and (name != "revoked" or revoked):
             return Answer(Verdict.STOPPED, f"Commands are refused: {reasons[name]}.", (("operator", action),))
     silent = "timed_out" in reasons or "no_command" in reasons
     for name in ("refused", *(["stale"] if silent else []), "timed_out", "no_command"):

@@ -81,6 +81,7 @@ bool CommandInput::look(std::int64_t loop_ns) {
 
 bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_ns) {
   if (!requests_.follow(permission, loop_ns)) return false;
+  if (zero(value_.twist)) return true;
   value_.twist = {};
   value_.contested = kNoMessage;
   ++value_.count;

@@ -70,7 +70,7 @@ class CommandInput final : public CommandIntake {
 
   bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
 
-  std::vector<std::string> revoked(std::int64_t loop_ns) const override { return requests_.revoked_names(loop_ns); }
+  std::vector<std::string> revoked() const override { return requests_.revoked_names(); }
 
   /// A connection requests motion, as above.
   bool motion_requested(std::int64_t loop_ns) const { return requests_.any(loop_ns); }

@@ -28,8 +28,8 @@ class CommandIntake {
   /// force ended (motion_requests.h).
   virtual bool follow(const MotionPermission& permission, std::int64_t loop_ns) = 0;
 
-  /// Names of the senders whose motion is refused until their next zero velocity, sorted.
-  virtual std::vector<std::string> revoked(std::int64_t loop_ns) const = 0;
+  /// Names of the senders whose motion is refused until their next zero velocity, whether they request one or not.
+  virtual std::vector<std::string> revoked() const = 0;
 
   /// The value for the inbox.
   virtual const VelocityCommand& value() const noexcept = 0;

@@ -71,10 +71,10 @@ bool CommandMux::follow(const MotionPermission& permission, std::int64_t loop_ns
   return true;
 }
 
-std::vector<std::string> CommandMux::revoked(std::int64_t loop_ns) const {
+std::vector<std::string> CommandMux::revoked() const {
   std::set<std::string> names;
   for (const Source& source : sources_) {
-    for (std::string& name : source.input.revoked(loop_ns)) names.insert(std::move(name));
+    for (std::string& name : source.input.revoked()) names.insert(std::move(name));
   }
   return {names.begin(), names.end()};
 }
@@ -91,7 +91,6 @@ bool CommandMux::select(std::int64_t loop_ns) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     Source& source = sources_[i];
     source.live = recent(source.last_ns, source.given.timeout, loop_ns);
-    source.revoked = !source.live && !source.input.revoked(loop_ns).empty();
     source.lock.reset();
     if (highest && source.given.priority < locks_[*highest].given.priority) source.lock = highest;
     if (!winner && source.live && !source.lock) winner = i;
@@ -163,7 +162,7 @@ std::vector<std::string> CommandMux::states() const {
     const Source& source = sources_[i];
     std::string state = "commands";
     if (!source.live) {
-      state = source.revoked ? "revoked" : "silent";
+      state = source.input.revoked().empty() ? "silent" : "revoked";
     } else if (source.lock) {
       state = "locked by " + locks_[*source.lock].given.name;
     } else if (winner_ != i) {

@@ -46,7 +46,7 @@ class CommandMux final : public CommandIntake {
   bool look(std::int64_t loop_ns) override;
 
   bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
-  std::vector<std::string> revoked(std::int64_t loop_ns) const override;
+  std::vector<std::string> revoked() const override;
 
   const VelocityCommand& value() const noexcept override { return value_; }
   std::vector<ReportLine> lines() override;
@@ -56,7 +56,7 @@ class CommandMux final : public CommandIntake {
   std::string winner() const override;
 
   /// One text per source, by priority: "joy_vel: silent", "key_vel: commands", "cmd_vel: masked by key_vel",
-  /// "path_vel: locked by pause", "path_vel: revoked" (its senders request motion that is refused).
+  /// "path_vel: locked by pause", "path_vel: revoked" (the motion of a sender is refused).
   std::vector<std::string> states() const override;
 
  private:
@@ -65,7 +65,6 @@ class CommandMux final : public CommandIntake {
     CommandInput input;
     std::optional<std::int64_t> last_ns;  ///< when its last accepted message arrived
     bool live = false;
-    bool revoked = false;             ///< not live, and at the last look a revoked sender requested motion
     std::optional<std::size_t> lock;  ///< that masks it
   };
   struct Lock {

@@ -8,10 +8,8 @@
 
 #include <atomic>
 #include <functional>
-#include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "bridge/inputs/publisher.h"
 #include "bridge/messages/bounded_message.h"
@@ -39,14 +37,15 @@ class InputTopic {
         [malformed](const std::string&) { malformed(); });
   }
 
-  /// The same with the connection over which it came and the node at its other end. Callbacks come one at a time.
+  /// The same with the connection over which it came and the node at its other end.
   void connect_with_sender(
       ros::NodeHandle& handle, const std::function<void(const Message&, const Publisher&)>& receive,
       const std::function<void(const std::string&)>& malformed = [](const std::string&) {}) {
     using Event = ros::MessageEvent<const BoundedMessage>;
     const boost::function<void(const Event&)> callback = [this, receive, malformed](const Event& event) {
       const BoundedMessage& received = *event.getConstMessage();
-      if (received.accepted) return receive(received.message, {event.getPublisherName(), connection_of(event)});
+      if (received.accepted)
+        return receive(received.message, {event.getPublisherName(), event.getConnectionHeaderPtr()});
       malformed(event.getPublisherName());
       warn();
     };
@@ -55,20 +54,6 @@ class InputTopic {
   }
 
  private:
-  struct Connection {
-    boost::weak_ptr<ros::M_string> header;  ///< roscpp keeps one for each connection, as long as it lasts
-    std::shared_ptr<const void> token;
-  };
-
-  std::shared_ptr<const void> connection_of(const ros::MessageEvent<const BoundedMessage>& event) {
-    std::erase_if(connections_, [](const Connection& connection) { return connection.header.expired(); });
-    for (const Connection& connection : connections_) {
-      if (connection.header.lock() == event.getConnectionHeaderPtr()) return connection.token;
-    }
-    connections_.push_back({event.getConnectionHeaderPtr(), std::make_shared<char>()});
-    return connections_.back().token;
-  }
-
   void warn() {
     constexpr std::int64_t kSilence = 10'000'000'000;  // ns
     const std::int64_t now_ns = monotonic_ns();
@@ -81,7 +66,6 @@ class InputTopic {
   std::string name_;
   std::uint32_t queue_;
   ros::Subscriber subscriber_;
-  std::vector<Connection> connections_;
   std::atomic<std::int64_t> reported_ns_{0};
 };
 

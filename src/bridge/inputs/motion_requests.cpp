@@ -7,7 +7,7 @@
 namespace robot_control {
 namespace {
 
-bool same(const std::weak_ptr<const void>& known, const std::shared_ptr<const void>& connection) {
+bool same(const boost::weak_ptr<const void>& known, const boost::shared_ptr<const void>& connection) {
   return !known.owner_before(connection) && !connection.owner_before(known);
 }
 
@@ -64,10 +64,10 @@ bool MotionRequests::any(std::int64_t now_ns) const {
   return std::ranges::any_of(records_, [&](const Record& record) { return record.requests && recent(record, now_ns); });
 }
 
-std::vector<std::string> MotionRequests::revoked_names(std::int64_t now_ns) const {
+std::vector<std::string> MotionRequests::revoked_names() const {
   std::set<std::string> names;
   for (const Record& record : records_) {
-    if (record.revoked && record.requests && recent(record, now_ns)) names.insert(record.name);
+    if (record.revoked && !record.connection.expired()) names.insert(record.name);
   }
   return {names.begin(), names.end()};
 }

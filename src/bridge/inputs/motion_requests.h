@@ -12,8 +12,8 @@
 ///
 /// Time is that of the loop's frames.
 
+#include <boost/weak_ptr.hpp>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,13 +48,13 @@ class MotionRequests {
   /// A connection requested motion within the window, and has not ended its request.
   bool any(std::int64_t now_ns) const;
 
-  /// Names of the revoked connections that requested motion within the window, sorted.
-  std::vector<std::string> revoked_names(std::int64_t now_ns) const;
+  /// Names of the revoked connections that have not ended, sorted.
+  std::vector<std::string> revoked_names() const;
 
  private:
   struct Record {
     std::string name;
-    std::weak_ptr<const void> connection;
+    boost::weak_ptr<const void> connection;
     std::optional<std::int64_t> requested_ns;  ///< of the last request
     bool requests = false;
     bool zero_sent = false;  ///< since the last withdrawal

@@ -96,8 +96,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   void diagnose(DiagnosticReport& report) override {
     const std::lock_guard lock(input_mutex_);
     const std::uint64_t lately = std::exchange(since_report_, 0);
-    const std::int64_t now_ns = loop_ns();
-    report_command(report, command_, lately, intake_->senders(now_ns), intake_->states(), intake_->revoked(now_ns));
+    report_command(report, command_, lately, intake_->senders(loop_ns()), intake_->states(), intake_->revoked());
   }
 
  private:
@@ -172,7 +171,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     message.commander = intake_->winner();
     const std::vector<std::string> states = intake_->states();
     message.sources.assign(states.begin(), states.end());
-    const std::vector<std::string> revoked = intake_->revoked(loop_ns());
+    const std::vector<std::string> revoked = intake_->revoked();
     message.revoked.assign(revoked.begin(), revoked.end());
   }
 
