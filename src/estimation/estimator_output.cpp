@@ -159,7 +159,8 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (!wheels_.any_lost() || (!wheels_.both_lost() && imu_.gyro())) out.flags |= kStateValid;
   if (resting_) out.flags |= lasting_flags_ & kStateStandstill;
   if (out.slip != 0) out.flags |= kStateSlip;
-  out.degraded = slide_.active() ? kDegradedPosition : 0;
+  out.degraded = 0;
+  if (slide_.active()) out.degraded |= kDegradedPosition;
   const bool unknown_bias = core_.bias_variance() > square(Tuning::kUnknownBias);
   if (!resting_ && imu_.gyro() && unknown_bias) out.degraded |= kDegradedHeading;
   if (out.degraded != 0) out.flags |= kStateDegraded;
