@@ -364,6 +364,31 @@ TEST_F(RevokedSenderTest, ItsCommandDoesNotTakeEffectWithTheReleaseEither) {
   EXPECT_EQ(value().twist.linear[0], 0);
 }
 
+TEST_F(RevokedSenderTest, NorDoesWhatWasRequestedDuringTheStopAfterAZero) {
+  stop();
+  receive("/teleop", 0);
+  pass(kSecond);
+  receive("/teleop", 0.5);
+  pass(2 * kSecond);
+  grant();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 1u);
+}
+
+TEST_F(RevokedSenderTest, ACommandOfADeadSenderEndsInAStopWhateverItsTimeout) {
+  input_.set_timeout(0);
+  stop();
+  receive("/teleop", 0);
+  receive("/teleop", 0.5);
+  restart("/teleop");
+  pass(kSecond);
+  EXPECT_FALSE(input_.look(now_.loop_ns));
+  pass(1);
+  EXPECT_TRUE(input_.look(now_.loop_ns));
+  EXPECT_EQ(value().twist.linear[0], 0);
+  EXPECT_EQ(value().contested, kNoMessage);
+}
+
 TEST_F(RevokedSenderTest, AZeroDuringTheStopIsEnough) {
   receive("/teleop", 0.5);
   stop();

@@ -12,7 +12,7 @@
 ///   stop        … and only if no emergency stop was requested since the last accepted reset
 ///   requested   … and only while some sender requests motion that owes no zero velocity: a sender owes one from a
 ///               start, a pause or a stop that finds it requesting motion, or having done so within T, and from a
-///               release that finds it requesting motion without a zero velocity since, to its own next accepted zero
+///               release that finds it requesting motion, to its own next accepted zero
 ///   reset       is accepted only if no sender's newest message of the last T, to this controller, requested motion
 ///               or was refused, and if no publisher's last word on e_stop was true, as far as this monitor or an
 ///               earlier one received it; that of one that has left counts until the first message of another

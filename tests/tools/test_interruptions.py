@@ -5,8 +5,8 @@ from lab.release.sender_sequences import command, pad, path, teleop
 from robot_control.safety.interruptions import GAP, RESTARTED, Interruptions, Status
 from robot_control.teleop.dead_man import DeadMan, HoldParameters
 
-READY, STOPPED = Status("READY", resets=3, run=7), Status("STOPPED", "e_stop was called", resets=3, run=7)
-RELEASED = Status("READY", resets=4, run=7)
+READY, STOPPED = Status("READY", withdrawals=3, run=7), Status("STOPPED", "e_stop was called", withdrawals=4, run=7)
+RELEASED = Status("READY", withdrawals=4, run=7)
 
 
 def interruptions(*statuses):
@@ -21,7 +21,7 @@ def interruptions(*statuses):
         ([READY, STOPPED], "STOPPED: e_stop was called"),
         ([READY, STOPPED, RELEASED], "e_stop_reset was called"),
         ([READY, RELEASED], "stopped and released"),
-        ([READY, Status("DRIVE", resets=3, run=8)], "started again"),
+        ([READY, Status("DRIVE", withdrawals=3, run=8)], "started again"),
         ([READY, Status("INIT")], RESTARTED),
     ],
 )
@@ -33,7 +33,7 @@ def test_what_was_requested_before_it_is_revoked_and_what_is_requested_afterward
 
 
 @pytest.mark.parametrize(
-    "statuses", [[READY, Status("DRIVE", resets=3, run=7)], [Status("INIT"), READY], [Status("INIT", run=1), READY]]
+    "statuses", [[READY, Status("DRIVE", withdrawals=3, run=7)], [Status("INIT"), READY], [Status("INIT", run=1), READY]]
 )
 def test_what_is_no_stop_interrupts_nothing(statuses):
     made = interruptions(*statuses)

@@ -3,7 +3,7 @@
 What is requested, planned, held or waited for belongs to the time in which it began. An interruption ends that time:
 
     stop     the state was READY or DRIVE, and is not any more
-    reset    `resets` or `run` differ between two messages that permit to drive: a stop and its reset lie between them
+    reset    `withdrawals` or `run` differ between two messages that permit to drive: a stop lies between them
     gap      this program did not look for longer than GAP while it drove: it was suspended, and what it knows is old
 
 A request that was made during a stop is one from before its reset.
@@ -35,7 +35,7 @@ class Status:
     missing: tuple[str, ...] = ()
     awaiting_zero: bool = False
     speed_limit: float = math.inf  # m/s
-    resets: int = 0  # that were answered since the monitor began
+    withdrawals: int = 0  # starts and latched causes so far
     run: int = 0
 
     @property
@@ -107,6 +107,6 @@ class Interruptions:
             return ""
         if not status.drivable:
             return status.why()
-        if (status.resets, status.run) != (before.resets, before.run):
+        if (status.withdrawals, status.run) != (before.withdrawals, before.run):
             return "the robot was stopped and released, or started again"
         return ""

@@ -34,7 +34,7 @@ def status_of(message: SafetyStatus) -> Status:
         missing=tuple(message.missing),
         awaiting_zero=message.awaiting_zero_request,
         speed_limit=message.speed_limit,
-        resets=message.resets,
+        withdrawals=message.withdrawals,
         run=message.run,
     )
 

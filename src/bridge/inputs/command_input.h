@@ -12,7 +12,8 @@
 ///
 /// A zero velocity that arrives while another connection requests motion, by a message within cmd_vel_timeout (1 s if
 /// that is 0), is contested (VelocityCommand::contested): it is executed, but is no evidence
-/// (safety/latch/motion_release.h). When the permission to move is withdrawn, the command in force ends.
+/// (safety/latch/motion_release.h). When the permission to move is withdrawn, the command in force ends; until it is
+/// granted again, it ends as well when no connection requests motion any more, whatever its timeout.
 ///
 /// Reports: one warning per sender with wrong stamps, one per revoked sender, one per set of competing senders;
 /// repeated after kRepeatAfter at the earliest, in the loop's time.
@@ -76,6 +77,7 @@ class CommandInput final : public CommandIntake {
   bool motion_requested(std::int64_t loop_ns) const { return requests_.any(loop_ns); }
 
  private:
+  void end_command();
   void refuse_revoked(const std::string& sender, std::int64_t loop_ns);
   void refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns);
   void report_senders(std::int64_t loop_ns);
@@ -86,6 +88,7 @@ class CommandInput final : public CommandIntake {
   std::int64_t timeout_ns_ = 0;
   CommandSenders senders_;
   MotionRequests requests_;
+  bool permitted_ = false;
   VelocityCommand value_;
   std::map<std::string, StampVerdict> reported_stamps_;  ///< of senders with wrong stamps, as last reported
   std::map<std::string, std::int64_t> reported_ns_;      ///< by sender and verdict, or by the names of a crowd

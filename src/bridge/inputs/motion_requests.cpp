@@ -46,7 +46,8 @@ bool MotionRequests::follow(const MotionPermission& permission, std::int64_t now
       record.revoked |= record.requests || recent(record, now_ns);
       record.zero_sent = false;
     }
-    if (granted && record.requests && !record.zero_sent && !record.revoked) ended = record.revoked = true;
+    const bool with_grant = record.zero_sent && now_ns - record.requested_ns.value_or(now_ns) <= kInTransit;
+    if (granted && record.requests && !with_grant && !record.revoked) ended = record.revoked = true;
   }
   return ended;
 }

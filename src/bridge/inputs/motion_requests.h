@@ -6,7 +6,8 @@
 /// (Permit::withdrawals).
 /// A connection is revoked
 ///   - by a withdrawal, if it requests motion then or did so within `window` before;
-///   - when permission is granted again, if it requests motion then and sent no zero velocity since the withdrawal.
+///   - when permission is granted again, if it requests motion then: such a request was made during the stop. A request
+///     that follows a zero velocity and is no older than kInTransit was made with the grant.
 /// It stays revoked until its own next accepted zero velocity. A connection that has ended is forgotten: a sender that
 /// was restarted is another one.
 ///
@@ -31,6 +32,9 @@ struct MotionPermission {
 
 class MotionRequests {
  public:
+  /// ns from a zero velocity that releases motion to the permit that says so, at 100 Hz.
+  static constexpr std::int64_t kInTransit = 100'000'000;
+
   /// `window_ns` > 0: a request without another message ends after it, but for the rules of revocation.
   void set_window(std::int64_t window_ns) { window_ns_ = window_ns; }
 

@@ -99,6 +99,7 @@ msg::SafetyStatus safety_status(const Permit& permit, const RobotModel& robot, c
   message.awaiting_zero_request =
       permit.state == SupervisorState::kInit && permit.missing == 0 && permit.unreleased != 0 && absent.empty();
   message.resets = permit.resets_handled;
+  message.withdrawals = permit.withdrawals;
   assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal));
   message.run = permit.head.run;
   message.cycle = permit.head.cycle;
@@ -120,8 +121,8 @@ bool news(const Permit& last, const Permit& now) {
   return last.state != now.state || last.action != now.action || last.causes != now.causes ||
          last.active != now.active || last.warnings != now.warnings || last.speed_limit != now.speed_limit ||
          last.first_cause != now.first_cause || last.missing != now.missing || last.unreleased != now.unreleased ||
-         last.resets_handled != now.resets_handled || last.reset_refusal != now.reset_refusal ||
-         last.head.run != now.head.run;
+         last.withdrawals != now.withdrawals || last.resets_handled != now.resets_handled ||
+         last.reset_refusal != now.reset_refusal || last.head.run != now.head.run;
 }
 
 std::string reset_text(const Permit& before, const Permit& permit, const Publishers& publishers) {

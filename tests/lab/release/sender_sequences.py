@@ -53,12 +53,12 @@ class Monitor:
         """One look."""
         if now < self._due:
             return
-        resets = self.status.resets
+        withdrawals = self.status.withdrawals
         if self.status.drivable:
-            self.status, self.stop_began = Status("STOPPED", "e_stop was called", resets=resets, run=1), now
+            self.status, self.stop_began = Status("STOPPED", "e_stop was called", withdrawals=withdrawals + 1, run=1), now
             self._due = now + self._chance.choice([0.05, 0.3, 1.5, 4.0])
         else:
-            self.status, self.released = Status("READY", resets=resets + 1, run=1), now
+            self.status, self.released = Status("READY", withdrawals=withdrawals, run=1), now
             self._due = now + self._chance.uniform(0.5, 6.0)
         self.messages.append(self.status)
 
