@@ -33,7 +33,8 @@ def test_what_was_requested_before_it_is_revoked_and_what_is_requested_afterward
 
 
 @pytest.mark.parametrize(
-    "statuses", [[READY, Status("DRIVE", withdrawals=3, run=7)], [Status("INIT"), READY], [Status("INIT", run=1), READY]]
+    "statuses",
+    [[READY, Status("DRIVE", withdrawals=3, run=7)], [Status("INIT"), READY], [Status("INIT", run=1), READY]],
 )
 def test_what_is_no_stop_interrupts_nothing(statuses):
     made = interruptions(*statuses)

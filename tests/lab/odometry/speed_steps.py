@@ -38,8 +38,8 @@ def in_steps(drive: Recording, step: float, rate: float, seed: int) -> Recording
         reported = np.round(speed / step) * step if step else speed
         angles.append(angle[0] + np.concatenate([[0.0], np.cumsum(reported * gaps)]) / drive.radius)
     rows = merged((stamps, *angles), (drive.time[seen], drive.gyro[seen], drive.accel[seen]))
-    names = ("time", "left", "right", "gyro", "accel")
-    return replace(drive, counts=None, **dict(zip(names, rows, strict=True)))
+    time, left, right, gyro, accel = rows
+    return replace(drive, counts=None, time=time, left=left, right=right, gyro=gyro, accel=accel)
 
 
 def outcome(step: float, rate: float, radius: float, seed: int) -> Outcome:

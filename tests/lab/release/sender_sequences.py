@@ -55,7 +55,10 @@ class Monitor:
             return
         withdrawals = self.status.withdrawals
         if self.status.drivable:
-            self.status, self.stop_began = Status("STOPPED", "e_stop was called", withdrawals=withdrawals + 1, run=1), now
+            self.status, self.stop_began = (
+                Status("STOPPED", "e_stop was called", withdrawals=withdrawals + 1, run=1),
+                now,
+            )
             self._due = now + self._chance.choice([0.05, 0.3, 1.5, 4.0])
         else:
             self.status, self.released = Status("READY", withdrawals=withdrawals, run=1), now
