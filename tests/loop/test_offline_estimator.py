@@ -410,8 +410,9 @@ def test_refuses_a_robot_that_is_none_and_says_why(arguments, error, said):
 
 
 def test_parameters_reach_the_filter(samples):
-    rough = Estimator({"state_estimator": {"wheel_slip_noise": 0.2}}).process(*samples)
-    usual = Estimator().process(*samples)
+    known = {"wheel_radius_deviation": 0.0}  # which the pose's covariance holds beside the noise
+    rough = Estimator({"state_estimator": {"wheel_slip_noise": 0.2, **known}}).process(*samples)
+    usual = Estimator({"state_estimator": known}).process(*samples)
     assert rough["pose_covariance"][-1, 0, 0] > 10 * usual["pose_covariance"][-1, 0, 0]
 
 
