@@ -176,6 +176,7 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
                                                   {"state_estimator.self_calibration", "yes"},
                                                   {"state_estimator.planar", "no"},
                                                   {"state_estimator.gyro_scale_deviation", "0"},
+                                                  {"state_estimator.wheel_radius_deviation", "0"},
                                                   {"state_estimator.tyre_creep", "0"},
                                                   {"state_estimator.radius_ratio_deviation", "0"},
                                                   {"state_estimator.wheel_base_deviation", "0"},
