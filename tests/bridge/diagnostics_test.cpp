@@ -106,11 +106,11 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
   EXPECT_EQ(value_of(report(kSlipSideways), "slip_lately"), "sideways");
 }
 
-TEST_F(StateReport, WarnsOfAPoseThatDoesWithoutACorrection) {
+TEST_F(StateReport, WarnsOfAPoseWhoseWheelsSlip) {
   state_.flags = kStateValid | kStateDegraded;
   state_.degraded = kDegradedPosition;
   EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
-  EXPECT_THAT(report().message().message, HasSubstr("the correction of a slide was not plausible"));
+  EXPECT_THAT(report().message().message, HasSubstr("wheels slip: the path takes the speed"));
   EXPECT_EQ(value_of(report(), "degraded"), "position");
   EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("look at the IMU's mounting"));
 }
