@@ -184,6 +184,7 @@ TEST_F(CommandInputTest, OneNodeOnBothTopicsIsOneSender) {
 
 TEST_F(CommandInputTest, SendersSlowerThanAShortTimeoutAreACrowdAllTheSame) {
   input_ = CommandInput(0.1, true);
+  input_.follow({.run = 7, .withdrawals = 0, .granted = true}, now_.loop_ns);
   for (int i = 0; i < 10; ++i) {  // each at 2 Hz
     receive(i % 2 == 0 ? "/teleop" : "/navigation", 0.5);
     EXPECT_EQ(value().many_senders, i == 0 ? 0u : 1u);
