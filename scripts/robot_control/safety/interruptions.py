@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from robot_control.safety.states import DRIVABLE, STOPPED
 
 GAP = 1.0
-"""s; programs look every 0.02 s, and a loaded machine keeps one waiting for half a second now and then. The loop refuses
-what such a program requested before a stop, however short its gap"""
+"""s; programs look every 0.02 s, and a loaded machine keeps one waiting for half a second now and then. What such a
+program requested before a stop is refused by the loop, however short its gap."""
 RESTARTED = "INIT: a node or the simulation was started again, and releases no command from before"
 
 
