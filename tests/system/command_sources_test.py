@@ -179,6 +179,7 @@ class CommandSourcesTest(RobotTestCase):
         wait_for("that it waits for its plan", lambda: plan.get_num_connections() > 0)
         self.robot.call("e_stop_trigger")
         self.robot.release()
+        time.sleep(0.5)  # the release reaches that program, too; before, it would be refused because of the stop
         message = PathMessage()
         message.header.frame_id = "base_link"
         message.poses = [PoseStamped(), PoseStamped()]
