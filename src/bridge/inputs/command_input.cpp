@@ -75,14 +75,13 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
 
 bool CommandInput::look(std::int64_t loop_ns) {
   report_senders(loop_ns);
-  const bool over = !permitted_ && !zero(value_.twist) && !motion_requested(loop_ns);
+  const bool over = !requests_.granted() && !zero(value_.twist) && !motion_requested(loop_ns);
   if (over) end_command();
   const std::uint64_t many = one_sender_ && senders_.count(loop_ns) > 1 ? 1 : 0;
   return std::exchange(value_.many_senders, many) != many || over;
 }
 
 bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_ns) {
-  permitted_ = permission.granted;
   if (!requests_.follow(permission, loop_ns)) return false;
   if (!zero(value_.twist)) end_command();
   return true;

@@ -88,7 +88,6 @@ class CommandInput final : public CommandIntake {
   std::int64_t timeout_ns_ = 0;
   CommandSenders senders_;
   MotionRequests requests_;
-  bool permitted_ = false;
   VelocityCommand value_;
   std::map<std::string, StampVerdict> reported_stamps_;  ///< of senders with wrong stamps, as last reported
   std::map<std::string, std::int64_t> reported_ns_;      ///< by sender and verdict, or by the names of a crowd

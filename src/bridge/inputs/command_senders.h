@@ -20,9 +20,6 @@ class CommandSenders {
 
   void add(const std::string& sender, std::int64_t now_ns);
 
-  /// Removes this sender.
-  void drop(const std::string& sender) { last_message_ns_.erase(sender); }
-
   /// Those with a message within the window, sorted by name.
   std::vector<std::string> at(std::int64_t now_ns);
   std::size_t count(std::int64_t now_ns);

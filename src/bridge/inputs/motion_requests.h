@@ -47,6 +47,9 @@ class MotionRequests {
   /// Returns true if the command in force ends: the permission was withdrawn, or its grant revoked a connection.
   bool follow(const MotionPermission& permission, std::int64_t now_ns);
 
+  /// The robot may move, as of the last call of `follow`.
+  bool granted() const { return permission_.granted; }
+
   bool revoked(const Publisher& sender) const;
 
   /// A connection requested motion within the window, and has not ended its request.
