@@ -130,6 +130,17 @@ class TeleopTest(RobotTestCase):
             time.sleep(0.02)
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 
+    def test_a_paste_whose_link_stalls_moves_nothing_and_is_named(self) -> None:
+        before = self.robot.distance
+        self.terminal.type("\x1b[200~ww")
+        wait_for("its words", lambda: "a paste has begun" in self.terminal.screen)
+        time.sleep(1.5)
+        self.terminal.hold("w", 1.5, delay=0.03)
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+        self.terminal.type("\x1b[201~")
+        wait_for("no such words", lambda: "a paste has begun" not in self.terminal.screen)
+        self.drive()
+
     def test_ctrl_c_ends_it_and_the_terminal_is_as_before(self) -> None:
         self.drive()
         self.terminal.type("\x03")

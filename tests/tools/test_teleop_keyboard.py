@@ -4,7 +4,7 @@ import random
 
 import pytest
 from robot_control.teleop.key_map import E_STOPS, KEY_MAPS
-from robot_control.teleop.keyboard import ESCAPE_WAIT, SEQUENCE_WAIT, Decoder, Event, Key
+from robot_control.teleop.keyboard import ESCAPE_WAIT, Decoder, Event, Key
 
 
 def keys(data):
@@ -22,6 +22,8 @@ def keys(data):
         (b"\x03", "interrupt"),
         (b"\x1b[A", "up"),
         (b"\x1bOA", "up"),  # application mode
+        (b"\x9bA", "up"),  # eight-bit controls
+        (b"\xc2\x9bA", "up"),  # and in UTF-8
         (b"\x1b[B", "down"),
         (b"\x1b[C", "right"),
         (b"\x1b[D", "left"),
@@ -81,13 +83,32 @@ def test_an_escape_before_another_key_is_the_key_at_once():
     assert keys(b"\x1b\x1b[A") == [Key("escape"), Key("up")]
 
 
-def test_a_sequence_may_come_in_pieces_and_is_dropped_if_its_end_never_comes():
+def test_a_sequence_may_come_in_pieces_and_has_its_end_however_late():
     decoder = Decoder()
     assert decoder.feed(b"\x1b[", 0.0) == []
-    assert decoder.feed(b"A", 0.5) == [Key("up")]
-    decoder.feed(b"\x1b[1;", 1.0)
-    assert decoder.look(1.0 + SEQUENCE_WAIT) == []
-    assert decoder.feed(b"w", 3.0) == [Key("w")]
+    assert decoder.feed(b"A", 9.0) == [Key("up")]
+    assert decoder.feed(b"\x1b[1;", 10.0) == decoder.look(20.0) == []
+    assert decoder.feed(b"ww", 30.0) == [Key("w")]
+
+
+def test_what_follows_an_escape_that_has_counted_as_the_key_completes_its_sequence():
+    decoder = Decoder()
+    decoder.feed(b"\x1b", 0.0)
+    assert decoder.look(9.0) == [Key("escape")]
+    assert decoder.feed(b"[<35;119;97Mw", 9.0) == [Key("w")]
+
+
+def test_an_escape_that_begins_nothing_ends_nothing():
+    decoder = Decoder()
+    assert decoder.feed(b"\x1b]w", 0.0) == []
+    assert decoder.feed(b"\x1bwasd", 1.0) == [Key("escape")]
+    assert decoder.feed(b"\x1b\\w", 2.0) == [Key("w")]
+
+
+def test_a_stop_that_follows_an_escape_hides_it_not():
+    decoder = Decoder()
+    decoder.feed(b"\x1b", 1.0)
+    assert decoder.feed(b" ", 2.0) == [Key("escape"), Key("space")]
 
 
 @pytest.mark.parametrize("begun", [b"\x1b[", b"\x1bO", b"\x1b[1;2"])  # Alt-[ alone is such a beginning
@@ -99,10 +120,9 @@ def test_a_sequence_that_was_begun_swallows_no_stop(begun, stop, name):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_random_bytes_do_no_harm_and_plain_keys_are_read_afterwards(seed):
+def test_random_bytes_do_no_harm_and_plain_keys_are_read_after_ctrl_x(seed):
     decoder = Decoder()
-    decoder.feed(random.Random(seed).randbytes(2000), 0.0)
-    decoder.look(SEQUENCE_WAIT)
+    decoder.feed(random.Random(seed).randbytes(2000) + b"\x18", 0.0)
     assert decoder.feed(b"w", 2.0) == [Key("w")]
 
 

@@ -6,7 +6,7 @@ import re
 import pytest
 from robot_control.common.command import Command
 from robot_control.teleop.key_map import ARROWS, E_STOPS, KEY_MAPS
-from robot_control.teleop.keyboard import ESCAPE_WAIT, SEQUENCE_WAIT, Decoder, Event, Key
+from robot_control.teleop.keyboard import ESCAPE_WAIT, STOP_NAMES, Decoder, Event, Key
 from robot_control.teleop.operator import Limits, Operator, Request
 
 STILL = {None, Command()}
@@ -19,6 +19,8 @@ REPORTS = {
     "mouse, urxvt (1015)": b"\x1b[67;119;97M",
     "mouse, highlight (1001)": b"\x1b[tww\x1b[Twwwwww",
     "mouse, eight-bit controls": b"\x9bMCww",
+    "mouse, eight-bit controls in UTF-8": b"\xc2\x9bMCww\xc2\x9b<35;119;97M",
+    "mouse, UTF-8 (1005), at line 123": b"\x1b[MCC\xc2\x9b",
     "focus": b"\x1b[I\x1b[O",
     "paste": b"\x1b[200~wasd \x1b[A!\r\x1bOA\x03w\x1b[201~",
     "title": b"\x1b]lwasd\x1b\\",
@@ -26,6 +28,8 @@ REPORTS = {
     "clipboard": b"\x1b]52;c;" + b"wasd" * 2000 + b"\x1b\\",
     "version": b"\x1bP>|wasd(370)\x1b\\",
     "device": b"\x1bP!|77617364\x1b\\\x1b[?62;22c",
+    "eight-bit strings in UTF-8": b"\xc2\x90w\xc2\x9c\xc2\x9d\xc4\x9cw\xc2\x9c\xc2\x9bI",
+    "paste, eight-bit controls in UTF-8": b"\xc2\x9b200~wasd\xc4\x9b201~w\xc2\x9b201~",
     "eight-bit strings": b"\x90w\x9c\x9dw\x9c\x98w\x9c\x9ew\x9c\x9fw\x9c",
     "application program, privacy, start of string": b"\x1b_w\x1b\\\x1b^w\x1b\\\x1bXw\x1b\\",
     "string with a letter that holds the byte of its end": b"\x1b]2;\xc4\x9cw\x1b\\",
@@ -69,12 +73,46 @@ def test_a_report_without_an_end_swallows_no_stop_that_is_typed_later(begun, sto
     assert [*decoder.feed(stop, 2 * ESCAPE_WAIT), *decoder.look(4 * ESCAPE_WAIT)] == [Key(name)]
 
 
-@pytest.mark.parametrize("begun", [b"\x1b[M", b"\x1b]w", b"\x1bPw", b"\x1b[200~w", b"\x1b[<0;1"])
-def test_a_report_without_an_end_is_over_after_a_pause(begun):
+LONG = 100 * ESCAPE_WAIT
+"""s; a link that stalls"""
+
+
+@pytest.mark.parametrize("name", REPORTS)
+def test_nor_where_the_link_stalls_within_it(name):
+    data = REPORTS[name]
+    for tear in range(1, min(len(data), 50)):
+        decoder = Decoder()
+        found = decoder.feed(data[:tear], 0.0) + decoder.look(LONG) + decoder.feed(data[tear:], LONG)
+        assert {key.name for key in found} <= STOP_NAMES
+        assert decoder.feed(b"x", LONG) == [Key("x")]
+
+
+@pytest.mark.parametrize("begun", [b"\x1b[M", b"\x1b]w", b"\x1bPw", b"\x1b[<0;1", b"\x1bO", b"\x1b]w\x1b"])
+def test_a_report_without_an_end_is_over_after_ctrl_x(begun):
     decoder = Decoder()
-    assert decoder.feed(begun, 0.0) == []
-    assert decoder.look(SEQUENCE_WAIT) == []
-    assert decoder.feed(b"w", 2.0) == [Key("w")]
+    decoder.feed(begun, 0.0)
+    decoder.look(LONG)
+    decoder.feed(b"\x18", LONG)
+    assert decoder.unfinished == ""
+    assert decoder.feed(b"w", 2 * LONG) == [Key("w")]
+
+
+@pytest.mark.parametrize(
+    ("begun", "remedy"), [(b"\x1b]w", "Ctrl-X"), (b"\x1bP\x1b", "Ctrl-X"), (b"\x1b[200~w\x1b]", "start teleop.py again")]
+)
+def test_what_takes_the_keys_is_named_with_its_remedy(begun, remedy):
+    decoder = Decoder()
+    assert decoder.unfinished == ""
+    decoder.feed(begun, 0.0)
+    assert remedy in decoder.unfinished
+
+
+@pytest.mark.parametrize(("stop", "name"), [(b"\x1b[32u", "space"), (b"\x1b[49:33;2u", "!"), (b"\x1b[99;5u", "interrupt")])
+def test_a_paste_without_an_end_swallows_no_stop_that_the_terminal_reports_later(stop, name):
+    decoder = Decoder()
+    decoder.feed(b"\x1b[200~" + stop, 0.0)
+    assert decoder.feed(stop, LONG) == [Key(name)]
+    assert decoder.feed(b"\x1b[119u", 2 * LONG) == []
 
 
 def unbound(chance):
@@ -136,6 +174,28 @@ def test_random_input_without_a_bound_key_never_moves_the_robot(seed, name):
         for key in [*decoder.feed(data[:size], now), *decoder.look(now)]:
             assert key.event is not Event.SPEAKS_KITTY
             assert operator.key(key, now) is not Request.END
+        data = data[size:]
+        assert operator.command(now) in STILL
+
+
+@pytest.mark.parametrize("name", KEY_MAPS)
+@pytest.mark.parametrize("seed", range(150))
+def test_nor_does_random_input_that_is_torn_in_time(seed, name):
+    """Each stop that a tear makes of a byte is taken back at once, so that it hides no motion."""
+    chance = random.Random(seed)
+    operator = Operator(KEY_MAPS[name], Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0))
+    operator.permit(True, 0.0)
+    decoder, now = Decoder(), 0.0
+    data = b"".join(random_unit(chance) for _ in range(100))
+    while data:
+        size = chance.choice([1, 2, 5, 40])
+        for _ in range(chance.choice([1, 1, 1, 3, 70, 300])):  # looks until more comes
+            now += 0.02
+            for key in [*decoder.feed(b"", now), *decoder.look(now)]:
+                operator.key(key, now)
+        for key in [*decoder.feed(data[:size], now), *decoder.look(now)]:
+            assert operator.key(key, now) not in {Request.END, Request.RESET}
+            operator.reset_accepted()
         data = data[size:]
         assert operator.command(now) in STILL
 

@@ -6,16 +6,19 @@ Read are plain bytes, the arrows of ECMA-48 terminals (ESC [ A, ESC O A), and ki
 
 Everything else that a terminal sends is consumed to its end and means nothing (ECMA-48, section 5; xterm's ctlseqs):
 
-    ESC [ … final            final: 0x40 to 0x7E; also as the byte 0x9B
+    ESC [ … final            final: 0x40 to 0x7E; also as the byte 0x9B, in UTF-8 C2 9B
     ESC [ M, t, T            mouse reports of raw characters follow: 3, 2, 6; ESC [ [ of the Linux console: 1
     ESC O … final            also as 0x8F
     ESC P ] X ^ _ … ST        strings; ST: ESC and a backslash, 0x9C or BEL; also as 0x90 and others
     ESC [200~ … ESC [201~    a paste
     UTF-8                    letters of several bytes
 
-An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence. No sequence
-swallows a stop: Space and ! count inside ESC [ and ESC O, where no report has them, and elsewhere when they come
-ESCAPE_WAIT after the byte before, as a typed key does. What has no end is over after SEQUENCE_WAIT without a byte.
+Bytes end a sequence, time does not: a link may stall anywhere in it. A paste ends with its end mark, everything else
+also with Ctrl-X.
+
+An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence; it ends none. No
+sequence swallows a stop: Space and ! count inside ESC [ and ESC O, where no report has them, and elsewhere when they
+come ESCAPE_WAIT after the byte before, as a typed key does. So do the stops that a terminal reports during a paste.
 """
 
 import re
@@ -25,8 +28,6 @@ from enum import Enum, auto
 
 ESCAPE_WAIT = 0.05
 """s; the bytes of one sequence come together, on a slow link within this time"""
-SEQUENCE_WAIT = 1.0
-"""s without a byte after which a sequence that was begun is over"""
 LONGEST = 32
 """bytes of a sequence that may mean something"""
 
@@ -38,8 +39,9 @@ END_RELEASES = b"\x1b[<u"
 
 ESC, BEL, STRING_END = 0x1B, 0x07, 0x9C
 CANCELS = b"\x18\x1a"
-"""end a sequence"""
+"""Ctrl-X, Ctrl-Z; they end a sequence"""
 STOPS = b" !"
+STOP_NAMES = frozenset(("space", "!", "escape", "interrupt"))
 STRINGS = "PX]^_"
 """after ESC"""
 RAW_CHARACTERS = {"M": 3, "t": 2, "T": 6, "[": 1}
@@ -86,67 +88,82 @@ class Decoder:
     """Keeps what of a sequence has come."""
 
     def __init__(self) -> None:
-        self._part = Part.KEYS
-        self._in_string = False  # the ESC may be the begin of its end
+        self._part = self._before_escape = Part.KEYS
+        self._escape_due = False  # the last byte is an ESC, which may yet be the key
         self._pasting = False
+        self._typed = False  # the key or the sequence began ESCAPE_WAIT after the byte before
         self._sequence = ""  # after ESC [ or ESC O
         self._raw = 0  # characters that are still to come
         self._letter = 0  # bytes of a UTF-8 letter that may still come
+        self._may_be_control = False  # the letter began with C2
         self._last = 0.0
 
     def feed(self, data: bytes, now: float) -> list[Key]:
         """The keys that these bytes complete."""
         keys: list[Key] = []
         for byte in data:
-            waiting = self._part is not Part.KEYS or self._pasting
-            typed_later = waiting and byte in STOPS and now - self._last >= ESCAPE_WAIT
+            typed, inside = now - self._last >= ESCAPE_WAIT, self._part is not Part.KEYS
+            if byte == ESC or not inside:
+                self._typed = typed
             self._last = now
-            found = list(self._byte(byte))
-            if typed_later:
-                keys += plain(byte)
-            elif not self._pasting:
-                keys += found
+            found = [key for key in self._byte(byte) if self._counts(key)]
+            if inside and typed and byte in STOPS:
+                found += [key for key in plain(byte) if key not in found]
+            keys += found
         return keys
 
     def look(self, now: float) -> list[Key]:
         """The key Esc, if an ESC has stayed alone."""
-        alone = self._part is Part.ESCAPE
-        if now - self._last < (ESCAPE_WAIT if alone else SEQUENCE_WAIT):
+        if not self._escape_due or now - self._last < ESCAPE_WAIT:
             return []
-        self._part, self._in_string, self._pasting, self._letter = Part.KEYS, False, False, 0
-        return [Key("escape")] if alone else []
+        self._escape_due = False
+        return [key for key in [Key("escape")] if self._counts(key)]
+
+    @property
+    def unfinished(self) -> str:
+        """What has begun, has no end yet and takes all keys but stops, in words; empty: nothing."""
+        if self._pasting:
+            return "a paste has begun, and no key drives before its end; if that is lost, start teleop.py again"
+        if Part.STRING in {self._part, self._before_escape}:
+            return "this terminal has begun a report (Alt-] does, too), and no key drives before its end: press Ctrl-X"
+        return ""
+
+    def _counts(self, key: Key) -> bool:
+        return not self._pasting or (self._typed and key.name in STOP_NAMES)
 
     def _byte(self, byte: int) -> Iterator[Key]:
         if self._letter and 0x80 <= byte <= 0xBF:
             self._letter -= 1
-            return
-        self._letter = letter_bytes(byte) if self._part is not Part.RAW else int(0xC2 <= byte <= 0xDF)
+            if not (self._may_be_control and byte < 0xA0):
+                return
+        else:
+            raw = self._part is Part.RAW
+            self._letter = int(0xC2 <= byte <= 0xDF) if raw else letter_bytes(byte)
+            self._may_be_control = byte == 0xC2 and not raw
         if self._part is Part.ESCAPE:
             yield from self._after_escape(byte)
         elif byte == ESC:
-            self._in_string, self._part = self._part is Part.STRING, Part.ESCAPE
-        elif self._part is Part.KEYS:
-            if not (0x80 <= byte < 0xA0 and self._begins(chr(byte - 0x40))):
-                yield from plain(byte)
+            self._before_escape, self._part, self._escape_due = self._part, Part.ESCAPE, True
+        elif byte in CANCELS:
+            self._part = Part.KEYS
         elif self._part is Part.RAW:
             self._raw -= 1
             self._part = Part.RAW if self._raw else Part.KEYS
-        elif byte in CANCELS:
-            self._part = Part.KEYS
-        elif self._part is not Part.STRING:
-            yield from self._control(byte)
-        elif byte in (BEL, STRING_END):
-            self._part = Part.KEYS
+        elif self._part is Part.STRING:
+            self._part = Part.KEYS if byte in (BEL, STRING_END) else Part.STRING
+        elif not (0x80 <= byte < 0xA0 and self._begins(chr(byte - 0x40))):
+            yield from plain(byte) if self._part is Part.KEYS else self._control(byte)
 
     def _after_escape(self, byte: int) -> Iterator[Key]:
-        string_ends, self._in_string = self._in_string and chr(byte) == "\\", False
-        if string_ends:
+        before, self._before_escape = self._before_escape, Part.KEYS
+        due, self._escape_due = self._escape_due, False
+        if before is Part.STRING and chr(byte) == "\\":
             self._part = Part.KEYS
         elif not self._begins(chr(byte)):
-            yield Key("escape")
-            if byte != ESC:
-                self._part = Part.KEYS
-                yield from self._byte(byte)
+            if due:
+                yield Key("escape")
+            self._part = before
+            yield from self._byte(byte)
 
     def _begins(self, introducer: str) -> bool:
         part = {"[": Part.CONTROL, "O": Part.SINGLE, **dict.fromkeys(STRINGS, Part.STRING)}.get(introducer)
@@ -160,8 +177,6 @@ class Decoder:
             yield from self._complete(chr(byte), single=single)
             return
         self._sequence = (self._sequence + chr(byte))[: LONGEST + 1]
-        if byte in STOPS and self._part is Part.SINGLE:
-            self._part = Part.KEYS
         if byte in STOPS or byte < 0x20:
             yield from plain(byte)
 

@@ -117,7 +117,7 @@ class Teleop:
             requested=self._pace.last,
             held="" if held is None else f"key {held.key}" + (", slow until it repeats" if held.share < 1 else ""),
             sent_age=None if self._pace.sent_at is None else now - self._pace.sent_at,
-            message=self._operator.message(now),
+            message=self._decoder.unfinished or self._operator.message(now),
             answer=self._answer,
             releases=self._releases,
         )
