@@ -4,14 +4,21 @@
 import math
 import signal
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
-from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, FollowPathResult
+from robot_control.msg import (
+    FollowPathAction,
+    FollowPathActionGoal,
+    FollowPathActionResult,
+    FollowPathFeedback,
+    FollowPathGoal,
+    FollowPathResult,
+)
 from std_srvs.srv import Trigger, TriggerResponse
 from system_support import Program, RobotTestCase, again_after_a_stall, repository, wait_for
 from tf2_msgs.msg import TFMessage
@@ -215,6 +222,53 @@ class FollowPathTest(RobotTestCase):
         finally:
             self.server.send_signal(signal.SIGCONT)
         self.assert_does_not_begin(client, "")
+
+    def send_unstamped(self, name: str, length: float, *, latch: bool = False) -> Callable[[], tuple[int, str]]:
+        """A goal of this name that says no time; waits for its end."""
+        ends: dict[str, tuple[int, str]] = {}
+        results = rospy.Subscriber(
+            "follow_path/result",
+            FollowPathActionResult,
+            lambda m: ends.update({m.status.goal_id.id: (m.status.status, m.result.reason)}),
+        )
+        goals = rospy.Publisher("follow_path/goal", FollowPathActionGoal, queue_size=1, latch=latch)
+        self.addCleanup(results.unregister)
+        self.addCleanup(goals.unregister)
+        wait_for("the server", lambda: min(goals.get_num_connections(), results.get_num_connections()) > 0)
+        message = FollowPathActionGoal(goal=self.straight(length))
+        message.goal_id.id = name
+        self.server.send_signal(signal.SIGSTOP)
+        goals.publish(message)
+
+        def end() -> tuple[int, str]:
+            wait_for(f"the end of {name}", lambda: name in ends)
+            return ends[name]
+
+        return end
+
+    def test_a_goal_without_a_time_that_waited_over_a_stop_while_its_idle_server_was_suspended_does_not_begin(self) -> None:
+        for name in ("first", "second"):
+            before = self.robot.distance
+            end = self.send_unstamped(name, 2.0)
+            try:
+                self.stop_and_release()
+                time.sleep(0.5)
+            finally:
+                self.server.send_signal(signal.SIGCONT)
+            state, reason = end()
+            self.assertEqual(state, ABORTED, reason)
+            self.assertIn("Start the path again", reason)
+            self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+        self.assertEqual(Client(self.straight(0.3)).end()[0], SUCCEEDED, self.server.output)
+
+    def test_a_latched_goal_does_not_begin_with_a_server_that_is_started_after_it(self) -> None:
+        before = self.robot.distance
+        self.send_unstamped("latched", 2.0, latch=True)
+        self.server.kill()
+        type(self).server = Program("follow_path.py")
+        wait_for("its words", lambda: "it was sent before this program began" in self.server.output)
+        time.sleep(1.0)
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 
     @again_after_a_stall
     def test_odometry_that_is_set_ends_a_goal(self) -> None:

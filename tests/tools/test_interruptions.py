@@ -1,8 +1,8 @@
 """What was requested, held or planned before a stop, or before a program was suspended, moves nothing after it."""
 
 import pytest
-from lab.release.sender_sequences import command, pad, path, teleop
-from robot_control.safety.interruptions import GAP, RESTARTED, Interruptions, Status
+from lab.release.sender_sequences import command, goal, pad, path, teleop
+from robot_control.safety.interruptions import GAP, RESTARTED, Interruptions, Status, requested_at
 from robot_control.teleop.dead_man import DeadMan, HoldParameters
 
 READY, STOPPED = Status("READY", withdrawals=3, run=7), Status("STOPPED", "e_stop was called", withdrawals=4, run=7)
@@ -65,6 +65,12 @@ def test_a_program_that_plans_for_long_is_none_that_was_suspended():
     assert "stopped and released" in made.revoked(0.1)
 
 
+@pytest.mark.parametrize("sent", [None, 5.001])
+def test_a_request_without_a_time_of_this_clock_may_have_waited_in_a_queue(sent):
+    assert requested_at(5.0, sent) == 5.0 - GAP
+    assert requested_at(5.0, 2.0) == 2.0
+
+
 def test_a_terminal_that_reports_releases_unblocks_with_the_last_one():
     dead_man, now = DeadMan(HoldParameters()), 1.0
     for key in ("w", "a"):
@@ -79,7 +85,7 @@ def test_a_terminal_that_reports_releases_unblocks_with_the_last_one():
     assert dead_man.look(now + 0.2) is not None
 
 
-@pytest.mark.parametrize("kind", [teleop, pad, path, command])
+@pytest.mark.parametrize("kind", [teleop, pad, path, goal, command])
 def test_nothing_that_was_requested_before_a_stop_moves_after_it(kind):
     outcomes = [kind(seed) for seed in range(150)]
     violated = [outcome for outcome in outcomes if outcome.violation]

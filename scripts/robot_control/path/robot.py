@@ -34,7 +34,9 @@ def pose_of(odometry: Odometry) -> Pose:
 class Robot:
     """The last of each message."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, attended: bool = False) -> None:
+        """`attended`: a thread that never plans looks at `watch` all the time, so that every gap is a suspension."""
+        self._attended = attended
         self.odometry: Odometry | None = None
         self.odometry_at = -math.inf
         self.watch = SafetyWatch()
@@ -73,7 +75,7 @@ class Robot:
         """Why a path that was requested at `requested` s (monotonic) is not driven any more; empty: nothing. `waited`:
         since the last look it was not driven.
         """
-        why = self.watch.revoked(requested, waited=waited)
+        why = self.watch.revoked(requested, waited=waited and not self._attended)
         return why and f"{why}: what was requested before does not begin, or go on, by itself. Start the path again"
 
     def against_driving(self, now: float) -> str:

@@ -28,24 +28,33 @@ from robot_control.path.pieces import route
 from robot_control.path.robot import SOURCE, Robot
 from robot_control.path.run import Drive, PauseServices, message_of, points_of
 from robot_control.path.waypoints import PathError, checked, shortened
+from robot_control.safety.interruptions import GAP, requested_at
 
 NAME = "follow_path"
 FEEDBACK_PERIOD = 0.2
 """s; a change of the state is sent at once"""
 END = 2.0
 """s for the goal that is driven when the program is ended"""
+LOOK = 0.05
+"""s between two looks of the main thread"""
+UNSTAMPED = f"a goal without goal_id.stamp counts as sent {GAP:g} s before it arrived"
 
 
 class TimedGoal(FollowPathActionGoal):  # type: ignore[misc]
-    """Notes when it arrived: a long one takes seconds to be read."""
+    """Notes when it was requested: a long one takes seconds to be read, and actionlib stamps one that has no time."""
 
-    arrived = math.inf
+    stamped = False
+    requested = math.inf
     """s, monotonic"""
 
     def deserialize(self, buffer: bytes) -> TimedGoal:
         """Called by rospy with the bytes of one message."""
-        self.arrived = time.monotonic()
+        arrived = time.monotonic()
         super().deserialize(buffer)
+        stamp, now = self.goal_id.stamp, time.monotonic()
+        self.stamped = bool(stamp)
+        sent = now - (rospy.Time.now() - stamp).to_sec() if stamp else None
+        self.requested = requested_at(arrived, sent)
         return self
 
 
@@ -57,24 +66,22 @@ class TimedAction(FollowPathAction):  # type: ignore[misc]
         self.action_goal = TimedGoal()
 
 
-def requested_at(arrived: float, stamp: rospy.Time) -> float:
-    """s, monotonic, when the goal was sent: by its stamp, where it has one, and at the latest when it arrived."""
-    age = (rospy.Time.now() - stamp).to_sec() if stamp else 0.0
-    return min(arrived, time.monotonic() - age)
-
-
 class Server:
     """One goal at a time; the newest counts."""
 
     def __init__(self, signals: Signals) -> None:
-        self._signals = signals
-        self._robot, self._topic, self._tf = Robot(), CommandTopic(SOURCE), Tf()
+        self._signals, self._began = signals, time.monotonic()
+        self._robot, self._topic, self._tf = Robot(attended=True), CommandTopic(SOURCE), Tf()
         self._services = PauseServices()
         self._wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
         self._idle = threading.Event()
         self._idle.set()
         self._action = actionlib.SimpleActionServer(NAME, TimedAction, self._execute, auto_start=False)
         self._action.start()
+
+    def attend(self) -> None:
+        """At each look of the program, whether a goal is driven or not: notes a gap in which goals may have waited."""
+        self._robot.watch.interruptions()
 
     def await_end(self) -> None:
         """Of the goal that is driven, after a signal."""
@@ -114,25 +121,31 @@ class Server:
         """Why it ended. Raises PathError: the goal cannot be driven."""
         if not (math.isfinite(goal.speed) and goal.speed >= 0):
             raise PathError(f"speed is {goal.speed:g} m/s: it must be a number from zero on; zero is the default")
-        current = self._action.current_goal
-        requested = requested_at(current.goal.arrived, current.get_goal_id().stamp)
+        message = self._action.current_goal.goal
         points = shortened(checked(points_of(goal.path)), goal.begin_at)
         result.distance = goal.begin_at
         self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
-        refusal = self._robot.await_drivable(self._topic, self._going_on, requested)
+        refusal = self._refusal(message)
         if refusal:
-            return refusal
+            unknown = self._robot.drivable and not message.stamped
+            return f"{refusal} ({UNSTAMPED})" if unknown else refusal
         points, frame = located(points, goal.path.header.frame_id, self._robot.frames, self._tf)
         speed = goal.speed or FollowParameters.speed
         follower = Follower(route(points), FollowParameters(speed=speed, scale_error=frame.scale_error))
         self._wanted.publish(message_of(points, frame.name))
-        drive = Drive(self._robot, self._topic, follower, frame, requested)
+        drive = Drive(self._robot, self._topic, follower, frame, message.requested)
         self._services.drive = drive
         reporter = Reporter(self._action, drive, goal.begin_at)
         drive.run(self._going_on, reporter.look)
         result.distance = goal.begin_at + follower.distance
         result.worst_cross_track_error = follower.worst_cross_track_error
         return "done" if follower.state is State.DONE else follower.reason
+
+    def _refusal(self, message: TimedGoal) -> str:
+        """Why the goal does not begin; empty: it does. What stopped the robot before this program began is not known."""
+        if message.requested < self._began:
+            return "it was sent before this program began. Start the path again"
+        return self._robot.await_drivable(self._topic, self._going_on, message.requested)
 
 
 class Reporter:
@@ -173,5 +186,6 @@ def main() -> None:
     with running_node(NAME) as signals:
         server = Server(signals)
         while signals.going_on():
-            time.sleep(0.05)
+            server.attend()
+            time.sleep(LOOK)
         server.await_end()

@@ -6,7 +6,8 @@ What is requested, planned, held or waited for belongs to the time in which it b
     reset    `withdrawals` or `run` differ between two messages that permit to drive: a stop lies between them
     gap      this program did not look for longer than GAP while it drove: it was suspended, and what it knows is old
 
-A request that was made during a stop is one from before its reset.
+A request that was made during a stop is one from before its reset. A request that arrives as a message began when it
+was sent (`requested_at`), for a queue holds it while the program stands still.
 Times are s of any one clock that never turns back. The clock has to run on while a program is suspended.
 """
 
@@ -22,6 +23,14 @@ GAP = 1.0
 """s; programs look every 0.02 s, and a loaded machine keeps one waiting for half a second now and then. What such a
 program requested before a stop is refused by the loop, however short its gap."""
 RESTARTED = "INIT: a node or the simulation was started again, and releases no command from before"
+
+
+def requested_at(arrived: float, sent: float | None) -> float:
+    """When a request that came as a message began: GAP before it arrived, if the time when it was sent is not known.
+
+    A time after the arrival is that of another clock, and none.
+    """
+    return arrived - GAP if sent is None or sent > arrived else sent
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from robot_control.path.waypoints import Waypoint
 from robot_control.safety.interruptions import GAP, Status
 
 from lab.release.path_jumps import FARTHEST, excess
-from lab.release.senders import CommandSender, PadSender, PathSender, TeleopSender
+from lab.release.senders import CommandSender, GoalSender, PadSender, PathSender, TeleopSender
 from lab.runs.runner import Runner
 
 PERIOD = 0.02  # s between two looks
@@ -200,6 +200,39 @@ def path(seed: int) -> Outcome:
     return outcome
 
 
+def goal(seed: int) -> Outcome:
+    """A goal for follow_path.py that waited in its queue over a stop or a suspension moves nothing."""
+    chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
+    monitor, suspensions, outcome = Monitor(chance), Suspensions(chance), Outcome(seed)
+    made, woke, sent, x, linear = GoalSender(0.0), -1.0, 0.0, 0.0, 0.0
+    waiting: list[tuple[float, float | None]] = []  # when each was sent, and when it says so
+    read_from = 0.0  # after a suspension the thread that reads goals may be later than that of safety_status
+    for number in range(LOOKS):
+        now = number * PERIOD
+        monitor.step(now)
+        if chance.random() < 0.01:
+            waiting.append((now, chance.choice([now, None])))
+        if lasting := suspensions.lasting(now):
+            woke = now if lasting > GAP else woke
+            read_from = now + chance.choice([0.0, 0.1, 0.5])
+            continue
+        goals: list[tuple[list[Waypoint], float | None]] = []
+        if waiting and now >= read_from:
+            sent, says = waiting[-1]
+            goals, waiting = [([Waypoint(x, 0.0), Waypoint(x + 3.0, 0.0)], says)], []
+        command = made.step(now, monitor.take(), (Pose(x, 0.0, 0.0), Motion(linear, 0.0)), goals)
+        linear = command.linear if command is not None else 0.0
+        x += linear * PERIOD
+        if not moves(command):
+            continue
+        outcome = replace(outcome, moving=outcome.moving + 1)
+        if not monitor.status.drivable:
+            return outcome.at(now, "motion during a stop")
+        if sent < max(monitor.released, woke):
+            return outcome.at(now, "motion along a goal that was sent before the stop or the suspension")
+    return outcome
+
+
 def command(seed: int) -> Outcome:
     """A send_cmd.py that was started before a stop moves nothing after it."""
     chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
@@ -228,7 +261,7 @@ def jumps(seed: int) -> Outcome:
     return Outcome(seed, violation, moving=1)
 
 
-KINDS = (teleop, pad, path, command, jumps)
+KINDS = (teleop, pad, path, goal, command, jumps)
 
 
 def run_sequence(seed: int) -> Outcome:

@@ -15,7 +15,7 @@ from robot_control.pad.law import Pad
 from robot_control.path.follower import Follower, Motion, Pose
 from robot_control.path.pieces import route
 from robot_control.path.waypoints import Waypoint
-from robot_control.safety.interruptions import Interruptions, Status
+from robot_control.safety.interruptions import Interruptions, Status, requested_at
 from robot_control.teleop.backlog import Backlog
 from robot_control.teleop.key_map import ARROWS
 from robot_control.teleop.keyboard import Decoder
@@ -83,8 +83,8 @@ class PadSender:
 class PathSender:
     """drive_path.py, or one goal of follow_path.py: requested when it is made, driven once it is planned."""
 
-    def __init__(self, now: float) -> None:
-        self._watch, self._requested = _Watch(now), now
+    def __init__(self, now: float, watch: _Watch | None = None, requested: float | None = None) -> None:
+        self._watch, self._requested = watch or _Watch(now), now if requested is None else requested
         self._follower: Follower | None = None
         self._odometry_at = now
         self._driving = False
@@ -108,6 +108,28 @@ class PathSender:
         motion = self._follower.step(*odometry, elapsed=min(elapsed, 0.5))
         self.reason = self._follower.reason
         return Command(motion.linear, motion.angular)
+
+
+class GoalSender:
+    """follow_path.py; its further input: goals, each with the time when it says that it was sent, or None."""
+
+    def __init__(self, now: float) -> None:
+        self._watch = _Watch(now)
+        self._path: PathSender | None = None
+
+    def step(
+        self,
+        now: float,
+        statuses: Sequence[Status],
+        odometry: tuple[Pose, Motion],
+        goals: Sequence[tuple[Sequence[Waypoint], float | None]],
+    ) -> Command | None:
+        """One look; the newest goal counts."""
+        self._watch.interrupted(now, statuses)
+        for waypoints, sent in goals:
+            self._path = PathSender(now, self._watch, requested_at(now, sent))
+            self._path.plan(waypoints)
+        return None if self._path is None else self._path.step(now, (), odometry)
 
 
 class CommandSender:
