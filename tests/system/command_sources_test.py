@@ -198,7 +198,7 @@ class CommandSourcesTest(RobotTestCase):
         self.addCleanup(idle.end)
         joy = rospy.Publisher("joy", Joy, queue_size=1)
         held = Joy(axes=[0, 1], buttons=[0, 0, 0, 0, 1, 0])
-        words = "two nodes publish joy"
+        words = "publish joy: zero until one is left"
         wait_for(f"{words}: {pad.output}", lambda: words in pad.output, every=lambda: joy.publish(held))
         end = time.monotonic() + 2.0
         while time.monotonic() < end:

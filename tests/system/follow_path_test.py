@@ -246,7 +246,7 @@ class FollowPathTest(RobotTestCase):
 
         return end
 
-    def test_a_goal_without_a_time_that_waited_over_a_stop_while_its_idle_server_was_suspended_does_not_begin(self) -> None:
+    def test_a_goal_without_a_time_that_a_suspended_server_finds_after_a_stop_does_not_begin(self) -> None:
         for name in ("first", "second"):
             before = self.robot.distance
             end = self.send_unstamped(name, 2.0)

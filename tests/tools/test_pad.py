@@ -129,7 +129,9 @@ def test_a_second_publisher_of_joy_zeroes_and_is_named():
         if number > 50:
             pad.receive(REST, NONE, now, "/idle")
         assert pad.command(now) == (Command(GIVEN.scale_linear, 0.0) if number <= 50 else Command())
-    assert pad.state(now) == "two nodes publish joy, /lost and /idle: zero until one has ended"
+    assert pad.state(now) == "/lost and /idle publish joy: zero until one is left"
+    pad.receive(REST, NONE, now, "/third")
+    assert pad.state(now) == "/lost and /idle and /third publish joy: zero until one is left"
 
 
 @pytest.mark.parametrize("left", ["/first", "/second"])
@@ -142,6 +144,7 @@ def test_the_publisher_that_is_left_drives_after_a_release(left):
         now = number * PERIOD
         pad.receive(FORWARD, ENABLE, now, left)
         assert pad.command(now) in (None, Command())
+        assert f"{left} and {left}" not in pad.state(now)
     pad.receive(FORWARD, NONE, now + PERIOD, left)
     pad.receive(FORWARD, ENABLE, now + 2 * PERIOD, left)
     assert pad.command(now + 2 * PERIOD).linear == GIVEN.scale_linear
@@ -174,6 +177,35 @@ def test_what_is_held_over_a_stop_moves_nothing_until_it_was_released(pad):
     pad.receive(FORWARD, NONE, now)
     pad.receive(FORWARD, ENABLE, now + PERIOD)
     assert pad.command(now + PERIOD).linear > 0
+
+
+@pytest.mark.parametrize("buttons", [NONE, ENABLE])
+def test_a_stop_is_followed_by_zeros_whatever_is_held(pad, buttons):
+    """The controller may refuse what was sent before it."""
+    now = hold(pad, FORWARD, buttons, 0.1, 1.0) + 2 * ZEROS
+    pad.interrupt(now)
+    assert pad.command(now + ZEROS - PERIOD) == Command()
+    assert pad.command(now + ZEROS + PERIOD) is None
+
+
+def test_what_the_controller_refuses_is_zero_and_named_until_it_was_released(pad):
+    now = hold(pad, FORWARD, ENABLE, 0.1, 1.0)
+    assert pad.state(now) == "drives"
+    pad.refuse(now)
+    assert pad.command(now) == Command()
+    now = hold(pad, FORWARD, ENABLE, now, 0.5)
+    assert pad.state(now) == "release the enable button once"
+    pad.receive(FORWARD, NONE, now)
+    pad.receive(FORWARD, ENABLE, now + PERIOD)
+    assert pad.command(now + PERIOD).linear > 0
+
+
+def test_a_button_that_is_pressed_while_the_controller_refuses_has_to_be_released_once(pad):
+    now = hold(pad, FORWARD, NONE, 0.1, 1.0)
+    pad.receive(FORWARD, ENABLE, now)
+    pad.refuse(now)
+    assert pad.state(now) == "release the enable button once"
+    assert pad.command(now) == Command()
 
 
 def test_what_is_pressed_during_a_stop_moves_nothing_after_it(pad):

@@ -98,7 +98,8 @@ def test_a_report_without_an_end_is_over_after_ctrl_x(begun):
 
 
 @pytest.mark.parametrize(
-    ("begun", "remedy"), [(b"\x1b]w", "Ctrl-X"), (b"\x1bP\x1b", "Ctrl-X"), (b"\x1b[200~w\x1b]", "start teleop.py again")]
+    ("begun", "remedy"),
+    [(b"\x1b]w", "Ctrl-X"), (b"\x1bP\x1b", "Ctrl-X"), (b"\x1b[200~w\x1b]", "start teleop.py again")],
 )
 def test_what_takes_the_keys_is_named_with_its_remedy(begun, remedy):
     decoder = Decoder()
@@ -107,7 +108,9 @@ def test_what_takes_the_keys_is_named_with_its_remedy(begun, remedy):
     assert remedy in decoder.unfinished
 
 
-@pytest.mark.parametrize(("stop", "name"), [(b"\x1b[32u", "space"), (b"\x1b[49:33;2u", "!"), (b"\x1b[99;5u", "interrupt")])
+@pytest.mark.parametrize(
+    ("stop", "name"), [(b"\x1b[32u", "space"), (b"\x1b[49:33;2u", "!"), (b"\x1b[99;5u", "interrupt")]
+)
 def test_a_paste_without_an_end_swallows_no_stop_that_the_terminal_reports_later(stop, name):
     decoder = Decoder()
     decoder.feed(b"\x1b[200~" + stop, 0.0)

@@ -9,7 +9,7 @@ The enable button counts only after it was seen released: since the pad was plug
 pause of this program (interruptions.py), and while the robot may drive. A hold ends after max_hold, whatever the stick
 does: a wireless receiver that has lost its pad goes on reporting what it saw last, noise included.
 
-One pad is one sender. While messages of a second one come within joy_timeout, nothing moves.
+One pad is one sender. While messages of another one come within joy_timeout, nothing moves.
 """
 
 from collections.abc import Sequence
@@ -56,8 +56,8 @@ class Pad:
         self._buttons: tuple[int, ...] = ()
         self._answered_at = float("-inf")
         self._held_since = float("inf")
-        self._sender = self._other = ""
-        self._other_at = float("-inf")
+        self._sender = ""
+        self._newest: dict[str, float] = {}  # of each sender in the last joy_timeout, when its newest message came
         self._drivable: bool | None = None
         self._armed = False  # the enable buttons were seen released
         self._arms_from = float("-inf")
@@ -72,8 +72,8 @@ class Pad:
         if len(axes) > LONGEST or len(buttons) > LONGEST:
             return
         came_back = not self.answers(now)
+        self._newest = {name: self._newest[name] for name in self._senders(now)} | {sender: now}
         if sender != self._sender and not came_back:
-            self._other, self._other_at = sender, now
             self._armed = False
             return
         self._sender = sender
@@ -83,14 +83,17 @@ class Pad:
             self._armed = self._armed and not came_back
             self._held_since = min(self._held_since, now)
         else:
-            self._armed = not self._contested(now) and now >= self._arms_from
+            self._armed = len(self._newest) == 1 and now >= self._arms_from
             self._held_since = float("inf")
 
     def interrupt(self, now: float) -> None:
         """What is held was pressed before a stop, or before this program stood still (interruptions.py)."""
-        if self._armed and self._held():
-            self._zeros_until = now + ZEROS
-        self._armed, self._arms_from = False, now + SETTLING
+        self.refuse(now)
+        self._arms_from = now + SETTLING
+
+    def refuse(self, now: float) -> None:
+        """The controller refuses motion until it has received a zero."""
+        self._armed, self._zeros_until = False, now + ZEROS
 
     def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
         """May the robot drive, by its safety monitor? None: it says nothing."""
@@ -122,14 +125,14 @@ class Pad:
         """In words."""
         if not self.answers(now):
             return "no pad answers"
-        if self._contested(now):
-            return f"two nodes publish joy, {self._sender} and {self._other}: zero until one has ended"
+        if len(self._senders(now)) > 1:
+            return f"{' and '.join(self._senders(now))} publish joy: zero until one is left"
         if self._held() and not self._armed:
             return "release the enable button once"
         return "drives" if self._held() else f"hold button {self._given.enable_button} to drive"
 
-    def _contested(self, now: float) -> bool:
-        return now - self._other_at <= self._given.joy_timeout
+    def _senders(self, now: float) -> list[str]:
+        return [name for name, at in self._newest.items() if now - at <= self._given.joy_timeout]
 
     def _held(self) -> bool:
         return self._pressed(self._given.enable_button) or self._pressed(self._given.enable_turbo_button)

@@ -18,6 +18,7 @@ from robot_control.common.files import printable
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError, server_tree
 from robot_control.common.topic_sender import Signals
+from robot_control.msg import DriveState
 from robot_control.pad.device import PACKAGE, Device, open_device
 from robot_control.pad.law import Pad, PadParameters
 from robot_control.safety.watch import SafetyWatch
@@ -31,6 +32,8 @@ MESSAGES = 100
 """on joy, kept between two looks"""
 SILENCE = 3.0
 """s without safety_status, which comes once per second: then it says nothing"""
+
+REFUSED = "diff_drive_controller refuses what was requested before a stop: zero; release the enable button once"
 
 
 class ParameterError(ValueError):
@@ -104,13 +107,24 @@ class Source:
             self._publisher.publish(message)
 
 
+class Refusal:
+    """Whether the controller refuses the motion that this program requests (DriveState.revoked)."""
+
+    def __init__(self) -> None:
+        self.active = False
+        rospy.Subscriber("drive_state", DriveState, self._receive, queue_size=1, tcp_nodelay=True)
+
+    def _receive(self, message: DriveState) -> None:
+        self.active = rospy.get_name() in message.revoked
+
+
 def drive(given: argparse.Namespace, signals: Signals) -> None:
     """Until a signal."""
     pad, topic = Pad(parameters()), CommandTopic(SOURCE)
     source = Source(pad, given.device, topic=given.joy)
     pad.start(time.monotonic())
     pace, said = Pace(topic.send), ""
-    watch, interruptions = SafetyWatch(), 0
+    watch, interruptions, refusal, refused = SafetyWatch(), 0, Refusal(), False
     while signals.going_on():
         now = time.monotonic()
         source.look(now)
@@ -119,6 +133,11 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
             interruptions = count
             pad.interrupt(now)
             rospy.logwarn(f"{why}: release the enable button once")
+        before, refused = refused, refusal.active
+        if refused:
+            pad.refuse(now)
+            if not before:
+                rospy.logwarn(REFUSED)
         pad.permit(watch.drivable(SILENCE))
         pace.look(pad.command(now), now)
         if pad.state(now) != said:

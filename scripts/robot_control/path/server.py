@@ -142,7 +142,7 @@ class Server:
         return "done" if follower.state is State.DONE else follower.reason
 
     def _refusal(self, message: TimedGoal) -> str:
-        """Why the goal does not begin; empty: it does. What stopped the robot before this program began is not known."""
+        """Why the goal does not begin; empty: it does. This program knows of no stop before its own begin."""
         if message.requested < self._began:
             return "it was sent before this program began. Start the path again"
         return self._robot.await_drivable(self._topic, self._going_on, message.requested)

@@ -16,8 +16,8 @@ Everything else that a terminal sends is consumed to its end and means nothing (
 Bytes end a sequence, time does not: a link may stall anywhere in it. A paste ends with its end mark, everything else
 also with Ctrl-X.
 
-An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence; it ends none. No
-sequence swallows a stop: Space and ! count inside ESC [ and ESC O, where no report has them, and elsewhere when they
+An ESC alone is the key Esc once ESCAPE_WAIT has passed, or a byte has followed that begins no sequence; it ends none.
+No sequence swallows a stop: Space and ! count inside ESC [ and ESC O, where no report has them, and elsewhere when they
 come ESCAPE_WAIT after the byte before, as a typed key does. So do the stops that a terminal reports during a paste.
 """
 
