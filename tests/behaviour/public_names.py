@@ -1,4 +1,4 @@
-"""Every name that a user of robot_control may have written into a program, a file or a command line of theirs.
+"""Every name that a user of robot_control types, into a program, a parameter file or a command line.
 
     /usr/bin/python3 tests/behaviour/public_names.py > tests/behaviour/public_names.json
 
@@ -19,7 +19,6 @@ from typing import Any
 
 import robot_control
 import yaml  # type: ignore[import-untyped]
-from robot_control import ClosedLoop
 
 ROOT = Path(__file__).parents[2]
 ALIASES = (
@@ -52,15 +51,6 @@ def services() -> Iterator[str]:
         yield f"{'~' if owner == 'own' else ''}{name}"
 
 
-def message_fields() -> Iterator[str]:
-    """Fields and constants of the messages, services and actions, in the order of the wire."""
-    for path in sorted([*ROOT.glob("msg/*.msg"), *ROOT.glob("srv/*.srv"), *ROOT.glob("action/*.action")]):
-        for line in path.read_text().splitlines():
-            text = " ".join(line.split("#")[0].split())
-            if text:
-                yield f"{path.stem}: {text}"
-
-
 def parameters() -> Iterator[str]:
     """Keys of the parameter file, those in its comments included."""
     text = (ROOT / "config/robot_params.yaml").read_text()
@@ -83,26 +73,6 @@ def _keys(tree: dict[str, Any], prefix: str = "") -> Iterator[str]:
             yield from _keys(value, f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}"
-
-
-def columns() -> list[str]:
-    """Of run.csv: those of every log, then those of a log in real time."""
-    timing = re.findall(r'"(\w+_(?:ns|us))"', _sources("src/telemetry"))
-    return [*ClosedLoop().units, *sorted(set(timing))]
-
-
-def words() -> Iterator[str]:
-    """Names of causes, reasons, states, verdicts, components and faults, by the table or the enum of which they are."""
-    causes = (ROOT / "src/signals/stop_causes.def").read_text()
-    found = re.findall(r"^(?:CAUSE|CONDITION|CONDITION_WITHOUT_LIMIT)\(\w+, (\w+),", causes, re.MULTILINE)
-    yield from (f"StopCauseNames: {name}" for name in found)
-    signals = _sources("src/signals")
-    for table, body in re.findall(r"k(\w+Names) = std::to_array<BitName>\(\{(.*?)\n\}\);", signals, re.DOTALL):
-        yield from (f"{table}: {name}" for name in re.findall(r'\{k\w+, "(\w+)"', body))
-    arrays = re.findall(r"std::string_view, \w+> k(\w+Names)\{(.*?)\}", signals, re.DOTALL)
-    arrays += re.findall(r"name_of\((\w+) \w+\) noexcept \{\s*constexpr [^{]*kNames\{(.*?)\}", signals, re.DOTALL)
-    for table, body in arrays:
-        yield from (f"{table}: {name}" for name in re.findall(r'"(\w+)"', body))
 
 
 def launch_arguments() -> Iterator[str]:
@@ -139,10 +109,7 @@ def public_names() -> Names:
     return {
         "topics": sorted(set(topics())),
         "services": sorted(set(services())),
-        "messages": list(message_fields()),
         "parameters": list(parameters()),
-        "columns of run.csv": columns(),
-        "words": list(words()),
         "launch arguments": list(launch_arguments()),
         "programs": sorted(programs()),
         "python": list(python()),

@@ -27,11 +27,6 @@ def test_a_new_public_name_is_recorded(kind):
     assert [name for name in NAMES[kind] if name not in RECORDED[kind]] == [], RENEW
 
 
-@pytest.mark.parametrize("kind", ["messages", "columns of run.csv"])
-def test_what_is_read_by_position_keeps_its_order(kind):
-    assert [name for name in NAMES[kind] if name in RECORDED[kind]] == RECORDED[kind]
-
-
 def test_every_recorded_parameter_is_accepted():
     """The parameter file lists them; the program must know them, too."""
     tree = {"no_such_block": {"key": 0}}

@@ -37,9 +37,3 @@ def test_every_answer_of_a_service_goes_through_ascii_or_is_a_literal(path):
     code = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', path.read_text())
     for built in re.findall(r"\bresponse\.message \+?=\s*([^;]+);", code):
         assert "ascii(" in built or not re.search(r"\w", built), built
-
-
-def test_literals_are_found_where_they_are(tmp_path):
-    source = tmp_path / "a.cpp"
-    source.write_text('f("N·m");  // "°"\n/// …\ng("http://x", "\\"²\\"");\n')
-    assert literals(source) == ['"N·m"', '"http://x"', '"\\"²\\""']

@@ -8,19 +8,10 @@ from pathlib import Path
 import pytest
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
-ROSTESTS = [f"_ctest_robot_control_rostest_tests_system_{name}.test" for name in ("drives", "send_cmd", "start")]
-ENTRIES = ["test_signals", "test_control", "test_lockstep", *ROSTESTS]
 
 
 def shell(*command):
     return subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False, timeout=60)
-
-
-def selected(*names):
-    """Entries that `scripts/test NAME…` hands to CTest."""
-    selection = SCRIPTS / "shell" / "test_selection.sh"
-    done = shell("bash", "-euc", 'source "$0"; ctest_pattern "$@"', str(selection), *names)
-    return [entry for entry in ENTRIES if re.search(done.stdout.strip(), entry)]
 
 
 @pytest.mark.parametrize("script", ["demo", "test", "setup", "lint", "bench", "behaviour"])
@@ -163,21 +154,6 @@ def test_every_build_shows_its_progress():
         assert all("with_progress" in line for line in builds)
 
 
-def test_a_part_of_the_projects_name_selects_no_rostest_by_it():
-    assert selected("control") == ["test_control"]
-    assert selected("robot") == []
-    assert selected("test_control") == ["test_control"]
-
-
-def test_a_rostest_is_selected_by_its_file_or_its_folder():
-    assert selected("drives") == [ROSTESTS[0]]
-    assert selected("system") == ROSTESTS
-
-
-def test_several_names_select_each_its_own():
-    assert selected("signals", "start") == ["test_signals", ROSTESTS[2]]
-
-
 def listed_packages(sections):
     """What scripts/setup would install, with the names of the sections that its arguments select."""
     command = """cd "$0"/..; sections=$1; eval "$(sed -n '/^listed()/,/^}/p' scripts/setup)"; listed"""
@@ -196,19 +172,6 @@ def test_packages_of_a_section_are_installed_only_where_they_are_asked_for():
     assert listed_packages(" [report]") == listed_packages(" [export]") == plain  # from PyPI
     assert listed_packages(" [cluster]") - plain == {"python3-distributed"}
     assert listed_packages(" [linters] [cluster]") - plain == {"clang-format", "clang-tidy", "python3-distributed"}
-
-
-def cases_of(nightly):
-    """What selects the cases of gtest, pytest, rostest and CTest."""
-    selection = str(SCRIPTS / "shell" / "test_selection.sh")
-    said = '"${GTEST_FILTER-all}|${PYTEST_CASES[*]}|${ROBOT_CONTROL_NIGHTLY-}|$NIGHTLY_LABEL"'
-    done = shell("bash", "-euc", f'source "$0"; select_cases "$1"; echo {said}', selection, nightly)
-    return done.stdout.strip().split("|")
-
-
-def test_the_nightly_cases_are_left_out_unless_they_are_asked_for():
-    assert cases_of("false") == ["-*Nightly*", "-m not nightly", "", "nightly"]
-    assert cases_of("true") == ["all", "", "1", ""]
 
 
 @pytest.mark.parametrize(("arguments", "testing"), [([], "ON"), (["without_tests"], "OFF")])
