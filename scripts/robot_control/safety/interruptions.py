@@ -4,7 +4,8 @@ What is requested, planned, held or waited for belongs to the time in which it b
 
     stop     the state was READY or DRIVE, and is not any more
     reset    `withdrawals` or `run` differ between two messages that permit to drive: a stop lies between them
-    gap      this program did not look for longer than GAP while it drove: it was suspended, and what it knows is old
+    gap      this program did not look for longer than GAP, and neither waited nor planned: it was suspended, and what
+             it knows is old
 
 A request that was made during a stop is one from before its reset. A request that arrives as a message began when it
 was sent (`requested_at`), for a queue holds it while the program stands still.
