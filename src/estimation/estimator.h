@@ -28,7 +28,8 @@
 /// biases follow every sample.
 ///
 /// kStateDegraded, with a reason: kDegradedHeading, the gyro's bias is known no better than kUnknownBias, which is
-/// so before the first rest; kDegradedPosition, wheels slip.
+/// so before the first rest, or wheels and gyro contradicted each other since the last rest; kDegradedPosition, wheels
+/// slip.
 ///
 /// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kBlock.
 

@@ -141,6 +141,7 @@ WheelSlide::Input Estimator::slide_input() const noexcept {
           .path_slope_deviation = slip_detector_.slope_deviation(SlipResidual::kAlong),
           .turn_slope_deviation = slip_detector_.slope_deviation(SlipResidual::kTurn),
           .side_speed = {wheels_.side_speed(kLeft), wheels_.side_speed(kRight)},
+          .wheel_base = geometry_.wheel_base,
           .sideways = slip_detector_.proven(SlipResidual::kAcross)};
 }
 
@@ -148,21 +149,27 @@ WheelSlide::Input Estimator::slide_input() const noexcept {
 void Estimator::correct(const WheelSlide::Correction& correction) noexcept {
   const Planar shift = rotated(correction.shift, core_.pose().yaw - uncorrected_yaw_);
   core_.shift(shift.x, shift.y, correction.variance);
+  core_.contradict(correction.contradiction, 0);
 }
 
 void Estimator::compare_turns(double dt) noexcept {
   comparison_.time += dt;
   comparison_.left += wheels_.left();
   comparison_.right += wheels_.right();
+  comparison_.stuck |= imu_.gyro_unchanged() > Tuning::kLongestHold;
   if (slide_.active()) comparison_.open = false;
   if (!wheels_.both_received() || (comparison_.open && comparison_.time < Tuning::kBlock)) return;
   if (!imu_.gyro() || gyro_turn_.silent()) return;
   if (comparison_.open) {
-    const auto [nis, used] = core_.end_block(comparison_.left, comparison_.right, rate_.rate().z(), comparison_.time,
-                                             wheels_.stamp_variance());
+    const auto [nis, used, apart, usual] = core_.end_block(comparison_.left, comparison_.right, rate_.rate().z(),
+                                                    comparison_.time, wheels_.stamp_variance());
     for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
       note(sensor, nis, comparison_.time);
       if (!used) ++rejected_[sensor];
+    }
+    const double explained = comparison_.stuck ? 0 : std::copysign(usual, apart);
+    if (!used || comparison_.stuck) {
+      core_.contradict(apart - explained, (comparison_.left + comparison_.right) / 2);
     }
   }
   begin_comparison();

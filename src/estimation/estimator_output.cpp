@@ -161,6 +161,7 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (out.slip != 0) out.flags |= kStateSlip;
   out.degraded = 0;
   if (slide_.active()) out.degraded |= kDegradedPosition;
+  if (core_.contradicted()) out.degraded |= kDegradedHeading;
   const bool unknown_bias = core_.bias_variance() > square(Tuning::kUnknownBias);
   if (!resting_ && imu_.gyro() && unknown_bias) out.degraded |= kDegradedHeading;
   if (out.degraded != 0) out.flags |= kStateDegraded;

@@ -52,6 +52,7 @@ void Estimator::begin_rest() noexcept {
   gyro_noise_.interrupt();
   open_window_ = last_window_ = {};
   slide_.end();
+  core_.end_contradiction();
   comparison_ = {};
   wheels_.forget_turn();
   flags_ |= kStateStandstill;

@@ -32,6 +32,7 @@ class EstimatorState {
   struct TurnComparison {
     bool open = false;
     double time = 0, left = 0, right = 0;  ///< s, m
+    bool stuck = false;                    ///< The gyro repeated one sample for longer than kLongestHold.
   };
 
   // Samples.

@@ -128,7 +128,7 @@ inline constexpr auto kStateFlagNames = std::to_array<BitName>({
 inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
     {kDegradedPosition, "position", "wheels slip: the path takes the speed that the accelerometer carries on",
      "look at the IMU's mounting; a robot that shakes: slip_detection false"},
-    {kDegradedHeading, "heading", "the gyro's bias is not known before the first rest",
+    {kDegradedHeading, "heading", "no rest has shown the gyro's bias yet, or wheels and gyro contradict each other",
      "let the robot rest for a second"},
     {kDegradedSpeed, "speed", "of an earlier version: the accelerometer contradicted the wheels' speed", ""},
     {kDegradedTilt, "tilt", "of an earlier version: the estimated tilt contradicted gravity", ""},

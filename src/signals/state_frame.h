@@ -41,7 +41,7 @@ enum StateFlag : std::uint64_t {
 /// Bits of StateFrame::degraded: what the pose does without.
 enum DegradedReason : std::uint64_t {
   kDegradedPosition = 1u << 0,  ///< Wheels slip (estimation/slip/wheel_slide.h).
-  kDegradedHeading = 1u << 1,   ///< No rest has shown the gyro's bias yet.
+  kDegradedHeading = 1u << 1,   ///< No rest has shown the gyro's bias yet, or wheels contradict the gyro.
   kDegradedSpeed = 1u << 2,     ///< No longer set; in earlier logs.
   kDegradedTilt = 1u << 3,      ///< No longer set; in earlier logs.
 };

@@ -276,5 +276,26 @@ TEST_P(EstimatorGarbageTest, NeverPoisonsTheState) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EstimatorGarbageTest, testing::Range(0U, 10U));
 
+// Which of both fails is not known: the deviation of the heading is the whole difference, until a rest and beyond.
+class ALyingGyro : public EstimatorFixture, public testing::WithParamInterface<double> {};
+
+TEST_P(ALyingGyro, WidensTheHeading) {
+  robot_.noise = {.gyro = 1e-4, .accelerometer = 1e-3, .counts = 4096};
+  stand(3000);
+  drive(0.5, 0.3, 6000);
+  for (int i = 0; i < GetParam() / kPeriod; ++i) {
+    broken([](SensorFrame& frame) { frame.imu.angular_velocity[2] = -frame.imu.angular_velocity[2]; });
+  }
+  EXPECT_TRUE(has(kStateDegraded));
+  drive(0.5, 0.3, 2000);
+  stand(3000);
+  const double off = yaw_error();
+  EXPECT_GT(off, 0.2);
+  EXPECT_LT(off, 4 * std::sqrt(state_.pose_covariance[35]));
+  EXPECT_LT(off, 1.1 * 2 * 0.3 * GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Seconds, ALyingGyro, testing::Values(0.5, 1.0, 3.0));
+
 }  // namespace
 }  // namespace robot_control

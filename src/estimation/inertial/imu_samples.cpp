@@ -45,7 +45,9 @@ void ImuSamples::step(const SensorFrame& sensors, const Eigen::Matrix3d& base_fr
     }
     return Eigen::Vector3d(base_from_imu * vector);
   };
+  const Eigen::Vector3d before = gyro_.last;
   take(gyro_, sample(kValidGyro, sensors.imu.angular_velocity, Tuning::kGyroRange), dt, true);
+  gyro_unchanged_ = gyro_.last == before ? gyro_unchanged_ + dt : 0;
   take(accelerometer_, sample(kValidAccelerometer, sensors.imu.linear_acceleration, Tuning::kAccelerometerRange), dt,
        false);
 }

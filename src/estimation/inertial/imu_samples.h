@@ -32,6 +32,7 @@ class ImuSamples {
   /// rad/s, bias included; where the gyro is not lost. In the step that makes the trapezoid whole its mean is no rate,
   /// and the sample alone is.
   const Eigen::Vector3d& gyro_rate() const noexcept { return gyro_.catches_up ? gyro_.last : *gyro_.mean; }
+  double gyro_unchanged() const noexcept { return gyro_unchanged_; }  ///< s, in which it repeated one sample
   double gyro_gap() const noexcept { return gyro_.gap; }  ///< s, between two samples
   bool refused() const noexcept { return refused_; }      ///< the last step brought a sample that is none
 
@@ -52,6 +53,7 @@ class ImuSamples {
   static void take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt, bool trapezoid) noexcept;
 
   Channel gyro_;
+  double gyro_unchanged_ = 0;  ///< s
   Channel accelerometer_;
   bool refused_ = false;
 };

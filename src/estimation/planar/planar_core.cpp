@@ -147,7 +147,14 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   }
   noise_.learn(normalised, parts, s);
   walk(mean, rolled, dt);
-  return {square(normalised), used};
+  return {.nis = square(normalised), .used = used, .apart = innovation / b, .usual = Tuning::kSignificant * std::sqrt(s) / b};
+}
+
+void PlanarCore::contradict(double angle, double distance) noexcept {
+  apart_ += angle;
+  const double earlier = std::exchange(largest_apart_, std::max(largest_apart_, std::abs(apart_)));
+  add_yaw_variance(square(largest_apart_) - square(earlier));
+  shift(0, 0, square(angle * distance / 2));
 }
 
 /// What is held has no variance and does not walk.

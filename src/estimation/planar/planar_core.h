@@ -17,6 +17,9 @@
 /// sees it. An innovation pulls no harder than Huber's bound; beyond kGate deviations it is not used. The walks of ε
 /// and β are in proportion to the slip noise (wheel_noise.h).
 ///
+/// Where wheels and gyro contradict each other, nothing tells which of both is wrong. The heading stays the gyro's, and
+/// its deviation is what both have turned apart since the last rest, at its largest.
+///
 /// Before the first rest b looks like an ε, and that of wheels which a turn drags over the floor changes with load and
 /// floor. Corrections of pose and b are held back, and P is that of a pose without them, until a rest or wheels that
 /// are not dragged prove another b than the path was driven by. The first rest corrects the pose by ∂(x, y, ψ)/∂b
@@ -67,6 +70,8 @@ class PlanarCore {
   struct Innovation {
     double nis = 0;
     bool used = false;
+    double apart = 0;  ///< rad, by which the wheels turned more than the gyro
+    double usual = 0;  ///< rad, kSignificant deviations of it
   };
 
   explicit PlanarCore(const PlanarCoreParams& params = {}) noexcept;
@@ -95,6 +100,11 @@ class PlanarCore {
   /// It ends, after `left` and `right` m in `dt` s. `rate` rad/s: the gyro's at either end. `jitter` s²: variance of
   /// the stamps of the wheels.
   Innovation end_block(double left, double right, double rate, double dt, double jitter = 0) noexcept;
+  /// Wheels and gyro contradict each other by `angle` rad more, while the robot went `distance` m.
+  void contradict(double angle, double distance) noexcept;
+  /// Since the last rest, by more than kUnknownHeading.
+  bool contradicted() const noexcept { return largest_apart_ > Tuning::kUnknownHeading; }
+  void end_contradiction() noexcept { apart_ = largest_apart_ = 0; }  ///< The covariance stays.
   /// The gyro's mean at rest, rad/s. `keeps_pose`: it stays where it is.
   void rest(double mean, double variance, bool keeps_pose) noexcept;
   void set_gyro_noise(double density) noexcept { gyro_noise_ = density; }  ///< rad/s/√Hz, learned
@@ -141,6 +151,8 @@ class PlanarCore {
   Vector by_bias_ = Vector::Unit(kBias);                    ///< derivative of the pose by the bias that drove it
   Eigen::Vector2d second_order_ = Eigen::Vector2d::Zero();  ///< m: q
   WheelNoise noise_;
+  double apart_ = 0;          ///< rad, by contradictions since the last rest
+  double largest_apart_ = 0;  ///< rad, since then
   double anchor_rate_ = 0;  ///< rad/s, at the beginning of the block
   double gyro_noise_;       ///< rad/s/√Hz, learned
   bool bias_known_ = true;

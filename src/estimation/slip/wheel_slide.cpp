@@ -43,7 +43,8 @@ WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, cons
   const double dt = now.time - corrected_.time;
   if (!(dt > 0)) return {};
   const double yaw = (now.yaw + corrected_.yaw) / 2;
-  const double slipped = slipped_speed(excess(corrected_, now), input) * dt;
+  const Excess since = excess(corrected_, now);
+  const double slipped = slipped_speed(since, input) * dt;
   corrected_ = now;
   const Excess latest = excess(before, now);
   excess_speed_ = slipped_speed(latest, input);
@@ -55,7 +56,19 @@ WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, cons
   speed_deviation_ = std::max(path_speed_deviation, changed / 2);
   const double earlier = path_deviation_;
   path_deviation_ += path_speed_deviation * dt;
-  return {rotated({-slipped, 0}, yaw), square(path_deviation_) - square(earlier)};
+  return {.shift = rotated({-slipped, 0}, yaw),
+          .variance = square(path_deviation_) - square(earlier),
+          .contradiction = contradict(since.turn / input.wheel_base * dt, latest, deviation, input)};
+}
+
+double WheelSlide::contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept {
+  turned_apart_ += apart;
+  const double earlier = contradiction_;
+  const double speed = std::abs(input.wheel_speed() - excess_speed_);
+  const double sideways = std::abs(excess.across) + Tuning::kSignificant * std::hypot(deviation, input.path_slope_deviation);
+  contradiction_ = turned_apart_;
+  if (std::abs(turned_apart_) * speed > sideways) contradiction_ = std::copysign(sideways / speed, turned_apart_);
+  return contradiction_ - earlier;
 }
 
 /// Where one side rolls, it gives the speed without the accelerometer.

@@ -15,6 +15,10 @@
 /// The variance that a slide adds is that of the speed which the path takes, integrated as one error: σ_u within its
 /// bounds, and kChoiceDeviation times what wheels and accelerometer are apart, for either of them may be right.
 ///
+/// In a slide wheels and gyro turn apart by Φ = ∫ W dt / B. If the wheels are right and the gyro is wrong, the path
+/// by the gyro bends against the acceleration, and E moves across by u Φ. So the gyro is wrong by Φ at most, and by
+/// what E moves across, with kSignificant deviations of it, over u.
+///
 /// The slide ends when nothing has slipped for kRolls.
 
 #include <algorithm>
@@ -35,6 +39,7 @@ class WheelSlide {
     double turn_slope_deviation = 0;     ///< m/s, of W, likewise
     std::array<double, 2> side_speed{};  ///< m/s, of the treads, left and right
 
+    double wheel_base = 0;               ///< m
     bool sideways = false;  ///< slip across is proven now
 
     double wheel_speed() const noexcept { return (side_speed[0] + side_speed[1]) / 2; }
@@ -43,6 +48,7 @@ class WheelSlide {
   struct Correction {
     Planar shift{};       ///< m, odom axes
     double variance = 0;  ///< m²
+    double contradiction = 0;  ///< rad, by how much more the gyro may be wrong than before
   };
 
   /// Slip was proven that began `span` s ago at most.
@@ -72,6 +78,7 @@ class WheelSlide {
 
   Excess excess(const Point& from, const Point& to) const noexcept;
   double slipped_speed(const Excess& excess, const Input& input) const noexcept;      ///< m/s, wheels minus ground
+  double contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept;  ///< rad
   double line_deviation(double time, const AccelerationNoise& noise) const noexcept;  ///< m/s: σ_u
   void judge(double time, const Excess& excess, double deviation, const Input& input) noexcept;
 
@@ -87,6 +94,8 @@ class WheelSlide {
   bool sideways_ = false;
   std::uint64_t reasons_ = 0;
   double excess_speed_ = 0, speed_deviation_ = 0;
+  double turned_apart_ = 0;     ///< rad: Φ
+  double contradiction_ = 0;    ///< rad, of the gyro
   double path_deviation_ = 0;  ///< m, that this slide has added
 };
 
