@@ -162,7 +162,7 @@ void Estimator::compare_turns(double dt) noexcept {
   if (!imu_.gyro() || gyro_turn_.silent()) return;
   if (comparison_.open) {
     const auto [nis, used, apart, usual] = core_.end_block(comparison_.left, comparison_.right, rate_.rate().z(),
-                                                    comparison_.time, wheels_.stamp_variance());
+                                                           comparison_.time, wheels_.stamp_variance());
     for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
       note(sensor, nis, comparison_.time);
       if (!used) ++rejected_[sensor];

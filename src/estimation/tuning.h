@@ -87,7 +87,7 @@ struct Tuning {
   static constexpr double kLeastSlip = 0.02;       ///< m/s, and rad/s at rest: slower slip counts as none
   static constexpr double kSlowestComparison = 0.01;  ///< m/s: of slower wheels nothing is learned
   static constexpr double kUnknownBias = 2e-3;        ///< rad/s, 7° in a minute: a heading that is called degraded
-  static constexpr double kUnknownHeading = 0.02;      ///< rad, 1°, that wheels and gyro are apart: likewise
+  static constexpr double kUnknownHeading = 0.02;     ///< rad, 1°, that wheels and gyro are apart: likewise
 };
 
 }  // namespace robot_control

@@ -33,8 +33,8 @@ class ImuSamples {
   /// and the sample alone is.
   const Eigen::Vector3d& gyro_rate() const noexcept { return gyro_.catches_up ? gyro_.last : *gyro_.mean; }
   double gyro_unchanged() const noexcept { return gyro_unchanged_; }  ///< s, in which it repeated one sample
-  double gyro_gap() const noexcept { return gyro_.gap; }  ///< s, between two samples
-  bool refused() const noexcept { return refused_; }      ///< the last step brought a sample that is none
+  double gyro_gap() const noexcept { return gyro_.gap; }              ///< s, between two samples
+  bool refused() const noexcept { return refused_; }                  ///< the last step brought a sample that is none
 
  private:
   struct Channel {

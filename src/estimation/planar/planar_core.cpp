@@ -147,7 +147,10 @@ PlanarCore::Innovation PlanarCore::end_block(double left, double right, double r
   }
   noise_.learn(normalised, parts, s);
   walk(mean, rolled, dt);
-  return {.nis = square(normalised), .used = used, .apart = innovation / b, .usual = Tuning::kSignificant * std::sqrt(s) / b};
+  return {.nis = square(normalised),
+          .used = used,
+          .apart = innovation / b,
+          .usual = Tuning::kSignificant * std::sqrt(s) / b};
 }
 
 void PlanarCore::contradict(double angle, double distance) noexcept {

@@ -153,8 +153,8 @@ class PlanarCore {
   WheelNoise noise_;
   double apart_ = 0;          ///< rad, by contradictions since the last rest
   double largest_apart_ = 0;  ///< rad, since then
-  double anchor_rate_ = 0;  ///< rad/s, at the beginning of the block
-  double gyro_noise_;       ///< rad/s/√Hz, learned
+  double anchor_rate_ = 0;    ///< rad/s, at the beginning of the block
+  double gyro_noise_;         ///< rad/s/√Hz, learned
   bool bias_known_ = true;
 };
 

@@ -65,7 +65,8 @@ double WheelSlide::contradict(double apart, const Excess& excess, double deviati
   turned_apart_ += apart;
   const double earlier = contradiction_;
   const double speed = std::abs(input.wheel_speed() - excess_speed_);
-  const double sideways = std::abs(excess.across) + Tuning::kSignificant * std::hypot(deviation, input.path_slope_deviation);
+  const double sideways =
+      std::abs(excess.across) + Tuning::kSignificant * std::hypot(deviation, input.path_slope_deviation);
   contradiction_ = turned_apart_;
   if (std::abs(turned_apart_) * speed > sideways) contradiction_ = std::copysign(sideways / speed, turned_apart_);
   return contradiction_ - earlier;

@@ -39,15 +39,15 @@ class WheelSlide {
     double turn_slope_deviation = 0;     ///< m/s, of W, likewise
     std::array<double, 2> side_speed{};  ///< m/s, of the treads, left and right
 
-    double wheel_base = 0;               ///< m
+    double wheel_base = 0;  ///< m
     bool sideways = false;  ///< slip across is proven now
 
     double wheel_speed() const noexcept { return (side_speed[0] + side_speed[1]) / 2; }
   };
   /// What is to be added to the path.
   struct Correction {
-    Planar shift{};       ///< m, odom axes
-    double variance = 0;  ///< m²
+    Planar shift{};            ///< m, odom axes
+    double variance = 0;       ///< m²
     double contradiction = 0;  ///< rad, by how much more the gyro may be wrong than before
   };
 
@@ -77,9 +77,9 @@ class WheelSlide {
   };
 
   Excess excess(const Point& from, const Point& to) const noexcept;
-  double slipped_speed(const Excess& excess, const Input& input) const noexcept;      ///< m/s, wheels minus ground
+  double slipped_speed(const Excess& excess, const Input& input) const noexcept;  ///< m/s, wheels minus ground
   double contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept;  ///< rad
-  double line_deviation(double time, const AccelerationNoise& noise) const noexcept;  ///< m/s: σ_u
+  double line_deviation(double time, const AccelerationNoise& noise) const noexcept;                     ///< m/s: σ_u
   void judge(double time, const Excess& excess, double deviation, const Input& input) noexcept;
 
   bool active_ = false;
@@ -94,8 +94,8 @@ class WheelSlide {
   bool sideways_ = false;
   std::uint64_t reasons_ = 0;
   double excess_speed_ = 0, speed_deviation_ = 0;
-  double turned_apart_ = 0;     ///< rad: Φ
-  double contradiction_ = 0;    ///< rad, of the gyro
+  double turned_apart_ = 0;    ///< rad: Φ
+  double contradiction_ = 0;   ///< rad, of the gyro
   double path_deviation_ = 0;  ///< m, that this slide has added
 };
 
