@@ -79,7 +79,7 @@ class ClosedLoop:
         self._paused = pause
 
     def inject_fault(self, component: str, kind: str) -> None:
-        """As `mujoco_plant/inject_fault`, from the next cycle on.
+        """The machine, as by `mujoco_plant/inject_fault`, or the output of a node fails from the next cycle on.
 
         Args:
             component: left_encoder right_encoder gyro accelerometer left_motor right_motor controller estimator

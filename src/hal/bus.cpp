@@ -4,15 +4,15 @@
 #include <cctype>
 #include <cstdio>
 
-#include "signals/fnv.h"
+#include "signals/checksum.h"
 
 namespace robot_control {
 namespace {
 
 std::uint64_t hash_of(const std::string& text) noexcept {
-  Fnv1a hash;
-  hash.add(text);
-  return hash.value();
+  Checksum sum;
+  sum.mix(text);
+  return sum.sum();
 }
 
 std::string hex(std::uint64_t value) {

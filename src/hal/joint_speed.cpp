@@ -9,11 +9,6 @@ JointSpeed::JointSpeed(double period) noexcept
     : period_(period),
       base_(static_cast<std::uint64_t>(std::clamp(std::ceil(kSpeedBase / period - 1e-9), 2.0, kChanges - 2.0))) {}
 
-void JointSpeed::reset() noexcept {
-  count_ = first_ = 0;
-  speed_ = 0;
-}
-
 void JointSpeed::step(double position, std::uint64_t cycle) noexcept {
   if (count_ == 0 || position != change(count_ - 1).position) {
     changes_[count_ % kChanges] = {cycle, position};

@@ -25,9 +25,6 @@ class JointSpeed {
   /// `period` > 0, s. Above 2.5 kHz the base is shorter: kChanges − 2 cycles.
   explicit JointSpeed(double period) noexcept;
 
-  /// Forgets the past; at rest.
-  void reset() noexcept;
-
   /// `position` rad or m, finite; `cycle` later than the last one.
   void step(double position, std::uint64_t cycle) noexcept;
 

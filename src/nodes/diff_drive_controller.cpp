@@ -6,5 +6,5 @@ int main(int argc, char** argv) {
   return run_node(argc, argv,
                   {.name = "diff_drive_controller",
                    .purpose = "Turns velocity commands into torques of the wheels, within the limits of the robot.",
-                   .make = [](const Setup& setup) { return make_diff_drive_controller(setup); }});
+                   .make = make_diff_drive_controller});
 }

@@ -7,5 +7,5 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "safety_monitor",
        .purpose = "Permits motion or stops it, beside the chain of the other nodes; holds stops until they are reset.",
-       .make = [](const Setup& setup) { return make_safety_monitor(setup); }});
+       .make = make_safety_monitor});
 }

@@ -6,5 +6,5 @@ int main(int argc, char** argv) {
   return run_node(argc, argv,
                   {.name = "state_estimator",
                    .purpose = "Estimates pose and speed of the robot from its wheels and its inertial sensors.",
-                   .make = [](const Setup& setup) { return make_state_estimator(setup); }});
+                   .make = make_state_estimator});
 }

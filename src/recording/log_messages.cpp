@@ -6,8 +6,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "recording/checksum.h"
 #include "recording/fields/trace_fields.h"
+#include "recording/message_checksum.h"
 #include "recording/packed_chunk.h"
 #include "recording/trace_message.h"
 

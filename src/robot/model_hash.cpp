@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "signals/fnv.h"
+#include "signals/checksum.h"
 
 namespace robot_control {
 namespace {
@@ -10,30 +10,25 @@ namespace {
 class ModelHash {
  public:
   void add(const std::string& text) {
-    hash_.add(text);
-    add_byte(0);
+    sum_.mix(text.size());
+    sum_.mix(text);
   }
   void add(const std::vector<std::string>& texts) {
+    sum_.mix(texts.size());
     for (const std::string& text : texts) add(text);
-    add_byte(1);
-  }
-  void add(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(bits >> shift));
   }
   void add(const std::optional<double>& value) {
-    add_byte(value.has_value());
-    add(value.value_or(0.0));
+    sum_.mix(value.has_value() ? 1 : 0);
+    sum_.mix(std::bit_cast<std::uint64_t>(value.value_or(0.0)));
   }
   void add(const std::optional<Vector3>& vector) {
-    add(std::optional<double>(vector ? 1.0 : 0.0));
-    for (const double component : vector.value_or(Vector3{})) add(component);
+    sum_.mix(vector.has_value() ? 1 : 0);
+    for (const double component : vector.value_or(Vector3{})) sum_.mix(std::bit_cast<std::uint64_t>(component));
   }
-  std::uint64_t value() const { return hash_.value(); }
+  std::uint64_t value() const { return sum_.sum(); }
 
  private:
-  void add_byte(unsigned char byte) { hash_.add(byte); }
-  Fnv1a hash_;
+  Checksum sum_;
 };
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 namespace robot_control {
 
-/// FNV-1a, 64 bit: http://www.isthe.com/chongo/tech/comp/fnv
 std::uint64_t model_hash(const std::string& urdf, const RobotParameters& parameters);
 
 }  // namespace robot_control

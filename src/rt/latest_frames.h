@@ -32,7 +32,7 @@ inline constexpr std::size_t kFrameSlots = 8;
 inline constexpr int kReadTries = 4;
 
 inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
-inline constexpr std::uint64_t kLayoutVersion = 3;
+inline constexpr std::uint64_t kLayoutVersion = 4;
 
 /// First bytes of every shared object: of a LatestFrames as of a Ring. `magic` to `retired` keep their places
 /// in every layout version, so that a process can judge and retire an object that it cannot read.
@@ -43,7 +43,6 @@ struct ChannelHead {
   std::uint64_t slots;                              ///< number of frames that fit
   std::atomic<std::uint64_t> retired;               ///< 1: the name now belongs to another object, map again
   std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
-  std::atomic<std::uint64_t> decorated;             ///< 1: the writer of this channel has an OutputDecorator
   std::atomic<std::uint64_t> robot_hash;            ///< RobotModel::hash of the writer's robot; sensors channel only
   std::array<std::atomic<char>, 256> robot_source;  ///< where that robot was read, zero-terminated
 };
@@ -83,6 +82,13 @@ class FrameWriter {
   void publish_sealed(const Frame& frame) noexcept {
     store(frame);
     wake();
+  }
+
+  /// Publishes that cycle k has passed here without a frame: a token with the run, cycle and stamp of `head`.
+  void publish_token(const FrameHead& head) noexcept {
+    Frame token{};
+    token.head = {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns, .kind = FrameKind::kToken};
+    publish(token);
   }
 
   /// Stores without sealing or waking: for tests that plant a broken frame.

@@ -13,7 +13,7 @@
 #include "files/input_file.h"
 #include "files/output_file.h"
 #include "rt/clock.h"
-#include "signals/fnv.h"
+#include "signals/checksum.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -99,9 +99,9 @@ std::string resolved(const std::string& path) {
 
 std::string latch_text(const LatchRecord& record) {
   const std::string text = body(record);
-  Fnv1a hash;
-  hash.add(text);
-  return text + "checksum: " + hexadecimal(hash.value()) + "\n";
+  Checksum sum;
+  sum.mix(text);
+  return text + "checksum: " + hexadecimal(sum.sum()) + "\n";
 }
 
 LatchRecord parse_latch(const std::string& text) {

@@ -4,7 +4,7 @@
 ///   causes: [e_stop_service stall]
 ///   first_cause: e_stop_service
 ///   since: 2026-11-21T08:55:16Z
-///   checksum: 91d2f3a8c0b7e645        of the three lines above, FNV-1a
+///   checksum: 91d2f3a8c0b7e645        of the three lines above (signals/checksum.h)
 ///
 /// An absent file is no latch. Everything else that is not exactly such a record counts as a latch with the cause
 /// kCauseLatchUnreadable: another format, an unknown cause, a wrong checksum, a file larger than kLargest, no regular

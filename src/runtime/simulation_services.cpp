@@ -24,14 +24,6 @@ std::string before(std::uint64_t cycle) {
   return "before cycle " + std::to_string(cycle);
 }
 
-struct FaultyNode {
-  FaultComponent component;
-  const char* node;
-};
-constexpr FaultyNode kFaultyNodes[]{{FaultComponent::kController, "diff_drive_controller"},
-                                    {FaultComponent::kEstimator, "state_estimator"},
-                                    {FaultComponent::kMonitor, "safety_monitor"}};
-
 ServiceAnswer ended() {
   return {false, "the run has ended"};
 }
@@ -39,13 +31,8 @@ ServiceAnswer ended() {
 }  // namespace
 
 SimulationServices::SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
-                                       std::function<std::vector<std::string>()> missing,
-                                       std::function<bool(FaultComponent)> takes_faults)
-    : hold_(hold),
-      driver_(driver),
-      cycle_(cycle),
-      missing_(std::move(missing)),
-      takes_faults_(std::move(takes_faults)) {}
+                                       std::function<std::vector<std::string>()> missing)
+    : hold_(hold), driver_(driver), cycle_(cycle), missing_(std::move(missing)) {}
 
 /// With `request_mutex_` held.
 std::uint64_t SimulationServices::ask() {
@@ -151,17 +138,14 @@ ServiceAnswer SimulationServices::reset() {
 
 ServiceAnswer SimulationServices::inject_fault(const std::string& component, const std::string& kind) {
   const std::lock_guard lock(request_mutex_);
-  InjectedFaults faults = request_.faults;
-  if (std::string problem = set_fault(faults, component, kind); !problem.empty()) return {false, problem};
-  for (const FaultyNode& node : kFaultyNodes) {
-    const FaultKind kind_of_node = fault_of(faults, node.component);
-    if (kind_of_node == fault_of(request_.faults, node.component) || kind_of_node == FaultKind::kOk) continue;
-    if (takes_faults_(node.component)) continue;
-    const std::string name = node.node;
-    return {false, component + ": not possible in this " + name +
-                       "; launch sim.launch with faults:=true, which starts " + name + "_with_faults"};
+  const auto found = fault_component(component);
+  if (found && is_node(*found)) {
+    return {false, component +
+                       ": a node that runs takes no simulated fault; stop or kill its process (kill -STOP, "
+                       "kill -KILL), or call inject_fault of ClosedLoop in Python"};
   }
-  request_.faults = faults;
+  std::string problem = set_fault(request_.faults, component, kind);
+  if (!problem.empty()) return {false, std::move(problem)};
   ask();
   return {true, "injected: " + names_of(request_.faults)};
 }

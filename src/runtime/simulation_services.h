@@ -23,11 +23,9 @@ struct ServiceAnswer {
 
 class SimulationServices {
  public:
-  /// Called by any thread: `missing`, the nodes that the loop waits for; `takes_faults`, whether a node's program is
-  /// one into which faults can be injected.
+  /// `missing` is called by any thread and returns the nodes that the loop waits for.
   SimulationServices(LoopHold& hold, Driver& driver, DriverCycle& cycle,
-                     std::function<std::vector<std::string>()> missing,
-                     std::function<bool(FaultComponent)> takes_faults);
+                     std::function<std::vector<std::string>()> missing);
 
   /// Paused, the machine does not move and stamps do not advance; the others see the last frame again, as paused.
   /// Time that passed meanwhile is neither caught up nor slip.
@@ -42,7 +40,7 @@ class SimulationServices {
   ServiceAnswer reset();
 
   /// From the next cycle on; words of names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a
-  /// node is refused unless the program that runs is the one for it.
+  /// node is refused: the processes contain no simulated faults, and ClosedLoop injects them.
   ServiceAnswer inject_fault(const std::string& component, const std::string& kind);
 
  private:
@@ -61,7 +59,6 @@ class SimulationServices {
   Driver& driver_;
   DriverCycle& cycle_;
   std::function<std::vector<std::string>()> missing_;
-  std::function<bool(FaultComponent)> takes_faults_;
   std::mutex request_mutex_;  ///< guards `request_`
   std::mutex exclusive_;      ///< held by step and reset
   LoopHold::Asked request_;

@@ -1,7 +1,6 @@
 #include "runtime/start_check.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "control/control_problems.h"
 #include "control/smooth_speed.h"
+#include "signals/checksum.h"
 
 namespace robot_control {
 
@@ -38,11 +38,13 @@ std::string note_on_slow_driving(const Parameters& parameters, const RobotModel&
 }
 
 RobotModel identified(const RobotModel& robot, const LoopParameters& loop) {
-  constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio, odd
-  const auto mix = [](std::uint64_t hash, std::uint64_t word) { return std::rotl((hash ^ word) * kOdd, 29); };
   const bool lockstep = loop.clock == ClockMode::kLockstep;
+  Checksum sum;
+  sum.mix(robot.hash);
+  sum.mix(static_cast<std::uint64_t>(loop.period_ns()));
+  sum.mix(lockstep ? 1 : 2);
   RobotModel result = robot;
-  result.hash = mix(mix(robot.hash, static_cast<std::uint64_t>(loop.period_ns())), lockstep ? 1 : 2);
+  result.hash = sum.sum();
   result.source += " at " + std::to_string(std::lround(loop.rate)) + " Hz, clock " + (lockstep ? "lockstep" : "wall");
   return result;
 }

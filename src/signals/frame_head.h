@@ -16,7 +16,7 @@ namespace robot_control {
 /// What stands behind a head.
 enum class FrameKind : std::uint64_t {
   kFrame = 1,  ///< A frame with content.
-  kToken = 2,  ///< Cycle k was processed without a frame, because an injected fault suppresses it. Content is zero.
+  kToken = 2,  ///< Cycle k has passed without a frame: a state was corrupt, or ClosedLoop injects a fault. No content.
 };
 
 /// What a look-up of a frame found.

@@ -36,6 +36,12 @@ enum class FaultKind : std::uint64_t {
 };
 inline constexpr std::size_t kFaultKinds = 8;
 
+/// Is this component a node? The faults of nodes exist in ClosedLoop alone, those of all others in the simulated plant.
+constexpr bool is_node(FaultComponent component) noexcept {
+  return component == FaultComponent::kController || component == FaultComponent::kEstimator ||
+         component == FaultComponent::kMonitor;
+}
+
 using InjectedFaults = std::array<FaultKind, kFaultComponents>;  ///< all zero: everything is healthy
 
 inline FaultKind fault_of(const InjectedFaults& faults, FaultComponent component) noexcept {

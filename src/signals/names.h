@@ -130,8 +130,6 @@ inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
      "look at the IMU's mounting; a robot that shakes: slip_detection false"},
     {kDegradedHeading, "heading", "no rest has shown the gyro's bias yet, or wheels and gyro contradict each other",
      "let the robot rest for a second"},
-    {kDegradedSpeed, "speed", "of an earlier version: the accelerometer contradicted the wheels' speed", ""},
-    {kDegradedTilt, "tilt", "of an earlier version: the estimated tilt contradicted gravity", ""},
 });
 
 inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
@@ -141,7 +139,6 @@ inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
     {kSlipStalled, "stalled", "a wheel turns slower than the ground passes", "brake less"},
     {kSlipTurn, "turn", "the wheels' yaw rate contradicts the gyro", ""},
     {kSlipSideways, "sideways", "the robot slides sideways", "turn less fast"},
-    {kSlipLifted, "lifted", "of an earlier version: the robot moved up or down", ""},
 });
 
 /// By SensorIndex.

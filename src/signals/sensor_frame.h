@@ -69,7 +69,7 @@ struct SensorFrame {
   double battery_current = 0;    ///< A, positive when discharging
   GateReport gate;               ///< of tick k-1
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
-  InjectedFaults injected{};     ///< of a simulator, for the log and the programs NODE_with_faults
+  InjectedFaults injected{};     ///< of a simulator, for the log and ClosedLoop
   std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
   std::uint64_t resumes = 0;     ///< Times a simulated plant went on after a pause, on the wall clock.
   std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or reset. Outlives a reset.

@@ -42,8 +42,6 @@ enum StateFlag : std::uint64_t {
 enum DegradedReason : std::uint64_t {
   kDegradedPosition = 1u << 0,  ///< Wheels slip (estimation/slip/wheel_slide.h).
   kDegradedHeading = 1u << 1,   ///< No rest has shown the gyro's bias yet, or wheels contradict the gyro.
-  kDegradedSpeed = 1u << 2,     ///< No longer set; in earlier logs.
-  kDegradedTilt = 1u << 3,      ///< No longer set; in earlier logs.
 };
 
 /// Bits of StateFrame::slip: which contact is not trusted, and what contradicts it.
@@ -54,7 +52,6 @@ enum SlipReason : std::uint64_t {
   kSlipStalled = 1u << 3,   ///< A wheel turns slower than the ground passes, or stands.
   kSlipTurn = 1u << 4,      ///< The wheels' yaw rate contradicts the gyro.
   kSlipSideways = 1u << 5,  ///< The robot slides sideways.
-  kSlipLifted = 1u << 6,    ///< No longer set; in earlier logs: the robot moves up or down.
 };
 
 /// The estimated calibration of wheels and gyro relative to RobotModel, with standard deviations.

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "drivers/mujoco_plant.h"
-#include "faults/faulty_frame_output.h"
+#include "faults/node_faults.h"
 #include "runtime/cycles/controller_cycle.h"
 #include "runtime/cycles/driver_cycle.h"
 #include "runtime/cycles/estimator_cycle.h"
@@ -52,14 +52,12 @@ struct ClosedLoop::Parts {
         plant(robot, given.plant, given.loop.period()),
         driver(plant, robot, {sensors.writer, FrameWriter<TruthFrame>(), &command.reader, &permit.reader},
                given.loop.period_ns(), nullptr, gate_parameters(given)),
-        estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr,
-                  faulty_estimator_output()),
+        estimator(given.estimator, robot, given.loop.period(), sensors.reader, state.writer, nullptr),
         controller(given.controller, robot, given.loop.period(),
-                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr,
-                   faulty_controller_output()),
+                   {&sensors.reader, &state.reader, &permit.reader, command.writer}, script_of(given), nullptr),
         monitor(safety_limits(given, robot), robot, given.loop.period(),
                 {&sensors.reader, &state.reader, &command.reader, permit.writer},
-                load_script(given.loop.command_script), nullptr, faulty_monitor_output()),
+                load_script(given.loop.command_script), nullptr),
         retuning(given, robot, controller.tunings()) {
     plant.start();
     driver.set_driver_instance(kDriverInstance);
@@ -82,6 +80,9 @@ struct ClosedLoop::Parts {
   EstimatorCycle estimator;
   ControllerCycle controller;
   MonitorCycle monitor;
+  EstimatorFaults estimator_faults{FaultComponent::kEstimator, state.writer};
+  ControllerFaults controller_faults{FaultComponent::kController, command.writer};
+  MonitorFaults monitor_faults{FaultComponent::kMonitor, permit.writer};
   Retuning retuning;
   VelocityCommand request;
   OperatorInput operator_input;
@@ -114,17 +115,16 @@ void ClosedLoop::step() noexcept {
   Parts& parts = *parts_;
   if (cycle() > 0) parts.hand_over();  // what arrives before a run begins is dropped by every node
   parts.driver.step();
-  const bool estimated = parts.estimator.step();
-  const bool controlled = parts.controller.step();
-  const bool monitored = parts.monitor.step();
-  const std::uint64_t cycle = parts.driver.trace().sensors.head.cycle;
+  const SensorFrame& sensors = parts.driver.trace().sensors;
+  JoinedRow::Laws laws;
+  if (parts.estimator.step()) laws.estimator = parts.estimator_faults.replace(sensors, parts.estimator.trace());
+  if (parts.controller.step()) laws.controller = parts.controller_faults.replace(sensors, parts.controller.trace());
+  if (parts.monitor.step()) laws.monitor = parts.monitor_faults.replace(sensors, parts.monitor.trace());
   parts.row = {.run = static_cast<std::int64_t>(parts.driver.run()) - 1,
-               .cycle = cycle,
-               .time = row_time(cycle, parts.parameters.loop.period()),
+               .cycle = sensors.head.cycle,
+               .time = row_time(sensors.head.cycle, parts.parameters.loop.period()),
                .driver = &parts.driver.trace()};
-  parts.row.set({.estimator = estimated ? &parts.estimator.trace() : nullptr,
-                 .controller = controlled ? &parts.controller.trace() : nullptr,
-                 .monitor = monitored ? &parts.monitor.trace() : nullptr});
+  parts.row.set(laws);
   write_down();
 }
 

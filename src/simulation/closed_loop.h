@@ -50,8 +50,8 @@ class ClosedLoop {
   /// beyond `reset`. Throws ParameterError with every reason; then nothing has changed.
   void set_parameters(const std::string& request);
 
-  /// As `~inject_fault`: the machine or a node fails so from the next step on; words of names.h. Throws
-  /// std::invalid_argument with the list where it does not know one.
+  /// The machine, as by `~inject_fault`, or a node (faults/node_faults.h) fails so from the next step on; words of
+  /// names.h. Throws std::invalid_argument with the list where it does not know one.
   void inject_fault(const std::string& component, const std::string& kind);
 
   /// Cycle and time [s] of the sample that the next step takes.

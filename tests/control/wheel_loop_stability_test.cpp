@@ -86,10 +86,11 @@ TEST(WheelLoopSpectralRadius, IsAboveOneForALiftedWheelWhoseTrackingLoopIsNotTol
   EXPECT_LT(radius({0.87, 0, 0, untold}, kLifted), 1);
 }
 
-TEST(WheelLoopSpectralRadius, IsAboveOneOnceTheStabilityNumberIs) {
+// A rule of thumb: with kd = 0 and a tracking loop that is slow against the period, any load is unstable above
+// kp·period/model_inertia = 1.
+TEST(WheelLoopSpectralRadius, IsAboveOneOnceTheGainTimesThePeriodExceedsTheInertia) {
   for (const double period : {5e-4, 1e-3, 2e-3}) {
     const WheelLoopGains gains{1.02 * 0.01 / period, 0, 0, 0.01};
-    EXPECT_NEAR(stability_number(gains, period), 1.02, 1e-12);
     for (const double inertia : {kLifted, kTurning, kStraight, kDoubled}) {
       EXPECT_GT(radius(gains, inertia, period), 1) << period << " " << inertia;
     }

@@ -127,15 +127,6 @@ TEST(JointSpeed, RemembersEnoughAtEveryRate) {
   }
 }
 
-TEST(JointSpeed, ForgetsAtReset) {
-  JointSpeed joint(kPeriod);
-  for (std::uint64_t k = 0; k < 100; ++k) joint.step(0.03 * static_cast<double>(k), k);
-  joint.reset();
-  EXPECT_EQ(joint.value(), 0);
-  joint.step(-77, 0);
-  EXPECT_EQ(joint.value(), 0);
-}
-
 TEST(JointSpeed, StepsWithoutAllocating) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   JointSpeed joint(kPeriod);

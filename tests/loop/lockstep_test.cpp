@@ -50,11 +50,11 @@ class Lockstep : public ::testing::Test {
   ~Lockstep() override { std::filesystem::remove_all(folder_); }
 
   /// run.csv of four processes and a telemetry.
-  std::string four_processes(const std::string& name, ClockMode clock, bool with_faults = false) {
+  std::string four_processes(const std::string& name, ClockMode clock) {
     Parameters parameters = parameters_;
     parameters.loop.clock = clock;
     parameters.telemetry.directory = (folder_ / name).string();
-    FourNodes(parameters, robot_, true, with_faults).run(kLockstepPatience);
+    FourNodes(parameters, robot_, true).run(kLockstepPatience);
     return content(folder_ / name / "run.csv");
   }
 
@@ -83,12 +83,6 @@ TEST_F(Lockstep, FourProcessesGiveTheBytesOfTheClosedLoop) {
   const std::string one = one_process();
   EXPECT_EQ(split(four, '\n').size(), kCycles + 1) << "no row is lost";
   EXPECT_TRUE(four == one);
-}
-
-TEST_F(Lockstep, NodesWithFaultsGiveTheSameBytesWhileNoneIsInjected) {
-  const std::string robot = four_processes("robot", ClockMode::kLockstep);
-  EXPECT_EQ(split(robot, '\n').size(), kCycles + 1) << "no row is lost";
-  EXPECT_TRUE(robot == four_processes("with_faults", ClockMode::kLockstep, true));
 }
 
 TEST_F(Lockstep, GivesTheSameBytesUnderLoad) {

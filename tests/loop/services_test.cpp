@@ -235,6 +235,12 @@ TEST_F(Services, SayWhyTheyDoNot) {
     const ServiceAnswer kind = services.inject_fault("gyro", "broken");
     EXPECT_FALSE(kind.success);
     EXPECT_NE(kind.message.find("intermittent"), std::string::npos) << kind.message;
+    for (const std::string node : {"controller", "estimator", "monitor"}) {
+      const ServiceAnswer fault = services.inject_fault(node, "off");
+      EXPECT_FALSE(fault.success) << node;
+      EXPECT_NE(fault.message.find("kill -STOP"), std::string::npos) << fault.message;
+      EXPECT_NE(fault.message.find("ClosedLoop"), std::string::npos) << fault.message;
+    }
   });
 }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "files/input_file.h"
-#include "recording/checksum.h"
+#include "recording/message_checksum.h"
 #include "replay/recorded.h"
 
 namespace robot_control {

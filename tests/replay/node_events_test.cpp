@@ -22,13 +22,13 @@ class RandomNodes {
     if (chance(0.02)) act();
     loop_.driver.step();
     constexpr double kLate = 0.03;
-    const bool estimated = !chance(kLate) && loop_.estimator->step();
-    const bool controlled = !chance(kLate) && loop_.controller->step();
-    const bool monitored = !chance(kLate) && loop_.monitor->step();
-    add(loop_.driver);
-    if (estimated) add(*loop_.estimator);
-    if (controlled) add(*loop_.controller);
-    if (monitored) add(*loop_.monitor);
+    const EstimatorTrace* state = chance(kLate) ? nullptr : loop_.step_estimator();
+    const ControllerTrace* command = chance(kLate) ? nullptr : loop_.step_controller();
+    const MonitorTrace* permit = chance(kLate) ? nullptr : loop_.step_monitor();
+    add(loop_.driver.snapshot(), loop_.driver.trace());
+    if (state != nullptr) add(loop_.estimator->snapshot(), *state);
+    if (command != nullptr) add(loop_.controller->snapshot(), *command);
+    if (permit != nullptr) add(loop_.monitor->snapshot(), *permit);
   }
 
   ReplayReport replay() {
@@ -64,10 +64,15 @@ class RandomNodes {
     return found;
   }
 
-  template <class Cycle>
-  void add(const Cycle& cycle) {
-    recording.add(cycle.snapshot());
-    join_.add(cycle.trace());
+  template <class Row>
+  void add(const LawSnapshot* snapshot, const Row& row) {
+    recording.add(snapshot);
+    join_.add(row);
+  }
+
+  void step_monitor_again() {
+    const MonitorTrace* permit = loop_.step_monitor();
+    if (permit != nullptr) add(loop_.monitor->snapshot(), *permit);
   }
 
   bool chance(double probability) { return std::uniform_real_distribution<>()(random_) < probability; }
@@ -129,7 +134,7 @@ class RandomNodes {
     for (int i = 0; i < 3; ++i) {
       loop_.driver.publish_paused();
       if (chance(0.5)) ask();
-      if (loop_.monitor->step()) add(*loop_.monitor);
+      step_monitor_again();
     }
   }
 
@@ -140,13 +145,13 @@ class RandomNodes {
     broken.head.checksum = 0;
     loop_.sensors.writer.store(broken);
     for (int i = 0; i < 3; ++i) {
-      if (loop_.monitor->step()) add(*loop_.monitor);
+      step_monitor_again();
     }
   }
 
   std::mt19937 random_;
   std::vector<LoggedMessage> messages_;
-  Loop loop_{Nodes::kWithFaults};
+  Loop loop_;
   Join join_{kPeriod, [this](const JoinedRow& row) {
                recording.rows.emplace_back(row);
                log(row, loop_.robot.joints.size(), messages_);

@@ -13,13 +13,34 @@
 #include "replay/recorded.h"
 #include "rt/futex.h"
 #include "rt/ring.h"
-#include "runtime/cycles/snapshot_source.h"
 #include "runtime/cycles/trace_sink.h"
 #include "support/anonymous_memory.h"
 #include "support/child_process.h"
 #include "telemetry/join.h"
 
 namespace robot_control {
+
+/// The snapshots of one law.
+class SnapshotSource {
+ public:
+  SnapshotSource(const std::string& bus, TraceRing ring)
+      : channel_(bus, kSnapshotChannels[static_cast<std::size_t>(ring)]) {}
+
+  void poll() {
+    if (channel_.poll()) reader_.emplace(channel_.memory(), 0);
+  }
+
+  /// The next one, sealed; false: there is none yet.
+  bool take(LawSnapshot& snapshot) {
+    if (!reader_ || !reader_->take(snapshot)) return false;
+    seal(snapshot);
+    return true;
+  }
+
+ private:
+  ForeignChannel<SnapshotRing> channel_;
+  std::optional<SnapshotReader> reader_;
+};
 
 /// One trace ring.
 template <class Row>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "faults/faulty_frame_output.h"
+#include "faults/node_faults.h"
 #include "hal/driver.h"
 #include "runtime/cycles/controller_cycle.h"
 #include "runtime/cycles/driver_cycle.h"
@@ -72,11 +72,8 @@ inline CommandScript script_with_zero() {
   return script;
 }
 
-/// The nodes of a robot, or those into whose outputs faults can be injected.
-enum class Nodes { kOfTheRobot, kWithFaults };
-
 struct Loop {
-  explicit Loop(Nodes nodes = Nodes::kOfTheRobot) : with_faults(nodes == Nodes::kWithFaults) {
+  Loop() {
     driver.set_driver_instance(99);
     driver.begin_run(1);
     restart_estimator();
@@ -86,28 +83,39 @@ struct Loop {
 
   /// What a killed and restarted node is: a new object on the channels that its predecessor left.
   void restart_estimator() {
-    estimator = std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer,
-                                                 nullptr, with_faults ? faulty_estimator_output() : nullptr);
+    estimator =
+        std::make_unique<EstimatorCycle>(EstimatorParameters{}, robot, kPeriod, sensors.reader, state.writer, nullptr);
   }
   void restart_controller() {
     controller = std::make_unique<ControllerCycle>(
         DriveControllerParameters{}, robot, kPeriod,
         ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, script_with_zero(),
-        nullptr, with_faults ? faulty_controller_output() : nullptr);
+        nullptr);
   }
   void restart_monitor() {
     monitor = std::make_unique<MonitorCycle>(
         SafetyParameters{}, robot, kPeriod,
         MonitorCycle::Channels{&sensors.reader, &state.reader, &command.reader, permit.writer}, CommandScript(),
-        nullptr, with_faults ? faulty_monitor_output() : nullptr);
+        nullptr);
+  }
+
+  /// One cycle of a node, and what an injected fault makes of its output, as in ClosedLoop; null: it has no row.
+  const EstimatorTrace* step_estimator() {
+    return estimator->step() ? estimator_faults.replace(driver.trace().sensors, estimator->trace()) : nullptr;
+  }
+  const ControllerTrace* step_controller() {
+    return controller->step() ? controller_faults.replace(driver.trace().sensors, controller->trace()) : nullptr;
+  }
+  const MonitorTrace* step_monitor() {
+    return monitor->step() ? monitor_faults.replace(driver.trace().sensors, monitor->trace()) : nullptr;
   }
 
   /// One cycle of all four.
   void step() {
     driver.step();
-    estimator->step();
-    controller->step();
-    monitor->step();
+    step_estimator();
+    step_controller();
+    step_monitor();
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
@@ -130,7 +138,6 @@ struct Loop {
   }
   const GateReport& gate() const { return driver.trace().gate; }
 
-  bool with_faults;
   RobotModel robot = two_wheels();
   StandingMachine machine;
   TestChannel<SensorFrame> sensors;
@@ -143,6 +150,9 @@ struct Loop {
   std::unique_ptr<EstimatorCycle> estimator;
   std::unique_ptr<ControllerCycle> controller;
   std::unique_ptr<MonitorCycle> monitor;
+  EstimatorFaults estimator_faults{FaultComponent::kEstimator, state.writer};
+  ControllerFaults controller_faults{FaultComponent::kController, command.writer};
+  MonitorFaults monitor_faults{FaultComponent::kMonitor, permit.writer};
 };
 
 }  // namespace robot_control

@@ -164,28 +164,20 @@ TEST_F(RunningLoop, IgnoresSensorsOfAnotherRobot) {
   EXPECT_FALSE(loop.monitor->step());
 }
 
-TEST_F(RunningLoop, PassesATokenOn) {
-  SensorFrame token{};
-  token.head = {.run = 1, .cycle = loop.driver.next_cycle(), .stamp_ns = 0, .kind = FrameKind::kToken};
-  loop.sensors.writer.publish(token);
-  StateFrame state;
+TEST_F(RunningLoop, AnswersATokenOfAStateWithATokenOfACommand) {
+  loop.driver.step();
+  const FrameHead head = loop.driver.trace().sensors.head;
+  loop.state.writer.publish_token(head);
   CommandFrame command;
-  Permit permit;
-  EXPECT_FALSE(loop.estimator->step());
   EXPECT_FALSE(loop.controller->step());
-  EXPECT_FALSE(loop.monitor->step());
-  EXPECT_EQ(loop.state.reader.at(1, token.head.cycle, state), Lookup::kToken);
-  EXPECT_EQ(loop.command.reader.at(1, token.head.cycle, command), Lookup::kToken);
-  EXPECT_EQ(loop.permit.reader.at(1, token.head.cycle, permit), Lookup::kToken);
+  EXPECT_EQ(loop.command.reader.at(head.run, head.cycle, command), Lookup::kToken);
 }
 
 TEST_F(RunningLoop, CountsATokenAsAMissingCommand) {
   loop.driver.step();
   loop.estimator->step();
   loop.monitor->step();
-  CommandFrame token{};
-  token.head = {.run = 1, .cycle = loop.driver.next_cycle() - 1, .stamp_ns = 0, .kind = FrameKind::kToken};
-  loop.command.writer.publish(token);
+  loop.command.writer.publish_token(loop.driver.trace().sensors.head);
   loop.driver.step();
   EXPECT_EQ(loop.gate().verdict, GateVerdict::kHeld);
 }

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "drivers/mujoco_plant.h"
-#include "faults/faulty_frame_output.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "runtime/processes/controller_process.h"
@@ -30,19 +29,13 @@ namespace robot_control {
 class FourNodes {
  public:
   /// Ends by itself after `parameters.plant.cycles`. `record`: telemetry writes into parameters.telemetry.directory.
-  /// `with_faults`: nodes into which faults can be injected.
-  FourNodes(const Parameters& parameters, const RobotModel& robot, bool record, bool with_faults = false)
+  FourNodes(const Parameters& parameters, const RobotModel& robot, bool record)
       : parameters_(parameters),
         robot_(robot),
         record_(record),
-        estimator_([this, with_faults] {
-          return consume<EstimatorProcess>(with_faults ? faulty_estimator_output() : nullptr);
-        }),
-        controller_([this, with_faults] {
-          return consume<ControllerProcess>(with_faults ? faulty_controller_output() : nullptr);
-        }),
-        monitor_(
-            [this, with_faults] { return consume<MonitorProcess>(with_faults ? faulty_monitor_output() : nullptr); }) {}
+        estimator_([this] { return consume<EstimatorProcess>(); }),
+        controller_([this] { return consume<ControllerProcess>(); }),
+        monitor_([this] { return consume<MonitorProcess>(); }) {}
 
   using Operator = std::function<void(DriverProcess&)>;
 
@@ -84,10 +77,10 @@ class FourNodes {
  private:
   static constexpr std::int64_t kPollNs = 10'000'000;
 
-  template <class Node, class Frame>
-  int consume(OutputDecoratorPtr<Frame> decorator) {
+  template <class Node>
+  int consume() {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    Node node(parameters_, robot_, bus_.name(), std::move(decorator));
+    Node node(parameters_, robot_, bus_.name());
     for (;;) {
       node.poll();
       sleep_ns(kPollNs);

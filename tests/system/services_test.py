@@ -11,12 +11,10 @@ from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault, Step
 from std_srvs.srv import SetBool, Trigger
-from system_support import LIMIT, MONITOR, PLANT, SEND_PERIOD, RobotTestCase, wait_for
+from system_support import LIMIT, PLANT, SEND_PERIOD, RobotTestCase, wait_for
 
 
 class ServicesTest(RobotTestCase):
-    with_faults = True
-
     @classmethod
     def setUpClass(cls) -> None:
         super().setUpClass()
@@ -139,11 +137,10 @@ class ServicesTest(RobotTestCase):
         self.assertEqual(self.cycle(), 2)
 
     def test_an_injected_fault_is_seen_and_heals(self) -> None:
-        self.assertTrue(self.inject("monitor", "off")[0])
+        self.assertTrue(self.inject("e_stop_button", "off")[0])
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=lambda: self.robot.send(0.5, 0.2))
-        wait_for("its name", lambda: "monitor off" in self.plant.get("injected", ""))
-        self.assertTrue(self.robot.nodes[MONITOR].running)
-        self.assertTrue(self.inject("monitor", "ok")[0])
+        wait_for("its name", lambda: "e_stop_button off" in self.plant.get("injected", ""))
+        self.assertTrue(self.inject("e_stop_button", "ok")[0])
         wait_for("nothing injected", lambda: self.plant["injected"] == "none")
         self.robot.release()
 
@@ -152,6 +149,12 @@ class ServicesTest(RobotTestCase):
             success, message = self.inject(*words)
             self.assertFalse(success)
             self.assertIn(known, message)
+
+    def test_the_fault_of_a_node_is_refused_with_the_remedy(self) -> None:
+        for node in ("controller", "estimator", "monitor"):
+            success, message = self.inject(node, "off")
+            self.assertFalse(success)
+            self.assertIn("kill -STOP", message)
 
     @staticmethod
     def position(message: Odometry) -> tuple[float, float]:

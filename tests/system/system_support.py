@@ -188,13 +188,12 @@ class NoBool(Bool):
 class Robot:
     """Four nodes in a namespace, and what they publish.
 
-    `prefix`: a command that runs each of them. `with_faults`: the programs into whose outputs faults can be injected.
+    `prefix`: a command that runs each of them.
     """
 
-    def __init__(self, namespace: str = "", prefix: Sequence[str] = (), *, with_faults: bool = False) -> None:
+    def __init__(self, namespace: str = "", prefix: Sequence[str] = ()) -> None:
         self.namespace = namespace
         self.prefix = prefix
-        self.with_faults = with_faults
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
         self.joints: JointState | None = None
@@ -224,8 +223,7 @@ class Robot:
     def start(self, *names: str) -> None:
         """Starts these nodes, or all four."""
         for name in names or LOOP:
-            program = f"{name}_with_faults" if self.with_faults and name != PLANT else name
-            self.nodes[name] = Program(program, namespace=self.namespace, prefix=self.prefix)
+            self.nodes[name] = Program(name, namespace=self.namespace, prefix=self.prefix)
 
     def end(self) -> None:
         """Ends all nodes and removes their shared memory: a master's port is never seen again."""
@@ -383,12 +381,11 @@ class RobotTestCase(unittest.TestCase):
 
     robot: Robot
     prefix: Sequence[str] = ()
-    with_faults = False
 
     @classmethod
     def setUpClass(cls) -> None:
         init_test_node(cls.__name__)
-        cls.robot = Robot(prefix=cls.prefix, with_faults=cls.with_faults)
+        cls.robot = Robot(prefix=cls.prefix)
         cls.robot.start()
 
     @classmethod

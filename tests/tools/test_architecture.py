@@ -23,8 +23,8 @@ MAY_INCLUDE = {
     "control": {"signals", "robot"},
     "safety": {"signals", "robot"},
     "hal": {"signals", "rt", "robot"},
-    # Simulated faults: of the machine in drivers, of a node's output around its cycle.
-    "faults": {"signals", "rt", "hal"},
+    # Simulated faults: of the machine in drivers, of nodes in simulation.
+    "faults": {"signals", "rt"},
     "drivers": {"signals", "faults", "hal", "description", "robot", "rt", "files"},
     # The schema fills in the parameter structs that the laws define.
     "parameters": {"signals", "telemetry", "rt", "files", "robot", "estimation", "control", "safety", "hal", "drivers"},
@@ -38,7 +38,7 @@ MAY_INCLUDE = {
     "simulation": CORE | {"faults", "telemetry"},
     "python": CORE | {"faults", "telemetry", "replay", "simulation"},
     "bridge": CORE | {"telemetry"},
-    "nodes": CORE | {"faults", "telemetry", "bridge"},
+    "nodes": CORE | {"telemetry", "bridge"},
 }
 ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
 MUJOCO = re.compile(r"^mujoco")
@@ -122,11 +122,7 @@ SIMULATORS = {"bridge/nodes/mujoco_plant_node.cpp", "parameters/parameters.h"}  
 def test_nothing_simulated_is_in_the_product():
     def rule(path):
         name = str(path.relative_to(SRC))
-        if (
-            folder(path) in SIMULATED | {"simulation", "python"}
-            or name in SIMULATORS
-            or name.endswith("_with_faults.cpp")
-        ):
+        if folder(path) in SIMULATED | {"simulation", "python"} or name in SIMULATORS:
             return
         yield from (other for other in includes(path) if other.split("/")[0] in SIMULATED)
 

@@ -101,9 +101,8 @@ def test_the_argument_ns_moves_every_node_and_parameter_and_changes_nothing_else
 
 
 def test_arguments_reach_the_nodes_in_a_namespace_too():
-    config = config_of("sim.launch", "ns:=robot2", "seed:=7", "faults:=true", "telemetry:=true", "respawn:=true")
+    config = config_of("sim.launch", "ns:=robot2", "seed:=7", "telemetry:=true", "respawn:=true")
     assert config.params["/robot2/mujoco_plant/seed"].value == 7
-    assert {node.name: node.type for node in config.nodes}["safety_monitor"] == "safety_monitor_with_faults"
     assert "telemetry" in {node.name for node in config.nodes}
 
 
@@ -155,12 +154,6 @@ def test_a_simulation_starts_the_programs_of_the_robot():
     started = programs_of()
     assert started["mujoco_plant"] == "mujoco_plant"
     assert {name: started[name] for name in NODES} == {name: name for name in NODES}
-
-
-def test_for_faults_it_starts_other_programs_under_the_same_names():
-    started = programs_of("faults:=true")
-    assert started["mujoco_plant"] == "mujoco_plant"
-    assert {name: started[name] for name in NODES} == {name: f"{name}_with_faults" for name in NODES}
 
 
 def test_every_argument_that_a_user_may_give_is_set_in_every_launch():

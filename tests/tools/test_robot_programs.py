@@ -9,7 +9,7 @@ import roslib.packages
 
 SRC = Path(__file__).parents[2] / "src"
 ROBOT = ("state_estimator", "diff_drive_controller", "safety_monitor", "telemetry")
-WITH_FAULTS = tuple(f"{name}_with_faults" for name in ROBOT[:3])
+NODE_FAULTS = {"NodeFaults", "distort"}
 
 
 def simulated_names():
@@ -40,10 +40,9 @@ def test_a_program_of_the_robot_holds_nothing_simulated(name):
     assert "libmujoco" not in libraries(name)
 
 
-@pytest.mark.parametrize("name", WITH_FAULTS)
-def test_the_program_for_faults_holds_them(name):
-    assert simulated_symbols(name) >= {"FaultyFrameOutput", "FaultRandom", "distort"}
-    assert "libmujoco" not in libraries(name)
+def test_no_program_holds_the_faults_of_nodes():
+    assert simulated_names() >= NODE_FAULTS
+    assert not simulated_symbols("mujoco_plant") & NODE_FAULTS
 
 
 def test_the_simulator_holds_its_machine():

@@ -30,8 +30,8 @@ namespace {
 
 class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
  public:
-  DiffDriveControllerNode(const Setup& setup, OutputDecoratorPtr<CommandFrame> decorator)
-      : ProcessNode(setup, std::move(decorator)),
+  explicit DiffDriveControllerNode(const Setup& setup)
+      : ProcessNode(setup),
         input_(parameters().controller.cmd_vel_timeout, parameters().controller.one_sender),
         pace_(report().command_rate),
         command_report_(robot(), parameters().controller) {
@@ -311,8 +311,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup, OutputDecoratorPtr<CommandFrame> decorator) {
-  return std::make_unique<DiffDriveControllerNode>(setup, std::move(decorator));
+std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup) {
+  return std::make_unique<DiffDriveControllerNode>(setup);
 }
 
 }  // namespace robot_control

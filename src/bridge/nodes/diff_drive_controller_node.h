@@ -9,13 +9,10 @@
 #include <memory>
 
 #include "bridge/nodes/node.h"
-#include "hal/frame_output.h"
 #include "signals/command_frame.h"
 
 namespace robot_control {
 
-/// `decorator`: of its output; null in the programs of a robot.
-std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup,
-                                                 OutputDecoratorPtr<CommandFrame> decorator = nullptr);
+std::unique_ptr<Node> make_diff_drive_controller(const Setup& setup);
 
 }  // namespace robot_control

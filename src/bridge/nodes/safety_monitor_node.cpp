@@ -3,7 +3,6 @@
 #include <ros/ros.h>
 
 #include <mutex>
-#include <utility>
 
 #include "bridge/inputs/e_stop_levels.h"
 #include "bridge/inputs/input_topic.h"
@@ -219,8 +218,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_safety_monitor(const Setup& setup, OutputDecoratorPtr<Permit> decorator) {
-  return std::make_unique<SafetyMonitorNode>(setup, std::move(decorator));
+std::unique_ptr<Node> make_safety_monitor(const Setup& setup) {
+  return std::make_unique<SafetyMonitorNode>(setup);
 }
 
 }  // namespace robot_control

@@ -4,12 +4,10 @@
 #include <memory>
 
 #include "bridge/nodes/node.h"
-#include "hal/frame_output.h"
 #include "signals/permit.h"
 
 namespace robot_control {
 
-/// `decorator`: of its output; null in the programs of a robot.
-std::unique_ptr<Node> make_safety_monitor(const Setup& setup, OutputDecoratorPtr<Permit> decorator = nullptr);
+std::unique_ptr<Node> make_safety_monitor(const Setup& setup);
 
 }  // namespace robot_control

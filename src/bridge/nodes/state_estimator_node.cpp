@@ -3,7 +3,6 @@
 #include <ros/ros.h>
 
 #include <mutex>
-#include <utility>
 
 #include "bridge/inputs/odometry_request.h"
 #include "bridge/messages/motion_messages.h"
@@ -26,8 +25,8 @@ Setup calibrated(Setup setup) {
 
 class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
  public:
-  StateEstimatorNode(const Setup& setup, OutputDecoratorPtr<StateFrame> decorator)
-      : ProcessNode(calibrated(setup), std::move(decorator)),
+  explicit StateEstimatorNode(const Setup& setup)
+      : ProcessNode(calibrated(setup)),
         keeper_(setup.parameters, setup.robot),
         joint_pace_(report().joint_states_rate),
         odom_pace_(report().odom_rate),
@@ -147,8 +146,8 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
 
 }  // namespace
 
-std::unique_ptr<Node> make_state_estimator(const Setup& setup, OutputDecoratorPtr<StateFrame> decorator) {
-  return std::make_unique<StateEstimatorNode>(setup, std::move(decorator));
+std::unique_ptr<Node> make_state_estimator(const Setup& setup) {
+  return std::make_unique<StateEstimatorNode>(setup);
 }
 
 }  // namespace robot_control

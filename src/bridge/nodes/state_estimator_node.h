@@ -5,12 +5,10 @@
 #include <memory>
 
 #include "bridge/nodes/node.h"
-#include "hal/frame_output.h"
 #include "signals/state_frame.h"
 
 namespace robot_control {
 
-/// `decorator`: of its output; null in the programs of a robot.
-std::unique_ptr<Node> make_state_estimator(const Setup& setup, OutputDecoratorPtr<StateFrame> decorator = nullptr);
+std::unique_ptr<Node> make_state_estimator(const Setup& setup);
 
 }  // namespace robot_control

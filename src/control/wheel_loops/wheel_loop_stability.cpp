@@ -86,8 +86,4 @@ double wheel_loop_damping_ratio(const WheelLoopGains& gains, const WheelLoad& lo
   return least;
 }
 
-double stability_number(const WheelLoopGains& gains, double period) noexcept {
-  return gains.kp * period / gains.model_inertia;
-}
-
 }  // namespace robot_control

@@ -31,9 +31,4 @@ double wheel_loop_damping_ratio(const WheelLoopGains& gains, const WheelLoad& lo
 double wheel_loop_spectral_radius(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth,
                                   unsigned delay = 0);
 
-/// kp·dt/model_inertia: a rule of thumb. With kd = 0 and a tracking loop that is slow against the period
-/// (2π·bandwidth·dt ≤ 0.25) the loop is unstable above 1 for any load; recommended are ≤ 0.5. The spectral radius
-/// is the criterion.
-double stability_number(const WheelLoopGains& gains, double period) noexcept;
-
 }  // namespace robot_control

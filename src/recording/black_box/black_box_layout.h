@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "recording/checksum.h"
+#include "signals/checksum.h"
 #include "telemetry/log_error.h"
 
 namespace robot_control::black_box_layout {

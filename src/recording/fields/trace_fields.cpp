@@ -1,8 +1,8 @@
 #include "recording/fields/trace_fields.h"
 
-#include "recording/checksum.h"
 #include "recording/fields/trace_field_groups.h"
 #include "recording/fields/trace_field_kinds.h"
+#include "recording/message_checksum.h"
 
 namespace robot_control {
 

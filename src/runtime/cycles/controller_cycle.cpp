@@ -6,12 +6,10 @@
 namespace robot_control {
 
 ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
-                                 const Channels& channels, CommandScript script, Now now,
-                                 OutputDecoratorPtr<CommandFrame> decorator)
+                                 const Channels& channels, CommandScript script, Now now)
     : controller_(parameters, robot, period),
       clock_(now),
       channels_(channels),
-      output_(channels.command, std::move(decorator)),
       script_(std::move(script)),
       robot_hash_(robot.hash),
       snapshots_(LawName::kController) {
@@ -84,8 +82,8 @@ bool ControllerCycle::step() noexcept {
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(state_.head);
   if (found == Lookup::kCorrupt) state_.head = sensors_.head;
-  if (found != Lookup::kFrame || sensors_found == Lookup::kToken) {
-    publish_token(channels_.command, state_.head);
+  if (found != Lookup::kFrame) {
+    channels_.command.publish_token(state_.head);
     return false;
   }
   if (sensors_found != Lookup::kFrame) return false;
@@ -102,12 +100,12 @@ bool ControllerCycle::step() noexcept {
     calls_.permit = used(Lookup::kFrame, permit_);
   }
   controller_.step(input, trace_.command);
-  const FrameHead head{.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
-  output_.publish(head, sensors_, trace_.command);
+  trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state_.head.stamp_ns};
+  channels_.command.publish(trace_.command);
   trace_.timing = clock_.timing(woke_ns, sensors_);
   calls_.request = request_;
   calls_.state = state_.head.checksum;
-  close_row(calls_, sensors_.head.checksum, output_.computed(), trace_.calls);
+  close_row(calls_, sensors_.head.checksum, trace_.command.head.checksum, trace_.calls);
   return true;
 }
 

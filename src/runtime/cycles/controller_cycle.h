@@ -1,11 +1,10 @@
 #pragma once
 /// The controller's duty in one cycle: state k (which woke it), sensors k and the newest live permit ≤ k-1
-/// → command k. A token is passed on; a corrupt state counts as a token.
+/// → command k. A state that is a token or corrupt makes the command a token.
 
 #include <cstdint>
 
 #include "control/drive_controller.h"
-#include "hal/frame_output.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/command_script.h"
@@ -26,8 +25,7 @@ class ControllerCycle {
   };
 
   ControllerCycle(const DriveControllerParameters& parameters, const RobotModel& robot, double period,
-                  const Channels& channels, CommandScript script, Now now,
-                  OutputDecoratorPtr<CommandFrame> decorator = nullptr);
+                  const Channels& channels, CommandScript script, Now now);
 
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
@@ -38,8 +36,8 @@ class ControllerCycle {
   /// Random number of this process, in every row.
   void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
 
-  /// True when there was a new state of the driver's current run, and a command was computed from it. Published was
-  /// that, or what an injected fault made of it: a token where `trace().command.head` is one.
+  /// True when there was a new state of the driver's current run, and a command was computed from it and
+  /// published.
   bool step() noexcept;
 
   /// The row of the last step that returned true.
@@ -57,7 +55,6 @@ class ControllerCycle {
   DriveController controller_;
   CycleClock clock_;
   Channels channels_;
-  FrameOutput<CommandFrame> output_;
   CommandScript script_;
   std::uint64_t robot_hash_;
   LatestValue<VelocityCommand> inbox_;

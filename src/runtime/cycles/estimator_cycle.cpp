@@ -1,17 +1,13 @@
 #include "runtime/cycles/estimator_cycle.h"
 
-#include <utility>
-
 namespace robot_control {
 
 EstimatorCycle::EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
-                               const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now,
-                               OutputDecoratorPtr<StateFrame> decorator)
+                               const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now)
     : estimator_(parameters, robot, period),
       clock_(now),
       sensors_channel_(sensors),
       state_channel_(state),
-      output_(state, std::move(decorator)),
       robot_hash_(robot.hash),
       snapshots_(LawName::kEstimator) {}
 
@@ -27,16 +23,12 @@ void EstimatorCycle::enter_run() noexcept {
 bool EstimatorCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
   const Lookup found = sensors_channel_.newest(sensors_);
-  if (found == Lookup::kMissing || found == Lookup::kCorrupt) return false;
+  if (found != Lookup::kFrame) return false;
   if (!current(sensors_channel_, sensors_.head, robot_hash_)) return false;
   const Arrival arrival = clock_.judge(sensors_.head);
   if (arrival == Arrival::kOld) return false;
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(sensors_.head);
-  if (found == Lookup::kToken) {
-    publish_token(state_channel_, sensors_.head);
-    return false;
-  }
 
   snapshots_.look(estimator_, calls_.law, sensors_.head);
   PoseRequest request;
@@ -48,11 +40,11 @@ bool EstimatorCycle::step() noexcept {
   }
   estimator_.step(sensors_, trace_.state);
   trace_.state.first_cycle = first_cycle_;
-  const FrameHead head{.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
-  output_.publish(head, sensors_, trace_.state);
+  trace_.state.head = {.run = sensors_.head.run, .cycle = sensors_.head.cycle, .stamp_ns = sensors_.head.stamp_ns};
+  state_channel_.publish(trace_.state);
   trace_.timing = clock_.timing(woke_ns, sensors_);
   calls_.first_cycle = first_cycle_;
-  close_row(calls_, sensors_.head.checksum, output_.computed(), trace_.calls);
+  close_row(calls_, sensors_.head.checksum, trace_.state.head.checksum, trace_.calls);
   return true;
 }
 

@@ -1,10 +1,9 @@
 #pragma once
-/// The estimator's duty in one cycle: newest sensors k → state k. A token is passed on.
+/// The estimator's duty in one cycle: newest sensors k → state k.
 
 #include <cstdint>
 
 #include "estimation/estimator.h"
-#include "hal/frame_output.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
 #include "runtime/cycles/close_row.h"
@@ -22,11 +21,10 @@ class EstimatorCycle {
 
  public:
   EstimatorCycle(const EstimatorParameters& parameters, const RobotModel& robot, double period,
-                 const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now,
-                 OutputDecoratorPtr<StateFrame> decorator = nullptr);
+                 const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
 
-  /// True when there was a new sensor frame of the driver's current run, and a state was computed from it. Published
-  /// was that, or what an injected fault made of it: a token where `trace().state.head` is one.
+  /// True when there was a new sensor frame of the driver's current run, and a state was computed from it and
+  /// published.
   bool step() noexcept;
 
   /// One thread: the pose is (x [m], y [m], yaw [rad]) from the next cycle on.
@@ -52,7 +50,6 @@ class EstimatorCycle {
   CycleClock clock_;
   const FrameReader<SensorFrame>& sensors_channel_;
   FrameWriter<StateFrame> state_channel_;
-  FrameOutput<StateFrame> output_;
   std::uint64_t robot_hash_;
   PoseRequest requested_;  ///< the requesting thread's
   LatestValue<PoseRequest> inbox_;

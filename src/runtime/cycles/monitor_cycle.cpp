@@ -6,12 +6,10 @@
 namespace robot_control {
 
 MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
-                           const Channels& channels, CommandScript script, Now now,
-                           OutputDecoratorPtr<Permit> decorator)
+                           const Channels& channels, CommandScript script, Now now)
     : monitor_(parameters, robot, period),
       clock_(now),
       channels_(channels),
-      output_(channels.permit, std::move(decorator)),
       script_(std::move(script)),
       robot_hash_(robot.hash),
       loss_ns_(std::llround(static_cast<double>(parameters.loss_cycles) * period * 1e9)),
@@ -75,12 +73,12 @@ bool MonitorCycle::step() noexcept {
   const bool first_look = !std::exchange(looked_, true);
   const Lookup found = channels_.sensors->newest(arrived_);
   if (found == Lookup::kCorrupt) note_corrupt_sensors();
-  if (found == Lookup::kMissing || found == Lookup::kCorrupt) return wake_without_sensors(woke_ns);
+  if (found != Lookup::kFrame) return wake_without_sensors(woke_ns);
   if (!current(*channels_.sensors, arrived_.head, robot_hash_)) return wake_without_sensors(woke_ns);
   const Arrival arrival = clock_.judge(arrived_.head);
   current_ns_ = woke_ns;
   if (arrival == Arrival::kOld) {
-    if (found == Lookup::kFrame) note_pause();
+    note_pause();
     return false;
   }
   sensors_ = arrived_;
@@ -91,10 +89,6 @@ bool MonitorCycle::step() noexcept {
   }
   clock_.accept(sensors_.head);
   silent_ = false;
-  if (found == Lookup::kToken) {
-    publish_token(channels_.permit, sensors_.head);
-    return false;
-  }
 
   const std::uint64_t run = sensors_.head.run;
   const std::uint64_t cycle = sensors_.head.cycle;
@@ -113,7 +107,7 @@ bool MonitorCycle::step() noexcept {
   snapshots_.look(monitor_, calls_.law, sensors_.head);
   monitor_.step(input_, trace_.permit);
   published_run_.store(run, std::memory_order_release);
-  output_.publish(head(), sensors_, trace_.permit);
+  publish();
   trace_.timing = clock_.timing(woke_ns, sensors_);
   close_row();
   return true;
@@ -131,7 +125,7 @@ void MonitorCycle::close_row() noexcept {
   calls_.state_first_cycle = input_.state_first_cycle;
   calls_.corrupt = input_.corrupt ? 1 : 0;
   calls_.operator_input = noted_ = input_.operator_input;
-  robot_control::close_row(calls_, sensors_.head.checksum, output_.computed(), trace_.calls);
+  robot_control::close_row(calls_, sensors_.head.checksum, trace_.permit.head.checksum, trace_.calls);
 }
 
 bool MonitorCycle::wake_without_sensors(std::int64_t woke_ns) noexcept {
@@ -218,12 +212,13 @@ void MonitorCycle::idle() noexcept {
 void MonitorCycle::publish_again() noexcept {
   note(MonitorCall::kStepAgain, input_.operator_input, static_cast<std::uint64_t>(sensors_.driver_state));
   monitor_.step(input_, trace_.permit);
-  output_.publish_again(head(), sensors_, trace_.permit);
-  note_output(output_.computed());
+  publish();
+  note_output(trace_.permit.head.checksum);
 }
 
-FrameHead MonitorCycle::head() const noexcept {
-  return {.run = clock_.run(), .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+void MonitorCycle::publish() noexcept {
+  trace_.permit.head = {.run = clock_.run(), .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+  channels_.permit.publish(trace_.permit);
 }
 
 }  // namespace robot_control

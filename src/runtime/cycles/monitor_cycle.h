@@ -1,6 +1,5 @@
 #pragma once
 /// The monitor's duty in one cycle: sensors k (which woke it), command k-1, head of state k-1 → permit k.
-/// A token is passed on.
 ///
 /// Wall clock: a step that finds no current sensor frame (none, corrupt, of another run or robot than the channel's
 /// head announces) counts as silence once the last current frame is loss_cycles periods old, whatever woke the step.
@@ -8,7 +7,6 @@
 #include <atomic>
 #include <cstdint>
 
-#include "hal/frame_output.h"
 #include "robot/robot_model.h"
 #include "rt/latest_frames.h"
 #include "rt/latest_value.h"
@@ -31,7 +29,7 @@ class MonitorCycle {
   };
 
   MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period, const Channels& channels,
-               CommandScript script, Now now, OutputDecoratorPtr<Permit> decorator = nullptr);
+               CommandScript script, Now now);
 
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
@@ -39,8 +37,8 @@ class MonitorCycle {
   /// Random number of this process, in every row.
   void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
 
-  /// True when there was a new sensor frame of the driver's current run, and a permit was computed from it. Published
-  /// was that, or what an injected fault made of it: a token where `trace().permit.head` is one.
+  /// True when there was a new sensor frame of the driver's current run, and a permit was computed from it and
+  /// published.
   bool step() noexcept;
 
   /// Wall clock: no current sensor frame has come for loss_cycles periods. Unless the driver's last frame reported that
@@ -88,12 +86,11 @@ class MonitorCycle {
   void close_row() noexcept;
   bool note_emergency_stop() noexcept;
   void refuse_reset(ResetRefusal why) noexcept;
-  FrameHead head() const noexcept;
+  void publish() noexcept;
 
   SafetyMonitor monitor_;
   CycleClock clock_;
   Channels channels_;
-  FrameOutput<Permit> output_;
   CommandScript script_;
   std::uint64_t robot_hash_;
   std::int64_t loss_ns_;         ///< loss_cycles periods

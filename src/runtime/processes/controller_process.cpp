@@ -1,20 +1,17 @@
 #include "runtime/processes/controller_process.h"
 
-#include <utility>
-
 #include "runtime/mint_number.h"
 
 namespace robot_control {
 
-ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
-                                     OutputDecoratorPtr<CommandFrame> decorator)
+ControllerProcess::ControllerProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kController, "drive_control", ChannelNames::kCommand, TraceRing::kController}),
       state_(bus, ChannelNames::kState),
       permit_(bus, ChannelNames::kPermit),
       cycle_(parameters.controller, robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &permit_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop), std::move(decorator)),
+             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
       retuning_(parameters, robot_, cycle_.tunings()) {
   require_drivable(parameters, robot);
   cycle_.set_process(mint_number());

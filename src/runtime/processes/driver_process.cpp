@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "hal/frame_output.h"
 #include "rt/clock.h"
 #include "rt/periodic.h"
 #include "runtime/gate_setup.h"
@@ -63,15 +62,7 @@ void DriverProcess::open_driver(std::unique_ptr<Driver> driver) {
   cycle_->set_driver_instance(mint_number());
   cycle_->begin_run(mint_number());
   if (!driver_->simulated()) return;
-  services_ = std::make_unique<SimulationServices>(
-      hold_, *driver_, *cycle_, [this] { return last_missing(); },
-      [this](FaultComponent node) { return takes_faults(node); });
-}
-
-bool DriverProcess::takes_faults(FaultComponent node) const noexcept {
-  if (node == FaultComponent::kEstimator) return decorated(state_.reader);
-  if (node == FaultComponent::kController) return decorated(command_.reader);
-  return decorated(permit_.reader);
+  services_ = std::make_unique<SimulationServices>(hold_, *driver_, *cycle_, [this] { return last_missing(); });
 }
 
 std::vector<std::string> DriverProcess::missing() const {

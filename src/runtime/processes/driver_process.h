@@ -55,7 +55,6 @@ class DriverProcess final : public Process {
   bool await_turn() noexcept;
   bool await_chain() noexcept;
   void tick() noexcept;
-  bool takes_faults(FaultComponent node) const noexcept;
   bool more() const noexcept { return cycles_ == 0 || cycle_->next_cycle() < cycles_; }
 
   RobotModel robot_;

@@ -11,8 +11,7 @@ namespace robot_control {
 
 class EstimatorProcess final : public ConsumerProcess<StateFrame, EstimatorTrace> {
  public:
-  EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
-                   OutputDecoratorPtr<StateFrame> decorator = nullptr);
+  EstimatorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
   ~EstimatorProcess() override { stop(); }
 
   std::vector<std::string> missing() const override;

@@ -1,15 +1,12 @@
 #include "runtime/processes/monitor_process.h"
 
-#include <utility>
-
 #include "runtime/mint_number.h"
 #include "runtime/safety_limits.h"
 #include "signals/names.h"
 
 namespace robot_control {
 
-MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus,
-                               OutputDecoratorPtr<Permit> decorator)
+MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
                       {LoopPriority::kMonitor, "safety_monitor", ChannelNames::kPermit, TraceRing::kMonitor}),
       state_(bus, ChannelNames::kState),
@@ -17,7 +14,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
       latch_file_(parameters.latch_file),
       cycle_(safety_limits(parameters, robot_), robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop), std::move(decorator)),
+             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()) {
   cycle_.set_process(mint_number());
   const LatchRecord& found = latch_file_.found();

@@ -1,0 +1,39 @@
+#pragma once
+/// The checksum of whatever is no frame of the bus: messages of a log, records, files, a robot, the gate's output. It
+/// shows that something was changed; it is no protection against an author who computes it again.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace robot_control {
+
+/// Sum of words; each mixes into all bits.
+class Checksum {
+ public:
+  void mix(std::uint64_t word) noexcept {
+    sum_ = (sum_ ^ word) * 0x9E3779B97F4A7C15U;
+    sum_ ^= sum_ >> 29U;
+  }
+
+  /// The last word of `data` is filled up with zeros, and the length is not mixed in.
+  void mix(std::string_view data) noexcept {
+    std::uint64_t word = 0;
+    for (; data.size() >= sizeof word; data.remove_prefix(sizeof word)) {
+      std::memcpy(&word, data.data(), sizeof word);
+      mix(word);
+    }
+    if (data.empty()) return;
+    word = 0;
+    std::memcpy(&word, data.data(), data.size());
+    mix(word);
+  }
+
+  std::uint64_t sum() const noexcept { return sum_; }
+
+ private:
+  std::uint64_t sum_ = 0xCBF29CE484222325U;
+};
+
+}  // namespace robot_control
