@@ -26,14 +26,15 @@ class CommandInputTest : public testing::Test {
     input_.receive(arrived, now_);
   }
 
-  /// The same connection for the same name, until `restart`.
+  /// The same process for the same name, until `restart`, and the same connection, until `reopen`.
   Publisher publisher(const std::string& name) {
-    boost::shared_ptr<const void>& connection = connections_[name];
-    if (connection == nullptr) connection = boost::make_shared<char>();
-    return {name, connection};
+    Publisher& publisher = publishers_[name];
+    if (publisher.name.empty()) publisher = {name, boost::make_shared<char>(), std::to_string(++processes_)};
+    return publisher;
   }
 
-  void restart(const std::string& sender) { connections_.erase(sender); }
+  void reopen(const std::string& sender) { publishers_[sender].connection = boost::make_shared<char>(); }
+  void restart(const std::string& sender) { publishers_.erase(sender); }
 
   void receive_stamped(const std::string& sender, double linear, std::int64_t age_ns = 0) {
     receive(sender, linear, now_.ros_ns - age_ns);
@@ -54,7 +55,8 @@ class CommandInputTest : public testing::Test {
 
   ArrivalTime now_{.ros_ns = 1'700'000'000 * kSecond, .loop_ns = 5000 * kSecond};
   CommandInput input_{1.25, false};
-  std::map<std::string, boost::shared_ptr<const void>> connections_;
+  std::map<std::string, Publisher> publishers_;
+  int processes_ = 0;
 };
 
 TEST_F(CommandInputTest, PassesOnWhatOneNodeSends) {
@@ -381,10 +383,8 @@ TEST_F(RevokedSenderTest, ACommandOfADeadSenderEndsInAStopWhateverItsTimeout) {
   stop();
   receive("/teleop", 0);
   receive("/teleop", 0.5);
-  restart("/teleop");
-  pass(kSecond);
   EXPECT_FALSE(input_.look(now_.loop_ns));
-  pass(1);
+  restart("/teleop");
   EXPECT_TRUE(input_.look(now_.loop_ns));
   EXPECT_EQ(value().twist.linear[0], 0);
   EXPECT_EQ(value().contested, kNoMessage);
@@ -408,6 +408,31 @@ TEST_F(RevokedSenderTest, ASenderThatIsStartedAnewOwesNothing) {
   restart("/teleop");
   receive("/teleop", 0.5);
   EXPECT_EQ(value().twist.linear[0], 0.5);
+}
+
+TEST_F(RevokedSenderTest, AConnectionThatTheSameProcessOpensAgainOwesWhatTheFirstOneDid) {
+  input_.set_timeout(0);
+  receive("/teleop", 0.5);
+  stop();
+  grant();
+  pass(100 * kSecond);
+  reopen("/teleop");
+  receive("/teleop", 0.5);  // a latched message, delivered again
+  EXPECT_EQ(value().revoked, 1u);
+  EXPECT_EQ(value().twist.linear[0], 0);
+}
+
+TEST_F(RevokedSenderTest, AControllerThatIsRestartedRevokesThosePublishingAlready) {
+  const Publisher teleop = publisher("/teleop");
+  input_ = CommandInput(1.25, false);
+  input_.start({.present = {{teleop.name, nullptr, teleop.uri}}, .run = 7});
+  stop();
+  pass(100 * kSecond);
+  grant();
+  receive("/teleop", 0.5);
+  EXPECT_EQ(value().revoked, 1u);
+  receive("/planner", 0.3);
+  EXPECT_EQ(value().twist.linear[0], 0.3) << "started since then";
 }
 
 TEST_F(RevokedSenderTest, AnotherRunIsAWithdrawalToo) {

@@ -147,8 +147,7 @@ TEST_F(CommandMuxTest, AZeroOfTheWinnerIsContestedByWhatItMasks) {
 }
 
 TEST_F(CommandMuxTest, AZeroIsContestedByAMaskedSenderWhoseMessagesAreRefused) {
-  mux_.receive(kPath, {.sender = {"/late", boost::make_shared<char>()}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond},
-               now_);
+  mux_.receive(kPath, {.sender = {"/late", connections_[kPath]}, .twist = {}, .stamp_ns = now_.ros_ns - kSecond}, now_);
   receive(kKey, 0);
   EXPECT_EQ(mux_.value().contested, 1u);
   receive(kCmd, std::numeric_limits<double>::quiet_NaN());

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <boost/make_shared.hpp>
+#include <string>
 
 #include "bridge/nanoseconds.h"
 
@@ -33,10 +34,17 @@ class MotionRequestsTest : public testing::Test {
     requests_.follow(permission_, now_);
   }
 
+  /// Of motion that this process requests over a new connection, which then closes.
+  bool revoked_again(Publisher sender) {
+    sender.connection = boost::make_shared<char>();
+    requests_.request(sender, now_);
+    return requests_.revoked(sender);
+  }
+
   std::int64_t now_ = 100 * kSecond;
   MotionPermission permission_{.run = 7, .withdrawals = 0, .granted = true};
   MotionRequests requests_;
-  Publisher teleop_{"/teleop", boost::make_shared<char>()};
+  Publisher teleop_{"/teleop", boost::make_shared<char>(), "http://robot:40001/"};
 };
 
 TEST_F(MotionRequestsTest, EndWithinTheWindow) {
@@ -49,16 +57,83 @@ TEST_F(MotionRequestsTest, AreFoundByTheConnectionAndNotByTheName) {
   requests_.request(teleop_, now_);
   withdraw();
   EXPECT_TRUE(requests_.revoked(teleop_));
-  EXPECT_FALSE(requests_.revoked({"/teleop", boost::make_shared<char>()}));
+  EXPECT_FALSE(revoked_again(teleop_)) << "another connection of the same process, which is open";
 }
 
-TEST_F(MotionRequestsTest, AConnectionThatEndedIsForgotten) {
+TEST_F(MotionRequestsTest, GoOnOverAConnectionThatTheSameProcessOpensAgain) {
   requests_.request(teleop_, now_);
   withdraw();
+  grant();
   EXPECT_THAT(requests_.revoked_names(), ElementsAre("/teleop"));
+  teleop_.connection.reset();
+  EXPECT_THAT(requests_.revoked_names(), IsEmpty()) << "closed";
+  now_ += 1000 * kWindow;
+  EXPECT_TRUE(revoked_again(teleop_));
+  EXPECT_THAT(requests_.revoked_names(), IsEmpty()) << "closed again";
   teleop_.connection = boost::make_shared<char>();
   requests_.end(teleop_);
-  EXPECT_THAT(requests_.revoked_names(), IsEmpty());
+  requests_.request(teleop_, now_);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+}
+
+TEST_F(MotionRequestsTest, OfANewProcessOfTheSameNameAreItsOwn) {
+  requests_.request(teleop_, now_);
+  withdraw();
+  grant();
+  teleop_.connection.reset();
+  EXPECT_FALSE(revoked_again({"/teleop", nullptr, "http://robot:40002/"}));
+  EXPECT_FALSE(revoked_again({"/pad", nullptr, teleop_.uri})) << "it got the port of the other";
+  EXPECT_TRUE(revoked_again({"/teleop"})) << "it cannot be told apart";
+}
+
+TEST_F(MotionRequestsTest, OfClosedConnectionsAreForgottenBeyondABound) {
+  const auto name = [](std::size_t number) { return "/once_" + std::to_string(number); };
+  requests_.request(teleop_, now_);
+  for (std::size_t i = 0; i <= MotionRequests::kMostClosed; ++i) {
+    requests_.request({name(i), boost::make_shared<char>()}, now_);
+  }
+  withdraw();
+  EXPECT_TRUE(requests_.revoked(teleop_)) << "it is open";
+  EXPECT_TRUE(revoked_again({name(MotionRequests::kMostClosed)}));
+  EXPECT_FALSE(revoked_again({name(0)}));
+}
+
+/// This controller was started beside a node that publishes already.
+class MotionRequestsOfARestartTest : public MotionRequestsTest {
+ protected:
+  MotionRequestsOfARestartTest() {
+    requests_ = MotionRequests();
+    requests_.set_window(kWindow);
+    requests_.start({.present = {{"/teleop", nullptr, teleop_.uri}}, .run = 7});
+    permission_.granted = false;
+  }
+};
+
+TEST_F(MotionRequestsOfARestartTest, AreRevokedOfAllProcessesThatWereThere) {
+  requests_.follow(permission_, now_);
+  grant();
+  requests_.request(teleop_, now_);
+  EXPECT_TRUE(requests_.revoked(teleop_));
+  EXPECT_TRUE(revoked_again(teleop_)) << "over another connection, too";
+  EXPECT_FALSE(revoked_again({"/planner", nullptr, "http://robot:40003/"}));
+  requests_.end(teleop_);
+  EXPECT_FALSE(requests_.revoked(teleop_));
+  EXPECT_FALSE(revoked_again(teleop_)) << "and so does its zero count";
+}
+
+TEST_F(MotionRequestsOfARestartTest, LikewiseInAnotherRunWhileAStopIsLatched) {
+  permission_.run = 8;
+  permission_.stopped = true;
+  requests_.follow(permission_, now_);
+  grant();
+  EXPECT_TRUE(revoked_again(teleop_));
+}
+
+TEST_F(MotionRequestsOfARestartTest, AreNotRevokedByTheFirstStartOfARun) {
+  permission_.run = 8;
+  requests_.follow(permission_, now_);
+  grant();
+  EXPECT_FALSE(revoked_again(teleop_));
 }
 
 TEST_F(MotionRequestsTest, AWithdrawalThatWasNotSeenByItselfRevokesAll) {

@@ -1,5 +1,10 @@
 """What was requested, held or planned before a stop, or before a program was suspended, moves nothing after it."""
 
+import math
+import subprocess
+import sys
+import time
+
 import pytest
 from lab.release.sender_sequences import command, goal, pad, path, teleop
 from robot_control.safety.interruptions import GAP, RESTARTED, Interruptions, Status, requested_at
@@ -46,6 +51,36 @@ def test_what_is_requested_during_a_stop_does_not_begin_with_its_reset():
     made.step(0.3, [RELEASED])
     assert made.revoked(0.2) == "e_stop_reset was called"
     assert made.revoked(0.31) == ""
+
+
+def before_the_first_look(status, *, heard=()):
+    """Of a program that began at 1 s and first looked at 3 s."""
+    made = Interruptions(3.0, 1.0)
+    made.step(3.0, [*heard, status], waited=True)
+    return made
+
+
+@pytest.mark.parametrize("heard", [[], [Status("INIT")]])
+def test_a_stop_and_its_reset_that_a_program_did_not_see_revoke_what_it_was_started_for(heard):
+    made = before_the_first_look(Status("READY", withdrawals=4, run=7, withdrawn=3.0 if heard else 2.0), heard=heard)
+    assert made.count == 1
+    assert "stopped and released" in made.revoked(1.0)
+    assert made.revoked(3.1) == ""
+
+
+@pytest.mark.parametrize("withdrawn", [-math.inf, 0.9])
+def test_what_was_withdrawn_before_a_program_began_revokes_nothing_of_it(withdrawn):
+    made = before_the_first_look(Status("READY", withdrawals=4, run=7, withdrawn=withdrawn))
+    assert (made.count, made.revoked(1.0)) == (0, "")
+
+
+def test_a_process_began_before_its_first_line():
+    code = "import time; from robot_control.safety.process_start import process_began; time.sleep(0.5); "
+    before = time.monotonic()
+    printed = subprocess.run(
+        [sys.executable, "-c", f"{code}print(process_began())"], capture_output=True, check=True, text=True
+    )
+    assert before - 0.01 <= float(printed.stdout) <= before + 0.3
 
 
 def test_a_pause_of_the_program_interrupts_what_it_did():

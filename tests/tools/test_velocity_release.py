@@ -70,12 +70,19 @@ def test_a_robot_that_was_started_again_does_not_get_the_old_command(sending) ->
     assert sending.phase is Phase.STOPPED
 
 
-def test_a_stop_before_the_first_permit_is_waited_for_and_named(release) -> None:
+def test_a_command_that_is_requested_during_a_stop_does_not_begin_with_its_reset(release) -> None:
     lines = release.look(0.1, STOPPED)
-    assert "a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad): free the wheel" in texts(lines)
+    assert "a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad). The command has no" in texts(lines)
     assert release.look(5.0, STOPPED) == []
-    release.look(6.0, READY)
-    assert release.phase is Phase.SENDING
+    assert "start send_cmd.py again" in texts(release.look(6.0, READY))
+    assert release.phase is Phase.RELEASED
+
+
+@pytest.mark.parametrize(("began", "phase"), [(0.0, Phase.STOPPED), (2.0, Phase.SENDING)])
+def test_a_program_that_was_suspended_at_its_start_belongs_to_the_time_of_its_start(began, phase) -> None:
+    release = Release(3.0, began)
+    release.look(3.1, Status("READY", withdrawals=4, withdrawn=1.0))
+    assert release.phase is phase
 
 
 @pytest.mark.parametrize(("timeout", "silence"), [(1.25, " for 1.25 s"), (0.6, " for 0.6 s"), (0.0, "")])
@@ -107,13 +114,13 @@ def test_without_a_monitor_the_command_is_sent_and_that_is_said_once(release) ->
     assert release.look(NO_MONITOR + 1, None) == []
 
 
-@pytest.mark.parametrize(("status", "phase"), [(INIT, Phase.WAITING), (STOPPED, Phase.WAITING), (READY, Phase.SENDING)])
+@pytest.mark.parametrize(("status", "phase"), [(INIT, Phase.WAITING), (STOPPED, Phase.STOPPED), (READY, Phase.SENDING)])
 def test_a_monitor_that_comes_later_decides_as_at_the_start(release, status, phase) -> None:
     release.look(NO_MONITOR, None)
     release.look(NO_MONITOR + 1, status)
     assert release.phase is phase
     release.look(NO_MONITOR + 2, READY)
-    assert release.phase is Phase.SENDING
+    assert release.phase is (Phase.RELEASED if status is STOPPED else Phase.SENDING)
 
 
 def test_a_monitor_that_ends_is_a_stop(sending) -> None:

@@ -221,8 +221,10 @@ class Wizard:
             time.sleep(PERIOD)
 
     def _permission(self, question: str) -> None:
-        if not self.options.yes and not self.questions.yes(question):
-            raise RefusedError("as you say. Nothing is written")
+        if not self.options.yes:
+            if not self.questions.yes(question):
+                raise RefusedError("as you say. Nothing is written")
+            self.robot.requested = time.monotonic()
         reason = "" if self.options.manual else hindrance(self.robot.look(self.senders))
         if reason:
             raise RefusedError(f"{reason}. Nothing is written")

@@ -15,6 +15,7 @@ from robot_control.drive.release import Line, Phase, Release
 from robot_control.drive.send_plan import SendPlan, parse_plan
 from robot_control.msg import SafetyStatus
 from robot_control.safety.interruptions import Status
+from robot_control.safety.process_start import process_began
 from robot_control.safety.watch import status_of
 
 TIMEOUT = 10.0
@@ -78,7 +79,7 @@ def send(plan: SendPlan, signals: Signals) -> int:
     sender = Sender(publisher, Twist(), _say_last)
     watch = Statuses()
     _wait_for_subscriber(publisher, signals)
-    release = Release(time.monotonic())
+    release = Release(time.monotonic(), process_began())
     phase = Phase.WAITING
     sent, end = 0, math.inf
     deadline = time.monotonic()

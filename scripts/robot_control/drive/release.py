@@ -3,7 +3,8 @@
     WAITING   zeros, until the state is READY or DRIVE for the first time since this program started
     SENDING   the command, while it stays so
     STOPPED   zeros for good, which let a reset be accepted; over when the robot is released: motion needs a new start.
-              An interruption between two looks (interruptions.py) is a stop, too
+              So it begins where this program was started during a stop, and wherever what was requested with its start
+              is revoked (interruptions.py)
 
 Without any safety_status there is nothing to wait for: after NO_MONITOR the command is sent, provisionally: the first
 status decides as if it had come at the start.
@@ -47,11 +48,12 @@ class Phase(Enum):
 class Release:
     """Follows safety_status; times in s of any one clock."""
 
-    def __init__(self, now: float) -> None:
+    def __init__(self, now: float, began: float | None = None) -> None:
+        """`began`: s when the program did, where that is not `now`."""
         self.command_timeout = 0.0  # s, the controller's; 0: off, or not known
         self._start = self._received_at = now
-        self._interruptions = Interruptions(now)
-        self._seen = 0  # interruptions
+        self._requested = now if began is None else began
+        self._interruptions = Interruptions(now, began)
         self._phase = Phase.WAITING
         self._provisional = False
         self._silence_logged = False
@@ -93,12 +95,12 @@ class Release:
     def _look(self, now: float, status: Status | None, age: float, connected: bool) -> Iterator[Line]:  # noqa: FBT001
         if status is not None:
             self._interruptions.receive(status, now)
-        interrupted, self._seen = self._interruptions.count > self._seen, self._interruptions.count
-        if interrupted and self._phase in {Phase.WAITING, Phase.SENDING}:
+        why = self._interruptions.revoked(self._requested)
+        if why and self._phase in {Phase.WAITING, Phase.SENDING}:
             self._phase, self._provisional = Phase.STOPPED, False
             remedy = f"{status.remedy}, then " if status is not None and status.remedy else ""
             yield Line(
-                f"{self._interruptions.reason}. The command has no effect, zeros are sent from now on. "
+                f"{why}. The command has no effect, zeros are sent from now on. "
                 f"To drive again: {remedy}start send_cmd.py again"
             )
         elif status is None:
@@ -148,10 +150,7 @@ class Release:
         if status.awaiting_zero:
             silence = silent_long_enough(self.command_timeout)
             return f"waits for a zero request; stop the other sender{silence} or let it send zero"
-        if status.state == "INIT":
-            return f"waits with zeros: safety_monitor waits for {', '.join(status.missing) or 'the first cycles'}"
-        remedy = f": {status.remedy}" if status.remedy else ""
-        return f"waits with zeros: {status.why()}{remedy}. The command is sent as soon as the robot is READY"
+        return f"waits with zeros: safety_monitor waits for {', '.join(status.missing) or 'the first cycles'}"
 
     def _drive(self, now: float, status: Status, age: float) -> Iterator[Line]:
         if now - self._gone_since > GONE:

@@ -47,6 +47,7 @@ class Look:
     missing: Sequence[str]
     speed_limit: float  # m/s
     senders: Sequence[str]  # others on cmd_vel
+    revoked: str = ""  # why what was requested does not begin, or go on
 
 
 def moves(look: Look) -> bool:
@@ -118,7 +119,7 @@ def _astray(look: Look, start: Pose, reach: float, unanswered: float) -> str:
 
 def _stopped(look: Look) -> str:
     if look.state in DRIVABLE:
-        return ""
+        return look.revoked and f"{look.revoked}: start again"
     why = "; ".join(look.sentences) or (
         f"waiting for {', '.join(look.missing)}" if look.missing else "no cause is reported"
     )

@@ -13,7 +13,8 @@ from nav_msgs.msg import Odometry
 from robot_control.common.topic_sender import Sender
 from robot_control.identify.excitation_watch import Look, Pose
 from robot_control.identify.recorded_log import RunningTelemetry
-from robot_control.msg import SafetyStatus
+from robot_control.safety.process_start import process_began
+from robot_control.safety.watch import SafetyWatch
 
 NEVER = -math.inf
 
@@ -26,13 +27,13 @@ class RunningRobot:
         self.logs: dict[str, RunningTelemetry] = {}
         self._odometry: Odometry | None = None
         self._odometry_at = NEVER
-        self._status: SafetyStatus | None = None
-        self._status_at = NEVER
+        self.requested = process_began()
+        """s (monotonic), of the motion that follows"""
+        self._watch = SafetyWatch()
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if sends else None
         self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
         self._subscribers = [
             rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber("safety_status", SafetyStatus, self._receive_status),
             rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
         ]
 
@@ -50,8 +51,9 @@ class RunningRobot:
 
     def look(self, senders: tuple[str, ...] = ()) -> Look:
         """As of now; `senders`: others on cmd_vel."""
+        revoked = self._watch.revoked(self.requested, waited=True)
         now = time.monotonic()
-        odometry, status = self._odometry, self._status
+        odometry, status = self._odometry, self._watch.message
         pose = None
         linear = angular = 0.0
         if odometry is not None:
@@ -64,7 +66,8 @@ class RunningRobot:
             angular=angular,
             pose_age=now - self._odometry_at,
             state="" if status is None else status.state_name,
-            status_age=now - self._status_at,
+            status_age=now - self._watch.received_at,
+            revoked=revoked,
             sentences=() if status is None else tuple(status.sentences),
             missing=() if status is None else tuple(status.missing),
             speed_limit=math.inf if status is None else status.speed_limit,
@@ -73,9 +76,6 @@ class RunningRobot:
 
     def _receive_odometry(self, message: Odometry) -> None:
         self._odometry, self._odometry_at = message, time.monotonic()
-
-    def _receive_status(self, message: SafetyStatus) -> None:
-        self._status, self._status_at = message, time.monotonic()
 
     def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:

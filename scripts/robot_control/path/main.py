@@ -23,6 +23,7 @@ from robot_control.path.robot import PATIENCE, SOURCE, Robot, pose_of
 from robot_control.path.run import Drive, PauseServices, message_of, points_of
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import PathError, Waypoint, placed, read_csv
+from robot_control.safety.process_start import process_began
 
 REPORT_PERIOD = 1.0
 """s"""
@@ -37,13 +38,13 @@ def received(name: str) -> Path:
 
 
 def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Signals) -> str:
-    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's. Calling this is the
-    request: a plan that comes after a stop and its reset is refused.
+    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's. The request is as old
+    as this process: a plan or a file that takes until after a stop and its reset is refused.
 
     Raises:
         PathError: the topic brings none.
     """
-    requested = time.monotonic()
+    requested = process_began()
     robot, topic, tf = Robot(), CommandTopic(SOURCE), Tf()
     services = PauseServices()
     wrong = robot.await_drivable(topic, signals.going_on, requested)

@@ -6,9 +6,11 @@ What is requested, planned, held or waited for belongs to the time in which it b
     reset    `withdrawals` or `run` differ between two messages that permit to drive: a stop lies between them
     gap      this program did not look for longer than GAP, and neither waited nor planned: it was suspended, and what
              it knows is old
+    unseen   the monitor says that a permission ended after this program began, or since its last message
 
 A request that was made during a stop is one from before its reset. A request that arrives as a message began when it
-was sent (`requested_at`), for a queue holds it while the program stands still.
+was sent (`requested_at`), for a queue holds it while the program stands still. What a program is started for was
+requested when it began, not when it first looked.
 Times are s of any one clock that never turns back. The clock has to run on while a program is suspended.
 """
 
@@ -24,6 +26,7 @@ GAP = 1.0
 """s; programs look every 0.02 s, and a loaded machine keeps one waiting for half a second now and then. What such a
 program requested before a stop is refused by the loop, however short its gap."""
 RESTARTED = "INIT: a node or the simulation was started again, and releases no command from before"
+UNSEEN = "the robot was stopped and released, or started again"
 
 
 def requested_at(arrived: float, sent: float | None) -> float:
@@ -48,6 +51,7 @@ class Status:
     speed_limit: float = math.inf  # m/s
     withdrawals: int = 0  # starts and latched causes so far
     run: int = 0
+    withdrawn: float = -math.inf  # s: until then, what was requested is void
 
     @property
     def drivable(self) -> bool:
@@ -73,8 +77,10 @@ class Status:
 class Interruptions:
     """Of one program: `step` at every look, with all messages that have come since the last one."""
 
-    def __init__(self, now: float) -> None:
+    def __init__(self, now: float, began: float | None = None) -> None:
+        """`began`: s when the program did, where that is not `now`."""
         self._looked = now
+        self._heard = now if began is None else began  # of the last message
         self._interrupted = self._stopped = (-math.inf, "")  # when last, why
         self.status: Status | None = None  # the newest one
         self.count = 0  # of interruptions
@@ -92,11 +98,19 @@ class Interruptions:
         why = self._change(status)
         if why:
             self._interrupt(now, why)
+        elif self._waits and status.drivable and status.withdrawn >= self._heard:
+            self._interrupt(min(now, status.withdrawn), UNSEEN)
+        self._heard = now
         if status.stopped:
             self._stopped = now, status.why()
         elif self.status is not None and self.status.stopped:
             self._stopped = now, "e_stop_reset was called"
         self.status = status
+
+    @property
+    def _waits(self) -> bool:
+        """Until now for a first permission, as far as this program knows."""
+        return self.status is None or self.status.state == "INIT"
 
     @property
     def reason(self) -> str:
@@ -108,8 +122,8 @@ class Interruptions:
         at, why = max(self._stopped, self._interrupted)
         return why if at >= requested else ""
 
-    def _interrupt(self, now: float, why: str) -> None:
-        self._interrupted = now, why
+    def _interrupt(self, at: float, why: str) -> None:
+        self._interrupted = max(self._interrupted, (at, why))
         self.count += 1
 
     def _change(self, status: Status) -> str:
@@ -119,5 +133,5 @@ class Interruptions:
         if not status.drivable:
             return status.why()
         if (status.withdrawals, status.run) != (before.withdrawals, before.run):
-            return "the robot was stopped and released, or started again"
+            return UNSEEN
         return ""

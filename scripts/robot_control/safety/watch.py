@@ -12,6 +12,7 @@ import rospy
 
 from robot_control.msg import SafetyStatus
 from robot_control.safety.interruptions import Interruptions, Status
+from robot_control.safety.process_start import process_began
 
 LATE = 0.1
 """s between two looks after which messages may wait that the receiving thread has not taken"""
@@ -20,7 +21,7 @@ CATCH_UP = 0.02
 
 
 def status_of(message: SafetyStatus) -> Status:
-    """Of the causes the one that came first."""
+    """Of the causes the one that came first; `withdrawn` on this process's monotonic clock."""
     first = message.causes.index(message.first_cause) if message.first_cause in message.causes else 0
     sentence, detail, remedy = (
         texts[first] if first < len(texts) else "" for texts in (message.sentences, message.details, message.remedies)
@@ -36,6 +37,7 @@ def status_of(message: SafetyStatus) -> Status:
         speed_limit=message.speed_limit,
         withdrawals=message.withdrawals,
         run=message.run,
+        withdrawn=time.monotonic() - (time.time() - message.withdrawn.to_sec()) if message.withdrawn else -math.inf,
     )
 
 
@@ -47,7 +49,7 @@ class SafetyWatch:
         self.received_at = -math.inf  # s, monotonic
         self._lock = threading.Lock()
         self._looked = time.monotonic()
-        self._interruptions = Interruptions(self._looked)
+        self._interruptions = Interruptions(self._looked, process_began())
         rospy.Subscriber("safety_status", SafetyStatus, self.receive, tcp_nodelay=True)
 
     def receive(self, message: SafetyStatus) -> None:

@@ -62,6 +62,8 @@ class CommandInput final : public CommandIntake {
 
   void receive(const ArrivedCommand& arrived, const ArrivalTime& time);
 
+  void start(const EarlierController& earlier) override { requests_.start(earlier); }
+
   /// If nothing arrived: removes senders that have become silent. True if that changed the value of the inbox.
   bool look(std::int64_t loop_ns) override;
 

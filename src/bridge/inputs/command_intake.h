@@ -21,6 +21,9 @@ class CommandIntake {
   CommandIntake& operator=(CommandIntake&&) = default;
   virtual ~CommandIntake() = default;
 
+  /// Before the first message and the first call of `follow`.
+  virtual void start(const EarlierController& earlier) = 0;
+
   /// Follows what happens without a message: silence. True if the value of the inbox changed.
   virtual bool look(std::int64_t loop_ns) = 0;
 

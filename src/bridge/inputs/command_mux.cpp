@@ -32,6 +32,10 @@ void CommandMux::set_timeout(double timeout) {
   for (Source& source : sources_) source.input.set_silence(std::max(silence_needed(timeout), source.given.timeout));
 }
 
+void CommandMux::start(const EarlierController& earlier) {
+  for (Source& source : sources_) source.input.start(earlier);
+}
+
 void CommandMux::receive(std::size_t source, const ArrivedCommand& arrived, const ArrivalTime& time) {
   Source& from = sources_[source];
   const std::uint64_t before = from.input.value().count;

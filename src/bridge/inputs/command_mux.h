@@ -38,6 +38,8 @@ class CommandMux final : public CommandIntake {
   /// Sources have timeouts of their own; this is that of the evidence.
   void set_timeout(double timeout) override;
 
+  void start(const EarlierController& earlier) override;
+
   /// `source`: index in the list, which is sorted by priority.
   void receive(std::size_t source, const ArrivedCommand& arrived, const ArrivalTime& time);
   void receive_lock(std::size_t lock, bool set, std::int64_t loop_ns);

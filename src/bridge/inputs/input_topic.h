@@ -13,6 +13,7 @@
 
 #include "bridge/inputs/publisher.h"
 #include "bridge/messages/bounded_message.h"
+#include "bridge/network/publisher_uri.h"
 #include "rt/clock.h"
 
 namespace robot_control {
@@ -45,7 +46,7 @@ class InputTopic {
     const boost::function<void(const Event&)> callback = [this, receive, malformed](const Event& event) {
       const BoundedMessage& received = *event.getConstMessage();
       if (received.accepted)
-        return receive(received.message, {event.getPublisherName(), event.getConnectionHeaderPtr()});
+        return receive(received.message, publisher_of(event));
       malformed(event.getPublisherName());
       warn();
     };
@@ -54,6 +55,10 @@ class InputTopic {
   }
 
  private:
+  static Publisher publisher_of(const ros::MessageEvent<const BoundedMessage>& event) {
+    return {event.getPublisherName(), event.getConnectionHeaderPtr(), publisher_uri(event.getConnectionHeader())};
+  }
+
   void warn() {
     constexpr std::int64_t kSilence = 10'000'000'000;  // ns
     const std::int64_t now_ns = monotonic_ns();

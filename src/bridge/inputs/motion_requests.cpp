@@ -11,17 +11,33 @@ bool same(const boost::weak_ptr<const void>& known, const boost::shared_ptr<cons
   return !known.owner_before(connection) && !connection.owner_before(known);
 }
 
+bool any_same_process(const std::vector<Publisher>& senders, const Publisher& sender) {
+  return std::ranges::any_of(senders, [&](const Publisher& one) { return same_process(one, sender); });
+}
+
 }  // namespace
 
 MotionRequests::Record& MotionRequests::record_of(const Publisher& sender) {
-  std::erase_if(records_, [](const Record& record) { return record.connection.expired(); });
   for (Record& record : records_) {
     if (same(record.connection, sender.connection)) return record;
   }
+  for (Record& record : records_) {
+    if (!record.connection.expired() || !same_process(record.sender, sender)) continue;
+    record.connection = sender.connection;
+    return record;
+  }
+  forget_the_oldest_closed();
   Record& record = records_.emplace_back();
-  record.name = sender.name;
+  record.sender = {sender.name, nullptr, sender.uri};
   record.connection = sender.connection;
+  record.revoked = permission_.run != 0 && any_same_process(earlier_.present, sender);
   return record;
+}
+
+void MotionRequests::forget_the_oldest_closed() {
+  const auto closed = [](const Record& record) { return record.connection.expired(); };
+  if (std::ranges::count_if(records_, closed) >= static_cast<std::ptrdiff_t>(kMostClosed))
+    records_.erase(std::ranges::find_if(records_, closed));
 }
 
 void MotionRequests::request(const Publisher& sender, std::int64_t now_ns) {
@@ -31,12 +47,19 @@ void MotionRequests::request(const Publisher& sender, std::int64_t now_ns) {
 }
 
 void MotionRequests::end(const Publisher& sender) {
-  Record& record = record_of(sender);
-  record.requests = record.revoked = false;
-  record.zero_sent = true;
+  const Record& own = record_of(sender);
+  for (Record& record : records_) {
+    const bool closed = record.connection.expired() && same_process(record.sender, sender);
+    if (&record != &own && !closed) continue;
+    record.requests = record.revoked = false;
+    record.zero_sent = true;
+  }
+  std::erase_if(earlier_.present, [&](const Publisher& one) { return same_process(one, sender); });
 }
 
 bool MotionRequests::follow(const MotionPermission& permission, std::int64_t now_ns) {
+  const bool restarted = permission.stopped || permission.run == earlier_.run;
+  if (permission_.run == 0 && !restarted) earlier_.present.clear();
   const bool withdrawn = permission.run != permission_.run || permission.withdrawals != permission_.withdrawals;
   const bool granted = permission.granted && (withdrawn || !permission_.granted);
   permission_ = permission;
@@ -62,13 +85,15 @@ bool MotionRequests::recent(const Record& record, std::int64_t now_ns) const {
 }
 
 bool MotionRequests::any(std::int64_t now_ns) const {
-  return std::ranges::any_of(records_, [&](const Record& record) { return record.requests && recent(record, now_ns); });
+  return std::ranges::any_of(records_, [&](const Record& record) {
+    return record.requests && recent(record, now_ns) && !record.connection.expired();
+  });
 }
 
 std::vector<std::string> MotionRequests::revoked_names() const {
   std::set<std::string> names;
   for (const Record& record : records_) {
-    if (record.revoked && !record.connection.expired()) names.insert(record.name);
+    if (record.revoked && !record.connection.expired()) names.insert(record.sender.name);
   }
   return {names.begin(), names.end()};
 }

@@ -35,6 +35,16 @@ std::vector<std::string> publishers_of(const std::vector<std::string>& topics) {
   return state ? nodes_of((*state)[0], topics) : std::vector<std::string>();
 }
 
+std::string uri_of(const std::string& node) {
+  XmlRpc::XmlRpcValue request;
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue uri;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  const bool known = ros::master::execute("lookupNode", request, response, uri, false);
+  return known && uri.getType() == XmlRpc::XmlRpcValue::TypeString ? static_cast<std::string>(uri) : "";
+}
+
 std::optional<std::vector<std::string>> publishers_known_to_reach(const std::string& topic) {
   auto state = system_state();
   if (!state) return std::nullopt;

@@ -6,6 +6,9 @@
 /// library. That holds as long as the library refers to it by name, in its table of relocations; a library built with
 /// -Bsymbolic, or one that had the function inlined, would not.
 
+#include <dlfcn.h>
+
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,15 @@ struct Interposed {
 /// The loaded library refers to `symbol` by name, and that name leads into this program. False where no such library is
 /// loaded.
 bool leads_here(const Interposed& function);
+
+/// The function of this type that the program's own one replaces: a member that is not virtual.
+template <class Member>
+Member original(const char* symbol) {
+  void* const address = dlsym(RTLD_NEXT, symbol);
+  Member member{};
+  std::memcpy(&member, &address, sizeof address);  // its address and 0
+  return member;
+}
 
 /// Descriptions of those that do not lead here.
 std::vector<std::string> not_replaced(const std::vector<Interposed>& functions);

@@ -1,6 +1,5 @@
 #include "bridge/network/wire_guard.h"
 
-#include <dlfcn.h>
 #include <netinet/in.h>
 #include <ros/connection.h>
 #include <ros/console.h>
@@ -24,6 +23,7 @@
 #include <string_view>
 
 #include "bridge/network/interposition.h"
+#include "bridge/network/publisher_uri.h"
 
 namespace robot_control {
 namespace {
@@ -52,14 +52,6 @@ constexpr const char* kExecuteMethod =
     "11XmlRpcValueESA_";
 
 std::atomic<std::uint64_t> overlong{0};
-
-template <class Member>
-Member original(const char* symbol) {
-  void* const address = dlsym(RTLD_NEXT, symbol);
-  Member member{};
-  std::memcpy(&member, &address, sizeof address);  // a member function that is not virtual: its address and 0
-  return member;
-}
 
 /// The socket is one that the XML-RPC server of this process has accepted.
 bool is_request(int socket) {
@@ -128,6 +120,7 @@ std::string unguarded() {
            {xmlrpcpp, kNbRead, "lengths of XML-RPC requests"},
            {xmlrpcpp, kFromXml, "nesting of XML-RPC requests"},
            {xmlrpcpp, kExecuteMethod, "what an XML-RPC method throws"},
+           {roscpp, kSetHeader, "publishers' addresses"},
            {roscpp, "accept", "accepted connections"},
            {xmlrpcpp, "accept", "accepted XML-RPC connections"},
            {roscpp, "socket", "outgoing connections"},
@@ -137,7 +130,8 @@ std::string unguarded() {
   }
   if (text.empty()) return "";
   return "the loaded roscpp does not use this program's checks of " + text +
-         ": a malformed connection may end this node; remedy: build robot_control against the roscpp that is loaded "
+         ": a malformed connection may end this node, and a sender that is started anew may have to send a zero first; "
+         "remedy: build robot_control against the roscpp that is loaded "
          "here (Debian's libroscpp-dev; LD_LIBRARY_PATH and LD_PRELOAD must not name another one), and let no "
          "stranger's process reach its ports (docs/security.md)";
 }

@@ -15,6 +15,7 @@
 #include "bridge/inputs/reconfigure.h"
 #include "bridge/messages/motion_messages.h"
 #include "bridge/messages/tuning_messages.h"
+#include "bridge/network/graph.h"
 #include "bridge/nodes/process_node.h"
 #include "bridge/reports/command_report.h"
 #include "bridge/reports/diagnostics.h"
@@ -56,6 +57,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
     drive_state_ = handle.advertise<msg::DriveState>("drive_state", 10);
+    intake_->start(earlier_controller(handle));
     if (mux_) {
       connect_sources(handle);
       return;
@@ -122,9 +124,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   bool follow_permission() {
     Permit permit;
     if (process().permits().newest(permit) != Lookup::kFrame || !process().is_current(permit.head)) return false;
-    const MotionPermission permission{
-        .run = permit.head.run, .withdrawals = permit.withdrawals, .granted = permit.action == PermitAction::kDrive};
-    return intake_->follow(permission, loop_ns());
+    return intake_->follow(motion_permission(permit), loop_ns());
   }
 
   /// Now. Any thread that holds the lock.
@@ -133,6 +133,17 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
     time.ros_ns = lockstep ? time.loop_ns : static_cast<std::int64_t>(ros::WallTime::now().toNSec());
     return time;
+  }
+
+  /// Before this node subscribes to a command topic and before its loop runs.
+  EarlierController earlier_controller(ros::NodeHandle& handle) {
+    std::vector<std::string> topics;
+    for (const CommandSource& source : list_.sources) topics.push_back(handle.resolveName(source.topic));
+    if (!mux_) topics = {handle.resolveName("cmd_vel"), handle.resolveName("cmd_vel_stamped")};
+    EarlierController earlier;
+    if (process().output().newest(command_) == Lookup::kFrame) earlier.run = command_.head.run;
+    for (const std::string& node : publishers_of(topics)) earlier.present.push_back({node, nullptr, uri_of(node)});
+    return earlier;
   }
 
   void connect_sources(ros::NodeHandle& handle) {

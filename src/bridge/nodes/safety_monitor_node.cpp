@@ -12,6 +12,7 @@
 #include "bridge/nodes/process_node.h"
 #include "bridge/reports/diagnostics.h"
 #include "bridge/reports/stop_log.h"
+#include "bridge/reports/withdrawal_time.h"
 #include "files/ascii.h"
 #include "parameters/command_sources.h"
 #include "rt/clock.h"
@@ -54,6 +55,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     const std::int64_t now_ns = monotonic_ns();
     Permit permit;
     const bool found = seen(permit);
+    if (found) withdrawal_.look(permit, now_ns);
     const std::vector<std::string> absent = missing();
     const bool changed = found != reported_permit_ || absent != reported_missing_ || (found && news(reported_, permit));
     const std::int64_t silence_ns = now_ns - reported_ns_;
@@ -61,6 +63,9 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     if (SensorFrame sensors; live(sensors)) time().follow(sensors);
     msg::SafetyStatus status =
         found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns()) : waiting_status(absent);
+    if (const auto last_ns = withdrawal_.last_ns()) {
+      status.withdrawn = ros::Time().fromNSec(ros::WallTime::now().toNSec() - static_cast<std::uint64_t>(now_ns - *last_ns));
+    }
     note_latch_file(status);
     status_.publish(status);
     write_log(stop_log_.look(status));
@@ -210,6 +215,7 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
   EStopLevels levels_;
   OperatorInput input_;
   StopLog stop_log_{static_cast<double>(parameters().loop.period_ns()) * 1e-9, parameters().controller.cmd_vel_timeout};
+  WithdrawalTime withdrawal_;
   Permit reported_;
   bool reported_permit_ = false;
   std::vector<std::string> reported_missing_;

@@ -40,28 +40,28 @@ class Outcome:
 
 
 class Monitor:
-    """Stops and resets at random; its messages, of which a subscriber may miss all but the newest."""
+    """Stops and resets at random; its messages, of which a subscriber may miss all but the newest. With `first` it was
+    just started: it permits nothing yet.
+    """
 
-    def __init__(self, chance: random.Random) -> None:
+    def __init__(self, chance: random.Random, *, first: bool = False) -> None:
         self._chance = chance
-        self.status = Status("READY", run=1)
+        self.status = Status("INIT" if first else "READY", run=1)
         self.messages = [self.status]
-        self.stop_began = self.released = -1.0  # s
+        self.released = -1.0  # s, after a stop
         self._due = chance.uniform(1.0, 5.0)
 
     def step(self, now: float) -> None:
         """One look."""
         if now < self._due:
             return
-        withdrawals = self.status.withdrawals
-        if self.status.drivable:
-            self.status, self.stop_began = (
-                Status("STOPPED", "e_stop was called", withdrawals=withdrawals + 1, run=1),
-                now,
-            )
+        status, withdrawals = self.status, self.status.withdrawals
+        if status.drivable:
+            self.status = Status("STOPPED", "e_stop was called", withdrawals=withdrawals + 1, run=1, withdrawn=now)
             self._due = now + self._chance.choice([0.05, 0.3, 1.5, 4.0])
         else:
-            self.status, self.released = Status("READY", withdrawals=withdrawals, run=1), now
+            self.released = now if status.stopped else self.released
+            self.status = Status("READY", withdrawals=withdrawals, run=1, withdrawn=self.released)
             self._due = now + self._chance.uniform(0.5, 6.0)
         self.messages.append(self.status)
 
@@ -124,10 +124,10 @@ class Joystick:
 
 
 class Suspensions:
-    """When the program does not run; not before its first message of safety_status, for it then knows of no stop."""
+    """When the program does not run; `begin`: the first s at which it may not."""
 
-    def __init__(self, chance: random.Random) -> None:
-        self._pauses = [(begin, chance.choice([0.1, 0.4, 1.0, 3.0])) for begin in chance.sample(range(1, 18), 2)]
+    def __init__(self, chance: random.Random, begin: int = 1) -> None:
+        self._pauses = [(second, chance.choice([0.1, 0.4, 1.0, 3.0])) for second in chance.sample(range(begin, 18), 2)]
 
     def lasting(self, now: float) -> float:
         """s of the suspension that lasts at `now`; 0: it runs."""
@@ -172,31 +172,37 @@ def pad(seed: int) -> Outcome:
 
 
 def path(seed: int) -> Outcome:
-    """A goal of follow_path.py, or a plan for drive_path.py, that is planned or driven over a stop moves nothing."""
+    """A goal of follow_path.py, or a drive_path.py, that was requested before the end of a stop moves nothing after it,
+    however long it reads its file, is planned or waits.
+    """
     chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
-    monitor, suspensions, outcome = Monitor(chance), Suspensions(chance), Outcome(seed)
-    requested, made, planned, x, linear = 0.0, PathSender(0.0), chance.uniform(0.0, 3.0), 0.0, 0.0
+    monitor, suspensions = Monitor(chance, first=chance.random() < 0.2), Suspensions(chance, 0)
+    outcome, made, x, linear = Outcome(seed), None, 0.0, 0.0
+    requested, begins, planned = 0.0, chance.choice([0.0, 3.0]), chance.uniform(0.0, 3.0)
     for number in range(LOOKS):
         now = number * PERIOD
         monitor.step(now)
+        if suspensions.lasting(now) or now < begins:
+            continue
+        if made is None:
+            made = PathSender(now, requested)
+            monitor.messages = [monitor.status]  # it is latched
         if planned <= now:
             made.plan([Waypoint(x, 0.0), Waypoint(x + 3.0, 0.0)])
             planned = 1e9
-        if suspensions.lasting(now):
-            continue
-        if (made.reason or chance.random() < 0.001) and monitor.status.drivable:
-            requested, made, planned = now, PathSender(now), now + chance.uniform(0.0, 3.0)
-            monitor.messages = [monitor.status]  # it is latched
         command = made.step(now, monitor.take(), (Pose(x, 0.0, 0.0), Motion(linear, 0.0)))
         linear = command.linear if command is not None else 0.0
         x += linear * PERIOD
+        if made.reason or chance.random() < 0.001:
+            requested, made, planned = now, None, now + chance.uniform(0.0, 3.0)
+            begins = now + chance.choice([0.0, 0.3, 5.0])
         if not moves(command):
             continue
         outcome = replace(outcome, moving=outcome.moving + 1)
         if not monitor.status.drivable:
             return outcome.at(now, "motion during a stop")
         if requested < monitor.released:
-            return outcome.at(now, "motion along a path that was requested before the stop")
+            return outcome.at(now, "motion along a path that was requested before the reset")
     return outcome
 
 
@@ -234,23 +240,25 @@ def goal(seed: int) -> Outcome:
 
 
 def command(seed: int) -> Outcome:
-    """A send_cmd.py that was started before a stop moves nothing after it."""
+    """A send_cmd.py that was started before the end of a stop moves nothing after it."""
     chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
-    monitor, suspensions, outcome = Monitor(chance), Suspensions(chance), Outcome(seed)
-    begun, made = 0.0, CommandSender(0.0)
+    monitor, suspensions = Monitor(chance, first=chance.random() < 0.2), Suspensions(chance, 0)
+    outcome, made, begun, begins = Outcome(seed), None, 0.0, chance.choice([0.0, 3.0])
     for number in range(LOOKS):
         now = number * PERIOD
         monitor.step(now)
-        if suspensions.lasting(now):
-            continue
         if chance.random() < 0.003:
-            begun, made = now, CommandSender(now)
+            begun, made, begins = now, None, now + chance.choice([0.0, 0.3, 5.0])
+        if suspensions.lasting(now) or now < begins:
+            continue
+        if made is None:
+            made = CommandSender(now, begun)
             monitor.messages = [monitor.status]
         if not moves(made.step(now, monitor.take())):
             continue
         outcome = replace(outcome, moving=outcome.moving + 1)
-        if begun < monitor.stop_began:
-            return outcome.at(now, "motion of a program that was started before the stop")
+        if begun < monitor.released:
+            return outcome.at(now, "motion of a program that was started before the reset")
     return outcome
 
 

@@ -1,7 +1,8 @@
 """The shipped senders in virtual time: their laws, put together as their programs do it, one `step` per look.
 
-Each is given `now` [s], the messages of safety_status since its last look, and its own input; it answers with the
-command that it sends, None where it sends nothing. To suspend a program is not to call its `step`.
+Each begins at its first look, or at `began` [s] before it. It is given `now` [s], the messages of safety_status since its
+last look, and its own input; it answers with the command that it sends, None where it sends nothing. To suspend a program
+is not to call its `step`.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ CHOSEN, LIMITS = Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0)
 class _Watch:
     """What of safety_status all have in common."""
 
-    def __init__(self, now: float) -> None:
-        self.interruptions = Interruptions(now)
+    def __init__(self, now: float, began: float | None = None) -> None:
+        self.interruptions = Interruptions(now, began)
         self._seen = 0
 
     def interrupted(self, now: float, statuses: Sequence[Status], *, waited: bool = False) -> bool:
@@ -84,7 +85,8 @@ class PathSender:
     """drive_path.py, or one goal of follow_path.py: requested when it is made, driven once it is planned."""
 
     def __init__(self, now: float, watch: _Watch | None = None, requested: float | None = None) -> None:
-        self._watch, self._requested = watch or _Watch(now), now if requested is None else requested
+        """`requested`: s when, where that is not `now`; without a `watch` the process began then."""
+        self._watch, self._requested = watch or _Watch(now, requested), now if requested is None else requested
         self._follower: Follower | None = None
         self._odometry_at = now
         self._driving = False
@@ -135,8 +137,8 @@ class GoalSender:
 class CommandSender:
     """send_cmd.py; it has no input."""
 
-    def __init__(self, now: float) -> None:
-        self._release = Release(now)
+    def __init__(self, now: float, began: float | None = None) -> None:
+        self._release = Release(now, began)
         self._due = -math.inf
 
     def step(self, now: float, statuses: Sequence[Status], _input: object = None) -> Command | None:

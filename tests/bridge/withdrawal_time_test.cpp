@@ -1,0 +1,60 @@
+#include "bridge/reports/withdrawal_time.h"
+
+#include <gtest/gtest.h>
+
+namespace robot_control {
+namespace {
+
+/// Looks at times that grow by one.
+class WithdrawalTimeTest : public testing::Test {
+ protected:
+  void look(PermitAction action, std::uint64_t causes = 0) {
+    permit_.action = action;
+    permit_.causes = causes;
+    time_.look(permit_, ++now_ns_);
+  }
+
+  void start() {
+    look(PermitAction::kBrake);
+    permit_.withdrawals = 3;
+    look(PermitAction::kDrive);
+  }
+
+  Permit permit_;
+  WithdrawalTime time_;
+  std::int64_t now_ns_ = 0;
+};
+
+TEST_F(WithdrawalTimeTest, IsNoneBeforeAPermissionEnded) {
+  start();
+  EXPECT_FALSE(time_.last_ns());
+}
+
+TEST_F(WithdrawalTimeTest, IsTheEndOfALatchedStop) {
+  look(PermitAction::kBrake, kCauseEmergencyStopService);
+  look(PermitAction::kBrake, kCauseEmergencyStopService);
+  EXPECT_EQ(time_.last_ns(), now_ns_);
+  start();
+  EXPECT_EQ(time_.last_ns(), 2);
+}
+
+TEST_F(WithdrawalTimeTest, IsTheEndOfAPermissionAndNotOfTheWaitForTheNextOne) {
+  start();
+  look(PermitAction::kBrake);
+  EXPECT_EQ(time_.last_ns(), 3);
+  look(PermitAction::kBrake);
+  look(PermitAction::kDrive);
+  EXPECT_EQ(time_.last_ns(), 3);
+}
+
+TEST_F(WithdrawalTimeTest, IsTheLookAfterAStopThatWasReleasedBetweenTwo) {
+  start();
+  ++permit_.withdrawals;
+  look(PermitAction::kDrive);
+  EXPECT_EQ(time_.last_ns(), 3);
+  look(PermitAction::kDrive);
+  EXPECT_EQ(time_.last_ns(), 3);
+}
+
+}  // namespace
+}  // namespace robot_control
