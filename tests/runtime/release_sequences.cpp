@@ -43,6 +43,7 @@ CommandSourceList two_sources(double first_timeout, double second_timeout) {
 
 struct Sender {
   std::string name;
+  std::string uri = "0";  // of its process
   boost::shared_ptr<const void> connection = boost::make_shared<char>();
   std::int64_t suspended_until = 0;
   Message message = Message::kNone;
@@ -55,10 +56,10 @@ struct Sender {
 
   std::int64_t silence = kTimeoutTicks;  // ticks, the shortest since then after which it is forgotten
 
-  std::int64_t motion_at = kNever;  // tick of the last message but an accepted zero, on this connection
+  std::int64_t motion_at = kNever;  // tick of the last message but an accepted zero, of this process
   bool zero_since = true;           // the last withdrawal of the permission to drive
   bool owes_zero = false;
-  bool left_requesting = false;  // its connection before this one, which owed nothing: its command may be in force
+  bool left_requesting = false;  // its process before this one, which owed nothing: its command may be in force
 
   bool has_requested() const { return received != Message::kNone && received != Message::kZero; }
 
@@ -104,6 +105,7 @@ class Sequence {
   void start(Node node) {
     ++figures_.starts;
     take_release_back();
+    unseen_[node] = true;
     switch (node) {
       case kDriverNode:
         driver_ = std::make_unique<DriverCycle>(
@@ -124,7 +126,7 @@ class Sequence {
         inbox_.emplace(parameters_.cmd_vel_timeout, parameters_.one_sender);
         mux_.emplace(two_sources(source_timeouts_[0], source_timeouts_[1]), parameters_.cmd_vel_timeout,
                      parameters_.one_sender);
-        for (Sender& sender : senders_) reconnect(sender);
+        start_intake();
         break;
       case kMonitorNode:
         monitor_ = std::make_unique<MonitorCycle>(
@@ -142,6 +144,20 @@ class Sequence {
       case kNodes:
         break;
     }
+  }
+
+  /// As the node does. Where this was no restart, the judge forgets as the node does, at its first look.
+  void start_intake() {
+    EarlierController earlier;
+    CommandFrame command;
+    if (command_.reader.newest(command) == Lookup::kFrame) earlier.run = command.head.run;
+    for (Sender& sender : senders_) {
+      earlier.present.push_back({sender.name, nullptr, sender.uri});
+      reopen(sender);
+    }
+    intake().start(earlier);
+    earlier_run_ = earlier.run;
+    has_looked_ = false;
   }
 
   void take_release_back() {
@@ -168,9 +184,20 @@ class Sequence {
     }
   }
 
-  static void reconnect(Sender& sender) {
-    sender.left_requesting |= sender.has_requested() && !sender.owes_zero;
+  /// The same process closes its connection and opens another one, or does so to another controller.
+  static void reopen(Sender& sender) {
     sender.connection = boost::make_shared<char>();
+    sender.received_at = kNever;
+  }
+
+  void restart(Sender& sender) {
+    reopen(sender);
+    sender.uri = std::to_string(++processes_);
+    forget(sender);
+  }
+
+  static void forget(Sender& sender) {
+    sender.left_requesting |= sender.has_requested() && !sender.owes_zero;
     sender.received = Message::kNone;
     sender.motion_at = kNever;
     sender.zero_since = true;
@@ -303,7 +330,8 @@ class Sequence {
         sender.period = 1 + below(kTimeoutTicks - 2 * kJudgesMargin);
       }
       if (chance(300)) sender.suspended_until = now_ + below(4 * kTimeoutTicks);
-      if (chance(400)) reconnect(sender);
+      if (chance(400)) restart(sender);
+      if (chance(400)) reopen(sender);
       if (now_ < sender.suspended_until) continue;
       if (sender.message == Message::kNone || now_ - sender.sent < sender.period) continue;
       sender.sent = now_;
@@ -328,14 +356,16 @@ class Sequence {
     Permit permit;
     if (permit_.reader.newest(permit) != Lookup::kFrame) return;
     if (!current(sensors_.reader, permit.head, robot_.hash)) return;
-    intake().follow(
-        {.run = permit.head.run, .withdrawals = permit.withdrawals, .granted = permit.action == PermitAction::kDrive},
-        loop_ns());
+    const MotionPermission permission = motion_permission(permit);
+    if (!std::exchange(has_looked_, true) && !permission.stopped && permission.run != earlier_run_) {
+      for (Sender& sender : senders_) forget(sender);
+    }
+    intake().follow(permission, loop_ns());
   }
 
   void receive(Sender& sender) {
     follow_permission();
-    ArrivedCommand arrived{.sender = {sender.name, sender.connection}, .twist = {}, .stamp_ns = 0};
+    ArrivedCommand arrived{.sender = {sender.name, sender.connection, sender.uri}, .twist = {}, .stamp_ns = 0};
     const Message message = std::exchange(sender.zero_first, false) ? Message::kZero : sender.message;
     if (message == Message::kMotion || message == Message::kAgedMotion) arrived.twist.linear[0] = 0.5;
     if (message == Message::kNotFinite) arrived.twist.linear[0] = std::numeric_limits<double>::quiet_NaN();
@@ -381,8 +411,8 @@ class Sequence {
       driver_->step();
       ++cycles_;
     }
-    if (estimator_ && !away(kEstimatorNode)) estimator_->step();
-    if (controller_ && !away(kControllerNode)) controller_->step();
+    if (estimator_ && !away(kEstimatorNode) && estimator_->step()) note_frame(kEstimatorNode);
+    if (controller_ && !away(kControllerNode) && controller_->step()) note_frame(kControllerNode);
     if (!monitor_ || away(kMonitorNode)) return;
     monitor_->inbox().store(operator_input_);
     if (!monitor_->step() && !ticked_) monitor_->idle();  // as its waits end, or its ordinary thread polls
@@ -391,6 +421,11 @@ class Sequence {
     accepted_ = permit.resets_handled != last_permit_.resets_handled && permit.reset_refusal == 0 &&
                 last_permit_.causes != 0 && permit.causes == 0;
     last_permit_ = permit;
+  }
+
+  /// The monitor learns of a start from the first frame (safety/latch/motion_release.h), which may come late.
+  void note_frame(Node node) {
+    if (std::exchange(unseen_[node], false)) start_cycle_ = withdrawn_cycle_ = cycles_;
   }
 
   const char* judge() {
@@ -441,6 +476,9 @@ class Sequence {
   std::array<double, 2> source_timeouts_{};
   std::optional<CommandInput> inbox_;
   std::optional<CommandMux> mux_;  ///< instead, with a list of sources
+  std::uint64_t earlier_run_ = 0;  ///< of the last command before this controller
+  bool has_looked_ = false;        ///< this controller, at a permit
+  int processes_ = 0;              ///< of senders
   OperatorInput operator_input_;
   EStopLevels levels_;
   std::array<Button, 2> buttons_{Button{.name = "/panel"}, Button{.name = "/gate"}};
@@ -451,6 +489,7 @@ class Sequence {
   std::array<Sender, 2> senders_{Sender{.name = "/a"}, Sender{.name = "/b"}};
   std::array<bool, 2> waiting_{};
   std::array<bool, kNodes> dead_{};
+  std::array<bool, kNodes> unseen_{};  ///< no frame since its start
   std::array<std::int64_t, kNodes> away_until_{};
   std::int64_t now_ = 0;
   std::int64_t started_at_ = 0;

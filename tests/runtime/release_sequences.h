@@ -1,7 +1,7 @@
 #pragma once
 /// Does anything move that nothing released? One random sequence per seed of deaths, restarts, stalls, pauses and
-/// resets of the four nodes, of two senders of commands whose clocks jump and which are suspended and restarted, of
-/// publishers of e_stop that come and go, of other cmd_vel_timeouts, emergency stops and resets, in virtual time: a
+/// resets of the four nodes, of two senders of commands whose clocks jump and which are suspended, restarted, and close
+/// and open their connections, of publishers of e_stop that come and go, of other cmd_vel_timeouts, emergency stops and resets, in virtual time: a
 /// restart builds the node's classes again on the channels that the last ones left, with an empty inbox. In a third of
 /// the sequences the senders are two sources of a list with a lock, whose timeouts are short, long or none.
 ///
@@ -12,7 +12,8 @@
 ///   stop        … and only if no emergency stop was requested since the last accepted reset
 ///   requested   … and only while some sender requests motion that owes no zero velocity: a sender owes one from a
 ///               start, a pause or a stop that finds it requesting motion, or having done so within T, and from a
-///               release that finds it requesting motion, to its own next accepted zero
+///               release that finds it requesting motion, to its own next accepted zero, over all its connections and
+///               all controllers of a run or of a stop
 ///   reset       is accepted only if no sender's newest message of the last T, to this controller, requested motion
 ///               or was refused, and if no publisher's last word on e_stop was true, as far as this monitor or an
 ///               earlier one received it; that of one that has left counts until the first message of another

@@ -191,6 +191,28 @@ class CommandSourcesTest(RobotTestCase):
         time.sleep(0.5)
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
 
+    def test_what_was_started_before_a_stop_but_suspended_before_its_first_line_moves_nothing(self) -> None:
+        before = self.robot.distance
+        for program in (Program("drive_path.py", "square"), Program("send_cmd.py", "--angular=0")):
+            program.send_signal(signal.SIGSTOP)
+            self.addCleanup(program.end)
+            self.robot.call("e_stop_trigger")
+            self.robot.release()
+            program.send_signal(signal.SIGCONT)
+            self.assertEqual(program.wait(), 1, program.output)
+            self.assertIn("the robot was stopped and released", program.output)
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+
+    def test_a_command_that_is_started_during_a_stop_does_not_begin_with_its_reset(self) -> None:
+        before = self.robot.distance
+        self.robot.call("e_stop_trigger")
+        command = Program("send_cmd.py", "--angular=0")
+        self.addCleanup(command.end)
+        wait_for("why", lambda: "e_stop_trigger was called. The command has no effect" in command.output)
+        self.robot.release()
+        self.assertEqual(command.wait(), 1, command.output)
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+
     def test_two_publishers_of_joy_move_nothing(self) -> None:
         pad = Program("pad.py", "--joy", "_scale_linear:=0.3")
         self.addCleanup(pad.end)

@@ -4,6 +4,7 @@
 import itertools
 import signal
 import subprocess
+import sys
 import time
 
 import rospy
@@ -11,7 +12,44 @@ import rostest
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import JointState
-from system_support import CONTROLLER, ESTIMATOR, LOOP, MONITOR, PLANT, RobotTestCase, wait_for
+from system_support import CONTROLLER, ESTIMATOR, LIMIT, LOOP, MONITOR, PLANT, RobotTestCase, wait_for
+
+
+SENDER = """
+import sys
+import rospy
+from geometry_msgs.msg import Twist
+
+rospy.init_node("sender")
+message = Twist()
+message.linear.x = 0.4
+for line in sys.stdin:  # open: a connection; close: it; send: motion until the next line
+    if line.strip() == "open":
+        publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, latch=True)
+    elif line.strip() == "close":
+        publisher.unregister()
+    else:
+        publisher.publish(message)
+"""
+
+
+class Sender:
+    """A node /sender on cmd_vel, a process of its own."""
+
+    def __init__(self) -> None:
+        self.process = subprocess.Popen([sys.executable, "-c", SENDER], stdin=subprocess.PIPE, text=True, bufsize=1)
+        self.say("open")
+
+    def say(self, what: str) -> None:
+        """open: a connection; close: it; send: one message of 0.4 m/s."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{what}\n")
+
+    def end(self) -> None:
+        """In order."""
+        assert self.process.stdin is not None
+        self.process.stdin.close()
+        self.process.wait(LIMIT)
 
 
 class RestartTest(RobotTestCase):
@@ -37,6 +75,41 @@ class RestartTest(RobotTestCase):
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
         self.robot.start(CONTROLLER)
         self.expect_latched("controller_lost")
+
+    def sender_that_drives(self) -> Sender:
+        self.robot.await_rest()
+        sender = Sender()
+        self.addCleanup(sender.end)
+        wait_for("motion", lambda: self.robot.speed > 0.3, every=lambda: self.send(sender))
+        return sender
+
+    def send(self, sender: Sender) -> None:
+        sender.say("send")
+        time.sleep(0.05)
+
+    def expect_refusal(self, sender: Sender) -> None:
+        """It is named, and moves nothing; started anew it drives."""
+        before = self.robot.distance
+        wait_for("its name", lambda: "/sender" in self.robot.revoked, every=lambda: self.send(sender))
+        self.assertAlmostEqual(self.robot.distance, before, delta=0.01)
+        sender.end()
+        self.sender_that_drives()
+
+    def test_a_sender_that_slept_over_the_restart_of_the_controller_moves_nothing(self) -> None:
+        sender = self.sender_that_drives()
+        self.robot.nodes[CONTROLLER].kill()
+        wait_for("controller_lost", lambda: "controller_lost" in self.robot.causes)
+        self.robot.start(CONTROLLER)
+        self.robot.release()
+        self.expect_refusal(sender)
+
+    def test_a_sender_that_opens_its_connection_again_owes_its_zero(self) -> None:
+        sender = self.sender_that_drives()
+        self.robot.call("e_stop_trigger")
+        sender.say("close")
+        self.robot.release()
+        sender.say("open")
+        self.expect_refusal(sender)
 
     def test_estimator_continues_where_it_was(self) -> None:
         self.robot.drive_until("0.3 m", lambda: self.robot.distance > 0.3)
