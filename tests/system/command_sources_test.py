@@ -193,7 +193,8 @@ class CommandSourcesTest(RobotTestCase):
 
     def test_what_was_started_before_a_stop_but_suspended_before_its_first_line_moves_nothing(self) -> None:
         before = self.robot.distance
-        for program in (Program("drive_path.py", "square"), Program("send_cmd.py", "--angular=0")):
+        for name, argument in (("drive_path.py", "square"), ("send_cmd.py", "--angular=0")):
+            program = Program(name, argument)
             program.send_signal(signal.SIGSTOP)
             self.addCleanup(program.end)
             self.robot.call("e_stop_trigger")

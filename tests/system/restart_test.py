@@ -25,7 +25,7 @@ message = Twist()
 message.linear.x = 0.4
 for line in sys.stdin:  # open: a connection; close: it; send: motion until the next line
     if line.strip() == "open":
-        publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, latch=True)
+        publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
     elif line.strip() == "close":
         publisher.unregister()
     else:

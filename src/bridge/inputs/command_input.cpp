@@ -101,7 +101,7 @@ void CommandInput::refuse_revoked(const std::string& sender, std::int64_t loop_n
   if (!may_report(sender + " revoked", loop_ns)) return;
   lines_.push_back({true, "motion of " + sender +
                               " is refused: it was requested before a stop, a restart or a pause ended the permission "
-                              "to move, or meanwhile; let that sender send a zero velocity, or restart it"});
+                              "to move, or meanwhile, or may have been; let that sender send a zero velocity, or restart it"});
 }
 
 void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns) {
