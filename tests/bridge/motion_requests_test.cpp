@@ -121,6 +121,15 @@ TEST_F(MotionRequestsOfARestartTest, AreRevokedOfAllProcessesThatWereThere) {
   EXPECT_FALSE(revoked_again(teleop_)) << "and so does its zero count";
 }
 
+TEST_F(MotionRequestsOfARestartTest, CountAsMadeAtTheStart) {
+  requests_.follow(permission_, now_);
+  requests_.end(teleop_);
+  grant();
+  now_ += kWindow;
+  withdraw();
+  EXPECT_TRUE(requests_.revoked(teleop_)) << "within the window before another withdrawal";
+}
+
 TEST_F(MotionRequestsOfARestartTest, LikewiseInAnotherRunWhileAStopIsLatched) {
   permission_.run = 8;
   permission_.stopped = true;

@@ -31,6 +31,7 @@ MotionRequests::Record& MotionRequests::record_of(const Publisher& sender) {
   record.sender = {sender.name, nullptr, sender.uri};
   record.connection = sender.connection;
   record.revoked = permission_.run != 0 && any_same_process(earlier_.present, sender);
+  if (record.revoked) record.requested_ns = started_ns_;
   return record;
 }
 
@@ -59,6 +60,7 @@ void MotionRequests::end(const Publisher& sender) {
 
 bool MotionRequests::follow(const MotionPermission& permission, std::int64_t now_ns) {
   const bool restarted = permission.stopped || permission.run == earlier_.run;
+  if (permission_.run == 0) started_ns_ = now_ns;
   if (permission_.run == 0 && !restarted) earlier_.present.clear();
   const bool withdrawn = permission.run != permission_.run || permission.withdrawals != permission_.withdrawals;
   const bool granted = permission.granted && (withdrawn || !permission_.granted);

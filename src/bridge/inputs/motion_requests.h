@@ -9,7 +9,7 @@
 ///   - when permission is granted again, if it requests motion then: such a request was made during the stop. A request
 ///     that follows a zero velocity and is no older than kInTransit was made with the grant;
 ///   - from the beginning, if this controller was restarted and the process of the sender was there before
-///     (EarlierController): what it requested of the earlier controller is not known.
+///     (EarlierController): what it requested of the earlier controller, until this one started, is not known.
 /// It stays revoked until its own next accepted zero velocity. A connection that a process (same_process) opens goes on
 /// where one that it has closed ended; a process that is started anew owes nothing. Of closed connections kMostClosed
 /// are remembered, the newest ones.
@@ -99,6 +99,7 @@ class MotionRequests {
 
   std::int64_t window_ns_ = 0;
   EarlierController earlier_;
+  std::int64_t started_ns_ = 0;  ///< first call of `follow`
   MotionPermission permission_;
   std::vector<Record> records_;
 };
