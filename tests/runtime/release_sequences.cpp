@@ -28,7 +28,7 @@ constexpr double kTimeout = 0.05;  // s, at first
 constexpr std::int64_t kTimeoutTicks = 50;
 constexpr std::array kTimeouts{0.0, 0.02, kTimeout, 0.1};  // s, that set_parameters takes
 constexpr std::int64_t kJudgesMargin = 6;                  // ticks, of the judge's T
-constexpr std::int64_t kWithRelease = 100;                 // ticks, MotionRequests::kInTransit
+constexpr std::int64_t kWithRelease = 100;                 // driver cycles, MotionRequests::kInTransit
 constexpr std::int64_t kInTransit = 3;  // driver cycles from a message to the command frame that the monitor reads
 constexpr std::int64_t kBrakesWithin = kPermitLife + 2;  // driver cycles for which the last permit lives at the gate
 constexpr std::int64_t kNever = -1'000'000;
@@ -179,7 +179,7 @@ class Sequence {
   /// The robot may drive again: a request during the stop that no zero ended is void, too.
   void release() {
     for (Sender& sender : senders_) {
-      const bool with_release = sender.zero_since && now_ - sender.motion_at <= kWithRelease;
+      const bool with_release = sender.zero_since && cycles_ - sender.received_cycle <= kWithRelease;
       sender.owes_zero |= sender.has_requested() && !with_release;
     }
   }
@@ -402,7 +402,7 @@ class Sequence {
     return *inbox_;
   }
 
-  std::int64_t loop_ns() const { return now_ * kPeriodNs; }
+  std::int64_t loop_ns() const { return cycles_ * kPeriodNs; }
 
   void step() {
     ticked_ = driver_ && !away(kDriverNode) && now_ >= pause_until_;
