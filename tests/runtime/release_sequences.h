@@ -1,9 +1,10 @@
 #pragma once
 /// Does anything move that nothing released? One random sequence per seed of deaths, restarts, stalls, pauses and
 /// resets of the four nodes, of two senders of commands whose clocks jump and which are suspended, restarted, and close
-/// and open their connections, of publishers of e_stop that come and go, of other cmd_vel_timeouts, emergency stops and resets, in virtual time: a
-/// restart builds the node's classes again on the channels that the last ones left, with an empty inbox. In a third of
-/// the sequences the senders are two sources of a list with a lock, whose timeouts are short, long or none.
+/// and open their connections, of publishers of e_stop that come and go, of other cmd_vel_timeouts, emergency stops and
+/// resets, in virtual time: a restart builds the node's classes again on the channels that the last ones left, with an
+/// empty inbox. In a third of the sequences the senders are two sources of a list with a lock, whose timeouts are
+/// short, long or none.
 ///
 /// The judge knows only what was sent, which stamps were refused, and what was started. With T = the shorter of
 /// cmd_vel_timeout and the one before it, in cycles:

@@ -14,7 +14,6 @@ from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import JointState
 from system_support import CONTROLLER, ESTIMATOR, LIMIT, LOOP, MONITOR, PLANT, RobotTestCase, wait_for
 
-
 SENDER = """
 import sys
 import rospy

@@ -38,8 +38,8 @@ def received(name: str) -> Path:
 
 
 def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Signals) -> str:
-    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's. The request is as old
-    as this process: a plan or a file that takes until after a stop and its reset is refused.
+    """The reason why the path was not driven to its end; empty: it was. `points` None: the topic's. The request is as
+    old as this process: a plan or a file that takes until after a stop and its reset is refused.
 
     Raises:
         PathError: the topic brings none.

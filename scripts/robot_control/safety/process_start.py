@@ -1,4 +1,4 @@
-"""When this process began: that is when what it is started for was requested, however late it comes to its first line."""
+"""When this process began: that is when what it is started for was requested, however late its first line runs."""
 
 import os
 import time

@@ -99,9 +99,10 @@ std::vector<ReportLine> CommandInput::lines() {
 
 void CommandInput::refuse_revoked(const std::string& sender, std::int64_t loop_ns) {
   if (!may_report(sender + " revoked", loop_ns)) return;
-  lines_.push_back({true, "motion of " + sender +
-                              " is refused: it was requested before a stop, a restart or a pause ended the permission "
-                              "to move, or meanwhile, or may have been; let that sender send a zero velocity, or restart it"});
+  lines_.push_back(
+      {true, "motion of " + sender +
+                 " is refused: it was requested before a stop, a restart or a pause ended the permission "
+                 "to move, or meanwhile, or may have been; let that sender send a zero velocity, or restart it"});
 }
 
 void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& stamp, std::int64_t loop_ns) {

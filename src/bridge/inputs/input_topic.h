@@ -45,8 +45,7 @@ class InputTopic {
     using Event = ros::MessageEvent<const BoundedMessage>;
     const boost::function<void(const Event&)> callback = [this, receive, malformed](const Event& event) {
       const BoundedMessage& received = *event.getConstMessage();
-      if (received.accepted)
-        return receive(received.message, publisher_of(event));
+      if (received.accepted) return receive(received.message, publisher_of(event));
       malformed(event.getPublisherName());
       warn();
     };

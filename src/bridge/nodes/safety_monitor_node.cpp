@@ -64,7 +64,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     msg::SafetyStatus status =
         found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns()) : waiting_status(absent);
     if (const auto last_ns = withdrawal_.last_ns()) {
-      status.withdrawn = ros::Time().fromNSec(ros::WallTime::now().toNSec() - static_cast<std::uint64_t>(now_ns - *last_ns));
+      status.withdrawn =
+          ros::Time().fromNSec(ros::WallTime::now().toNSec() - static_cast<std::uint64_t>(now_ns - *last_ns));
     }
     note_latch_file(status);
     status_.publish(status);

@@ -1,8 +1,8 @@
 """The shipped senders in virtual time: their laws, put together as their programs do it, one `step` per look.
 
-Each begins at its first look, or at `began` [s] before it. It is given `now` [s], the messages of safety_status since its
-last look, and its own input; it answers with the command that it sends, None where it sends nothing. To suspend a program
-is not to call its `step`.
+Each begins at its first look, or at `began` [s] before it. It is given `now` [s], the messages of safety_status since
+its last look, and its own input; it answers with the command that it sends, None where it sends nothing. To suspend a
+program is not to call its `step`.
 """
 
 from __future__ import annotations
