@@ -83,7 +83,7 @@ TEST_F(MotionRequestsTest, OfANewProcessOfTheSameNameAreItsOwn) {
   teleop_.connection.reset();
   EXPECT_FALSE(revoked_again({"/teleop", nullptr, "http://robot:40002/"}));
   EXPECT_FALSE(revoked_again({"/pad", nullptr, teleop_.uri})) << "it got the port of the other";
-  EXPECT_TRUE(revoked_again({"/teleop"})) << "it cannot be told apart";
+  EXPECT_TRUE(revoked_again({"/teleop"})) << "it cannot be distinguished";
 }
 
 TEST_F(MotionRequestsTest, OfClosedConnectionsAreForgottenBeyondABound) {

@@ -87,7 +87,7 @@ class RestartTest(RobotTestCase):
         time.sleep(0.05)
 
     def expect_refusal(self, sender: Sender) -> None:
-        """It is named, and moves nothing; started anew it drives."""
+        """It is named, and moves nothing; restarted it drives."""
         before = self.robot.distance
         wait_for("its name", lambda: "/sender" in self.robot.revoked, every=lambda: self.send(sender))
         self.assertAlmostEqual(self.robot.distance, before, delta=0.01)

@@ -11,7 +11,7 @@
 ///   - from the beginning, if this controller was restarted and the process of the sender was there before
 ///     (EarlierController): what it requested of the earlier controller, until this one started, is not known.
 /// It stays revoked until its own next accepted zero velocity. A connection that a process (same_process) opens goes on
-/// where one that it has closed ended; a process that is started anew owes nothing. Of closed connections kMostClosed
+/// where one that it has closed ended; a process that was restarted owes nothing. Of closed connections kMostClosed
 /// are remembered, the newest ones.
 ///
 /// Time is that of the loop's frames.

@@ -12,7 +12,7 @@ struct Publisher {
   std::string uri = {};                           ///< of its XML-RPC server, host and port; empty: not known
 };
 
-/// A node that was started anew has another URI. Where one of the two is not known, equal names are one process.
+/// A restarted node has another URI. Where one of the two is not known, equal names are one process.
 inline bool same_process(const Publisher& one, const Publisher& other) {
   return one.name == other.name && (one.uri == other.uri || one.uri.empty() || other.uri.empty());
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// Which process is at the other end of a subscription's connection?
 ///
-/// A connection header names the publisher's node, and a node that was started anew has the same name. roscpp knows the
+/// A connection header names the publisher's node, and a node that was restarted has the same name. roscpp knows the
 /// address of the node's XML-RPC server as well, from the master, and does not pass it on. Here it joins the header:
 /// ros::PublisherLink::setHeader is replaced (interposition.h).
 

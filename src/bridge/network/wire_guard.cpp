@@ -130,7 +130,7 @@ std::string unguarded() {
   }
   if (text.empty()) return "";
   return "the loaded roscpp does not use this program's checks of " + text +
-         ": a malformed connection may end this node, and a sender that is started anew may have to send a zero first; "
+         ": a malformed connection may end this node, and a restarted sender may have to send a zero first; "
          "remedy: build robot_control against the roscpp that is loaded "
          "here (Debian's libroscpp-dev; LD_LIBRARY_PATH and LD_PRELOAD must not name another one), and let no "
          "stranger's process reach its ports (docs/security.md)";
