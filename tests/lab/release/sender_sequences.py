@@ -172,9 +172,7 @@ def pad(seed: int) -> Outcome:
 
 
 def path(seed: int) -> Outcome:
-    """A goal of follow_path.py, or a drive_path.py, that was requested before the end of a stop moves nothing after it,
-    however long it reads its file, is planned or waits.
-    """
+    """A drive_path.py that was started before the end of a stop moves nothing after it, however long it plans."""
     chance = random.Random(seed)  # noqa: S311 (a seeded sequence)
     monitor, suspensions = Monitor(chance, first=chance.random() < 0.2), Suspensions(chance, 0)
     outcome, made, x, linear = Outcome(seed), None, 0.0, 0.0
@@ -185,7 +183,7 @@ def path(seed: int) -> Outcome:
         if suspensions.lasting(now) or now < begins:
             continue
         if made is None:
-            made = PathSender(now, requested)
+            made = PathSender(now, requested=requested)
             monitor.messages = [monitor.status]  # it is latched
         if planned <= now:
             made.plan([Waypoint(x, 0.0), Waypoint(x + 3.0, 0.0)])
