@@ -17,7 +17,7 @@
 /// sees it. An innovation pulls no harder than Huber's bound; beyond kGate deviations it is not used. The walks of ε
 /// and β are in proportion to the slip noise (wheel_noise.h).
 ///
-/// Where wheels and gyro contradict each other, nothing tells which of both is wrong. The heading stays the gyro's, and
+/// Where wheels and gyro contradict each other, either may be wrong. The heading stays the gyro's, and
 /// its deviation is what both have turned apart since the last rest, at its largest.
 ///
 /// Before the first rest b looks like an ε, and that of wheels which a turn drags over the floor changes with load and
