@@ -34,10 +34,10 @@ inline constexpr double kExcessPart = 0.03;
 inline constexpr double kExcessTime = 0.03;  ///< s
 
 /// m/s of a rim. Measured friction that is fed forward is too much on the described robot; figures:
-/// docs/derivations.md.
+/// docs/evidence/derivations.md.
 inline constexpr double kLeastExcess = 0.0235;
 
-/// m/s of a rim, by which a stopping robot may move backwards; figures: docs/derivations.md.
+/// m/s of a rim, by which a stopping robot may move backwards; figures: docs/evidence/derivations.md.
 inline constexpr double kLeastReverse = 0.03;
 
 /// Of full speed: ramps that end while the loops have not yet found what feed-forward has too much, and long before.

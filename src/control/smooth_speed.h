@@ -13,7 +13,7 @@
 ///   v = √(27/6)·q·√(ki/J)
 ///
 /// on, with q + kTread in place of q for treads that scrub. No gains help: for half of ω the torque has to rise at an
-/// eighth of the pace, and the wheel begins to turn eight times as late. Measured: docs/measurements.md.
+/// eighth of the pace, and the wheel begins to turn eight times as late. Measured: docs/evidence/drive.md.
 
 #include "control/drive_controller_parameters.h"
 #include "robot/robot_model.h"

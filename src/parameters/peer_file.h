@@ -11,7 +11,7 @@ namespace robot_control {
 
 /// The remedy: where keys there and keys here stand side by side.
 inline constexpr const char* kPeerTable =
-    "the table \"Parameters of diff_drive_controller\" in docs/migration.md says what each key is here";
+    "the table \"Parameters of diff_drive_controller\" in docs/interfaces.md says what each key is here";
 
 /// By what a document is known as one ("husky_velocity_controller has type diff_drive_controller/DiffDriveController"):
 /// a `ros__parameters`, a `type` that names a controller, or keys of that controller below a block that is none of

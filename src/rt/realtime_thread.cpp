@@ -177,7 +177,7 @@ RealtimeThread::RealtimeThread(const RealtimeParameters& parameters, std::functi
   join();
   std::string message = "realtime: required, but";
   for (const std::string& refusal : report_.refusals) message += "\n  " + refusal;
-  throw RealtimeError(message + "\n  how to grant it: docs/realtime.md");
+  throw RealtimeError(message + "\n  how to grant it: docs/troubleshooting.md");
 }
 
 RealtimeThread::~RealtimeThread() {

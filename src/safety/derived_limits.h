@@ -25,7 +25,7 @@
 ///                       kLeastRunaway covers a wheel loop that is pushed, and 20 quanta of a wheel speed measured with
 ///                       4096 counts over T (0.077 rad/s)
 ///
-/// Battery limits are never derived: a URDF does not describe the battery. Measured values: docs/derivations.md.
+/// Battery limits are never derived: a URDF does not describe the battery. Measured values: docs/evidence/derivations.md.
 
 #include "robot/robot_model.h"
 #include "safety/safety_parameters.h"
@@ -34,9 +34,9 @@ namespace robot_control {
 
 inline constexpr double kSpeedMargin = 1.0;     ///< rad/s, 13 quanta as above; for slow robots
 inline constexpr double kLeastRunaway = 2.0;    ///< rad/s
-inline constexpr double kStall = 0.5;           ///< rad; docs/derivations.md
-inline constexpr double kScrubbingStall = 1.2;  ///< rad; docs/derivations.md
-inline constexpr double kNotStopping = 2.0;     ///< s; docs/derivations.md
+inline constexpr double kStall = 0.5;           ///< rad; docs/evidence/derivations.md
+inline constexpr double kScrubbingStall = 1.2;  ///< rad; docs/evidence/derivations.md
+inline constexpr double kNotStopping = 2.0;     ///< s; docs/evidence/derivations.md
 inline constexpr double kSlowLoop = 0.005;      ///< s
 inline constexpr double kSpeedWindow = 0.02;    ///< s, T
 

@@ -236,7 +236,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     cluster.add_argument("--tls", type=Path, metavar="FOLDER", help="of ca.pem, cert.pem, key.pem; default: as Dask")
     cluster.add_argument("--insecure", action="store_true", help="allow tcp:// beyond the loopback: plain text")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")
-    parser.add_argument("--markdown", action="store_true", help="write the tables of docs/measurements.md")
+    parser.add_argument("--markdown", action="store_true", help="write the tables to docs/evidence")
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)

@@ -2,7 +2,7 @@
 
 Each seed is one connection to the TCPROS or the XML-RPC port of one node: a sound header or request, or noise, mutated.
 It ends by RST, so that no port stays in TIME_WAIT. What by its protocol ends a node, the XML-RPC call `shutdown`, is
-never sent (docs/security.md).
+never sent (docs/safety.md).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What benchmarks measured, as tables of docs/measurements.md, from `<!-- scripts/bench NAME -->` to `<!-- end -->`."""
+"""Writes what a benchmark measured to docs/evidence/NAME.md, between `<!-- scripts/bench NAME -->` and `<!-- end -->`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-PAGE = Path(__file__).parents[2] / "docs" / "measurements.md"
+EVIDENCE = Path(__file__).parents[2] / "docs" / "evidence"
 ALLOWED = "what is allowed"
 """reference_name of a figure that is judged by a bound"""
 
@@ -54,25 +54,17 @@ def _markdown(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
 
 
 def replaced(page: str, result: dict[str, Any]) -> str:
-    """`page` with the table of this benchmark.
-
-    Raises:
-        ValueError: the page has no place for it.
-    """
-    begin = f"<!-- scripts/bench {result['bench']} -->\n"
-    place = re.compile(re.escape(begin) + r".*?(?=<!-- end -->)", re.DOTALL)
-    if not place.search(page):
-        raise ValueError(f"{PAGE.name} has no place for {result['bench']}: {begin.strip()} … <!-- end -->")
+    """`page` with the table of this benchmark between its marks; a page without them gets them at its end."""
+    begin, end = f"<!-- scripts/bench {result['bench']} -->\n", "<!-- end -->"
+    if begin not in page:
+        page += f"\n{begin}{end}\n"
+    place = re.compile(f"{re.escape(begin)}.*?(?={re.escape(end)})", re.DOTALL)
     return place.sub(lambda _: f"{begin}\n{table(result)}\n\n", page)
 
 
 def write(results: Sequence[dict[str, Any]]) -> None:
-    """Into the page.
-
-    Raises:
-        ValueError: it has no place for one of them; then nothing is written.
-    """
-    page = PAGE.read_text()
+    """Writes each result to the file of its benchmark, which is created where it does not exist."""
     for result in results:
-        page = replaced(page, result)
-    PAGE.write_text(page)
+        path = EVIDENCE / f"{result['bench']}.md"
+        page = path.read_text() if path.exists() else f"# scripts/bench {result['bench']}\n"
+        path.write_text(replaced(page, result))

@@ -87,7 +87,7 @@ TEST_F(Layers, TheInstalledFileItselfIsNotLaidOverItself) {
   EXPECT_THROW(read_parameters(file.path(), {}, link), ParameterError) << "its rate is missing";
 }
 
-/// control.yaml of husky_control and jackal_control by the table of docs/migration.md, key by key.
+/// control.yaml of husky_control and jackal_control by the table of docs/interfaces.md, key by key.
 TEST_F(Layers, HuskyAndJackalConvertedLiterallyAreAccepted) {
   const Parameters husky = read(R"(
 robot: {wheel_separation_multiplier: 1.875}
@@ -168,7 +168,7 @@ wheel_separation: 0.3
 )"}) {
     const std::string said = refusal(text);
     EXPECT_THAT(said, AllOf(HasSubstr("1 problem\n"), HasSubstr("is a configuration of ros_controllers"),
-                            HasSubstr("docs/migration.md"), HasSubstr("line 1")))
+                            HasSubstr("docs/interfaces.md"), HasSubstr("line 1")))
         << text;
   }
   EXPECT_EQ(refusal("robot: {left_wheel_joints: left_wheel_joint, right_wheel_joint: right_wheel_joint}\n"), "");
@@ -177,7 +177,7 @@ wheel_separation: 0.3
 TEST_F(Layers, AKeyOfThePeerIsAnsweredByTheOneOfOurs) {
   const auto said = [&](const std::string& key) { return refusal("diff_drive_controller:\n  " + key + ": 1\n"); };
   EXPECT_THAT(said("wheel_radius_multiplier"), AllOf(HasSubstr("here robot.wheel_radius"),
-                                                     HasSubstr("docs/migration.md"), Not(HasSubstr("wheel_base"))));
+                                                     HasSubstr("docs/interfaces.md"), Not(HasSubstr("wheel_base"))));
   EXPECT_THAT(said("left_wheel_radius_multiplier"), HasSubstr("robot.left_wheel_radius_multiplier"));
   EXPECT_THAT(said("odom_frame_id"), HasSubstr("here state_estimator.odom_frame;"));
   EXPECT_THAT(said("velocity_rolling_window_size"), HasSubstr("speed_bandwidth"));

@@ -1,5 +1,5 @@
 /// Every field of the message Trace, edited in random rows: a replay notices it. Where the author of an edit renews the
-/// checksum of the message, some are not: those are listed in docs/replay.md, which this test reads.
+/// checksum of the message, some are not: those are listed in docs/log.md, which this test reads.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -92,9 +92,9 @@ void renew_checksum(LoggedMessage& message) {
   message.bytes.replace(end, sizeof sum, reinterpret_cast<const char*>(&sum), sizeof sum);
 }
 
-/// The fields in the tables of docs/replay.md below "What a replay cannot know".
+/// The fields in the tables of docs/log.md below "What a replay cannot know".
 std::set<std::string> fields_that_cannot_be_known() {
-  std::ifstream page(std::string(PROJECT_DIRECTORY) + "/docs/replay.md");
+  std::ifstream page(std::string(PROJECT_DIRECTORY) + "/docs/log.md");
   std::set<std::string> fields;
   bool here = false;
   for (std::string line; std::getline(page, line);) {

@@ -1,4 +1,5 @@
-import pytest
+import re
+
 from lab import markdown
 
 
@@ -44,12 +45,26 @@ def test_only_the_place_of_the_benchmark_is_replaced():
     assert done.endswith("<!-- end -->\nb\n<!-- scripts/bench plant -->\nkept\n<!-- end -->\n")
 
 
-def test_a_benchmark_without_a_place_is_refused_by_name():
-    with pytest.raises(ValueError, match="no place for frames"):
-        markdown.replaced("a\n", {"bench": "frames", "rows": [row("lost", 0.0)]})
+def test_a_page_without_a_place_gets_one_at_its_end():
+    done = markdown.replaced("a\n", {"bench": "frames", "rows": [row("lost", 1.0)]})
+    assert done.startswith("a\n\n<!-- scripts/bench frames -->\n\n| figure |")
+    assert done.endswith("\n\n<!-- end -->\n")
 
 
-@pytest.mark.parametrize("name", ["step", "plant", "lockstep", "drive", "odometry"])
-def test_the_page_has_a_place_for_every_benchmark_that_is_quoted(name):
-    result = {"bench": name, "rows": [row("figure", 1.0)]}
-    assert "| figure | 1 ns |" in markdown.replaced(markdown.PAGE.read_text(), result)
+def test_a_benchmark_without_a_file_creates_it_and_replaces_its_table_later(tmp_path, monkeypatch):
+    monkeypatch.setattr(markdown, "EVIDENCE", tmp_path)
+    markdown.write([{"bench": "step", "rows": [row("gate", 1.0)]}])
+    markdown.write([{"bench": "step", "rows": [row("gate", 2.0)]}])
+    text = (tmp_path / "step.md").read_text()
+    assert text.startswith("# scripts/bench step\n\n<!-- scripts/bench step -->\n\n| figure | value | ratio |")
+    assert text.count("| gate |") == 1
+    assert "| gate | 2 ns |" in text
+
+
+def test_the_marks_of_a_page_are_those_of_its_benchmark():
+    marks = {
+        path.stem: set(re.findall(r"<!-- scripts/bench (\w+) -->", path.read_text()))
+        for path in markdown.EVIDENCE.glob("*.md")
+    }
+    assert {name: found for name, found in marks.items() if found - {name}} == {}
+    assert marks["drive"]

@@ -102,7 +102,7 @@ def test_what_no_law_takes_over_is_said(log, capsys, tmp_path):
 
 
 def test_a_gain_that_the_log_left_out_is_taken_over(log, capsys, tmp_path):
-    gain = "diff_drive_controller.pid_kp=1.0"  # as in docs/replay.md
+    gain = "diff_drive_controller.pid_kp=1.0"  # as in docs/log.md
     code, text, _ = replay(capsys, log, "--set", gain, "--plot", tmp_path / "what_if.png")
     assert code == 0
     assert "no effect" not in text

@@ -208,7 +208,7 @@ def _print_refusals(launch_log: str) -> None:
     for refusal in said:
         print(f"real time: {refusal}")
     if said:
-        print("real time: see docs/realtime.md")
+        print("real time: see docs/troubleshooting.md")
 
 
 def _tail(path: Path, lines: int = 25) -> str:

@@ -19,7 +19,7 @@
 ///   XmlRpc::XmlRpcServerConnection::executeMethod   lets pass what a method throws, as InvalidNameException of
 ///                                `paramUpdate`, and nothing catches it. Here the caller gets a fault
 ///
-/// What remains possible for a peer stands in docs/security.md.
+/// What remains possible for a peer stands in docs/safety.md.
 
 #include <cstddef>
 #include <cstdint>

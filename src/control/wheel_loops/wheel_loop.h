@@ -40,7 +40,7 @@
 /// tracking loop takes over the change of the known acceleration.
 ///
 /// Gains for 12 kg, 1 kHz, 20 Hz, as wheel_loop_gains.h derives them for that robot (wheel inertia J: lifted 0.005,
-/// turning 0.045, straight 0.065 kg·m²; derivation and margins: docs/derivations.md):
+/// turning 0.045, straight 0.065 kg·m²; derivation and margins: docs/evidence/derivations.md):
 ///   model_inertia = 2·J_lifted = 0.01. With the encoder angle alone (model_inertia = ∞) the lifted wheel is stable up
 ///     to kp = 0.88. With the measured torque the limit of stability is kp·dt/model_inertia = 1, that is 10 N·m·s/rad,
 ///     for *every* inertia from 0.005 kg·m² up; damping (control_problems.h) limits kp earlier. Less than 2·J_lifted

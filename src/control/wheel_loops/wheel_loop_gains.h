@@ -19,7 +19,7 @@
 ///
 /// In units of J_straight and dt only J/J_straight and the rate remain. With these gains the spectral radius is below 1
 /// for 100 … 2000 Hz, J/J_straight of 0.01 … 1 and every inertia between J and 10·J_straight. Margins, tolerated delays
-/// and examples: docs/derivations.md.
+/// and examples: docs/evidence/derivations.md.
 
 #include "control/drive_controller_parameters.h"
 #include "control/wheel_loops/wheel_loop.h"

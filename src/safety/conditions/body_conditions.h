@@ -20,7 +20,8 @@
 /// to the middle of the axles. Remaining tilt errors: Δv ω/g while wheels slip by Δv; Δω r/(g T) at the beginning of a
 /// turn.
 ///
-/// The default limits are 1.5 times what normal driving reaches; the measured values stand in docs/derivations.md.
+/// The default limits are 1.5 times what normal driving reaches; the measured values stand in
+/// docs/evidence/derivations.md.
 ///
 /// A sample that is missing, not valid or not finite is not evaluated: its conditions are not beyond their limits.
 

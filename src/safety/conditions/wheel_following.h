@@ -54,7 +54,7 @@ class WheelFollowing {
   static constexpr double kProgress = 0.1;    ///< rad/s
   static constexpr double kRest = 0.5;        ///< s
   static constexpr double kPushed = 2.0;      ///< rad/s
-  static constexpr double kPushedPart = 0.5;  ///< docs/derivations.md
+  static constexpr double kPushedPart = 0.5;  ///< docs/evidence/derivations.md
   static constexpr double kLargePart = 0.9;
   static constexpr double kFrictions = 1.2;
   static constexpr double kGrounds = 3.0;  ///< times friction 1: the best grip
