@@ -103,8 +103,9 @@ def test_every_page_is_reached_from_the_readme():
         page = ahead.pop()
         if page not in reached:
             reached.add(page)
-            targets = (link.partition("#")[0] for link in links(page))
-            ahead += [(page.parent / path).resolve() for path in targets if path.endswith(".md")]
+            targets = [(page.parent / link.partition("#")[0]).resolve() for link in links(page)]
+            ahead += [path for path in targets if path.suffix == ".md"]
+            ahead += [page for path in targets if path.is_dir() for page in path.glob("*.md")]
     assert set(PAGES) <= reached
 
 
