@@ -25,7 +25,8 @@
 ///                       kLeastRunaway covers a wheel loop that is pushed, and 20 quanta of a wheel speed measured with
 ///                       4096 counts over T (0.077 rad/s)
 ///
-/// Battery limits are never derived: a URDF does not describe the battery. Measured values: docs/evidence/derivations.md.
+/// Battery limits are never derived: a URDF does not describe the battery. Measured values:
+/// docs/evidence/derivations.md.
 
 #include "robot/robot_model.h"
 #include "safety/safety_parameters.h"

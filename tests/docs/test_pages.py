@@ -105,7 +105,7 @@ def test_every_page_is_reached_from_the_readme():
             reached.add(page)
             targets = [(page.parent / link.partition("#")[0]).resolve() for link in links(page)]
             ahead += [path for path in targets if path.suffix == ".md"]
-            ahead += [page for path in targets if path.is_dir() for page in path.glob("*.md")]
+            ahead += [file for path in targets if path.is_dir() for file in path.glob("*.md")]
     assert set(PAGES) <= reached
 
 

@@ -1,4 +1,4 @@
-"""Writes what a benchmark measured to docs/evidence/NAME.md, between `<!-- scripts/bench NAME -->` and `<!-- end -->`."""
+"""Writes results of benchmarks to docs/evidence/NAME.md, between `<!-- scripts/bench NAME -->` and `<!-- end -->`."""
 
 from __future__ import annotations
 

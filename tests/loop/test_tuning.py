@@ -61,7 +61,7 @@ def test_a_set_that_would_break_a_limit_is_refused(values):
         ClosedLoop().set_parameters(values)
 
 
-# Derived gains tolerate 2 cycles of delay (docs/evidence/derivations.md): with 10 the torque alternates between its limits.
+# Derived gains tolerate 2 cycles of delay (docs/evidence/derivations.md). With 10 the torque jumps between its limits.
 def test_a_drive_that_is_later_than_its_gains_bear_is_warned_of_and_stopped():
     loop = ClosedLoop(params={"mujoco_plant": {"sensor_errors": "data_sheet", "actuator_delay": 10}})
     log = loop.run(4.0, (1.0, 0.0))
