@@ -16,6 +16,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 using testing::UnorderedElementsAre;
 
 TEST(ControlProblems, FindsNoneInTheDefaultsAtAnyRate) {
