@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <sstream>
-#include <utility>
 
 #include "control/feed_forward_problems.h"
-#include "control/limits/drive_limits.h"
 #include "control/measured_robot.h"
-#include "control/rehearsal.h"
 #include "control/wheel_loops/feed_forward.h"
 #include "control/wheel_loops/quantisation_ripple.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
@@ -55,6 +51,9 @@ constexpr double kLeastDampingOff = 0.2;
 /// `tracking_bandwidth`, times the period: 2π·0.1 of the way to each new count within a cycle. Above, wheel speeds are
 /// the encoder's counts, and the loop makes torque of them.
 constexpr double kMostTracking = 0.1;
+
+/// `pid_kp` and `tracking_bandwidth`, over what is derived.
+constexpr double kWeakest = 0.1;
 
 /// RMS of the torque of a lifted wheel behind an encoder, of the torque limit: what safety_monitor stops in the end.
 constexpr double kMostRipple = 0.3;
@@ -213,82 +212,21 @@ std::string tracking_message(double bandwidth, double most, double period) {
   return text.str();
 }
 
+std::string weak_message(const std::string& key, double value, double derived, const char* unit) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "diff_drive_controller." << key << " = " << value << " " << unit << ": must be at least "
+       << kWeakest * derived << " " << unit << ", a tenth of what is derived from the robot: below, the wheels follow "
+       << "feed_forward alone. Raise it, or leave it out: then it is derived.";
+  return text.str();
+}
+
 std::string powerless_message(const JointModel& joint, const RobotModel& robot) {
   std::ostringstream text;
   text << "joint '" << joint.name << "': effort limit " << joint.effort_limit
        << " N·m, must be > 0: the wheel could not be driven. Set <limit effort=…> in " << robot.source
        << ", or robot.wheel_effort_limit.";
   return text.str();
-}
-
-std::string excess_message(const Excess& excess, const char* robot) {
-  std::ostringstream text;
-  text.precision(3);
-  const PlanarTwist& motion = excess.motion;
-  const char* unit = excess.turning ? " rad/s" : " m/s";
-  text << "diff_drive_controller: with these limits, gains and feed_forward, " << robot << " would reach "
-       << excess.reached << unit << (excess.stopping ? " on its way from " : " on its way to ")
-       << (excess.turning ? motion.angular : motion.linear) << unit << (excess.stopping ? " to rest" : "")
-       << " (commanded " << motion.linear << " m/s, " << motion.angular << " rad/s), must stay within "
-       << 100 * kExcessPart << " %, but for " << 1000 * kExcessTime
-       << " ms. Bring feed_forward nearer to what the description says, or correct the description where it is wrong; "
-          "or leave pid_kp and pid_ki out: then they are derived from the robot.";
-  return text.str();
-}
-
-/// The set is driven before it drives the robot (rehearsal.h): the robot as described, and as the set has it. What
-/// derived gains would do as well in that motion is not the set's fault.
-std::string rehearsal_problem(const DriveControllerParameters& parameters, const RobotModel& described,
-                              const RobotModel& set, double period) {
-  DriveControllerParameters derived = parameters;
-  derived.pid_kp.reset();
-  derived.pid_ki.reset();
-  derived.pid_kd = 0;
-  derived.tracking_bandwidth.reset();
-  DriveControllerParameters as_described = derived;
-  as_described.feed_forward = {};
-  struct Trial {
-    const char* name;
-    const RobotModel& plant;
-    const DriveControllerParameters& reference;
-  };
-  for (const Trial& trial : {Trial{"the robot as its description has it", described, as_described},
-                             Trial{"the robot as feed_forward has it", set, derived}}) {
-    const std::vector<Excess> excesses = rehearse(parameters, described, trial.plant, period);
-    if (std::ranges::none_of(excesses, [](const Excess& excess) { return excess.times > 1; })) continue;
-    const std::vector<Excess> usual = rehearse(trial.reference, described, trial.plant, period);
-    const Excess* worst = nullptr;
-    for (std::size_t i = 0; i < excesses.size(); ++i) {
-      if (excesses[i].times <= std::max(1.0, kNotWorse * usual[i].times)) continue;
-      if (worst == nullptr || excesses[i].times > worst->times) worst = &excesses[i];
-    }
-    if (worst != nullptr) return excess_message(*worst, trial.name);
-  }
-  return "";
-}
-
-/// `set` with every acceleration and jerk of `in_force` that is steeper; equal to it where none is.
-DriveControllerParameters with_steeper_ramps(DriveControllerParameters set, const DriveControllerParameters& in_force) {
-  const SpeedLimits wanted = speed_limits(set);
-  const SpeedLimits present = speed_limits(in_force);
-  set.max_linear_acceleration = std::max(wanted.linear.acceleration, present.linear.acceleration);
-  set.max_angular_acceleration = std::max(wanted.angular.acceleration, present.angular.acceleration);
-  set.max_linear_deceleration = std::max(wanted.linear.deceleration, present.linear.deceleration);
-  set.max_angular_deceleration = std::max(wanted.angular.deceleration, present.angular.deceleration);
-  const auto jerk = [](double one, double other) {
-    const double most = std::max(one, other);
-    return std::isinf(most) ? 0 : most;
-  };
-  set.max_linear_jerk = jerk(wanted.linear.jerk, present.linear.jerk);
-  set.max_angular_jerk = jerk(wanted.angular.jerk, present.angular.jerk);
-  return set;
-}
-
-bool steeper(const DriveControllerParameters& one, const DriveControllerParameters& other) {
-  const SpeedLimits a = speed_limits(one);
-  const SpeedLimits b = speed_limits(other);
-  return a.linear.acceleration > b.linear.acceleration || a.angular.acceleration > b.angular.acceleration ||
-         a.linear.deceleration > b.linear.deceleration || a.angular.deceleration > b.angular.deceleration;
 }
 
 /// Nothing but limits is set: the rest is derived from the description.
@@ -317,6 +255,9 @@ void check_loops(const DriveControllerParameters& parameters, const RobotModel& 
     derived.bandwidth = tracking_bandwidth({}, period);
     if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
     judged.push_back(loop);
+    if (loop.gains.kp < kWeakest * derived.gains.kp) {
+      problems.push_back(weak_message("pid_kp", loop.gains.kp, derived.gains.kp, "N·m·s/rad"));
+    }
     if (const Load* load = loop.unstable_load()) {
       const std::string suspicions = suspicions_of(described);
       problems.push_back(unstable_message(loop, derived, joint.name, *load) +
@@ -332,20 +273,16 @@ void check_loops(const DriveControllerParameters& parameters, const RobotModel& 
 }  // namespace
 
 std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
-                                          double period, const DriveControllerParameters* in_force) {
+                                          double period) {
   const RobotModel robot = measured_robot(described, parameters.feed_forward);
   std::vector<std::string> problems = feed_forward_problems(parameters, described);
   const double bandwidth = tracking_bandwidth(parameters, period);
   const double most = std::max(kMostTracking / period, tracking_bandwidth({}, period));
   if (bandwidth > most) problems.push_back(tracking_message(bandwidth, most, period));
-  check_loops(parameters, described, robot, period, problems);
-  if (problems.empty() && !robot.wheels.empty() && !only_limits(parameters)) {
-    std::string problem = rehearsal_problem(parameters, described, robot, period);
-    if (problem.empty() && in_force != nullptr && steeper(*in_force, parameters)) {
-      problem = rehearsal_problem(with_steeper_ramps(parameters, *in_force), described, robot, period);
-    }
-    if (!problem.empty()) problems.push_back(std::move(problem));
+  if (const double derived = tracking_bandwidth({}, period); bandwidth < kWeakest * derived) {
+    problems.push_back(weak_message("tracking_bandwidth", bandwidth, derived, "Hz"));
   }
+  check_loops(parameters, described, robot, period, problems);
   return problems;
 }
 

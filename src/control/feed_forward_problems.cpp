@@ -74,8 +74,8 @@ void check_joint_losses(const DriveControllerParameters& parameters, const Robot
 std::vector<std::string> feed_forward_problems(const DriveControllerParameters& parameters, const RobotModel& robot) {
   std::vector<std::string> problems;
   const FeedForwardParameters& given = parameters.feed_forward;
-  check_plausible({"mass", "kg", given.mass, robot.mass, 5}, problems);
-  check_plausible({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 10}, problems);
+  check_plausible({"mass", "kg", given.mass, robot.mass, 3}, problems);
+  check_plausible({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 3}, problems);
   if (robot.wheels.empty()) return problems;
   const double wheel = robot.wheels.front().inertia;
   check_plausible({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);

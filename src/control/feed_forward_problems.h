@@ -2,7 +2,7 @@
 /// Is `feed_forward` plausible on this robot? A payload, a rotor behind a gear: but not a hundred times what is
 /// described, which would drive the robot by itself.
 ///
-///   mass, yaw_inertia, wheel_inertia    within 5, 10 and 30 times of the description, either way
+///   mass, yaw_inertia, wheel_inertia    within 3, 3 and 30 times of the description, either way
 ///   wheel_damping, wheel_friction       a quarter of the torque limit at the fastest wheel speed, or twice the
 ///   described
 

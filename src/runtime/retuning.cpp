@@ -87,8 +87,7 @@ Retuned Retuning::set(const std::string& request) {
   const std::lock_guard lock(mutex_);
   LiveChange change = read_live(parameters_, kBlock, request);
   const DriveControllerParameters& wanted = change.parameters.controller;
-  std::ranges::move(control_problems(wanted, robot_, parameters_.loop.period(), &parameters_.controller),
-                    std::back_inserter(change.problems));
+  std::ranges::move(control_problems(wanted, robot_, parameters_.loop.period()), std::back_inserter(change.problems));
   if (std::string problem = monitor_problem(wanted); !problem.empty()) change.problems.push_back(std::move(problem));
   if (!change.problems.empty()) {
     throw ParameterError(listing("set_parameters refused, nothing is changed", change.problems));

