@@ -13,7 +13,7 @@
 namespace robot_control {
 
 /// Bytes of one inflated chunk; rosbag record makes them of 768 kB unless --chunksize says otherwise.
-inline constexpr std::uint32_t kLargestChunk = 256U << 20U;
+inline constexpr std::uint32_t kMaxChunk = 256U << 20U;
 
 enum class BagCompression : std::uint8_t { kNone, kBz2, kLz4 };
 

@@ -15,7 +15,7 @@
 namespace robot_control {
 
 BagFile::BagFile(const std::string& path) : descriptor_(-1) {
-  if (const std::string problem = input_file_problem(path, kLargestBag); !problem.empty()) {
+  if (const std::string problem = input_file_problem(path, kMaxBag); !problem.empty()) {
     throw std::runtime_error(problem);
   }
   descriptor_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -33,15 +33,15 @@ BagFile::~BagFile() {
 }
 
 std::string_view BagFile::read(std::uint64_t offset, std::size_t count, const std::string& field) {
-  const std::uint64_t there = offset < size_ ? size_ - offset : 0;
-  if (count > there) {
+  const std::uint64_t available = offset < size_ ? size_ - offset : 0;
+  if (count > available) {
     throw BagError({.offset = offset}, field,
-                   std::to_string(count) + " bytes, but the file ends after " + std::to_string(there), true);
+                   std::to_string(count) + " bytes, but the file ends after " + std::to_string(available), true);
   }
   if (offset < begin_ || offset + count > begin_ + window_.size()) {
     constexpr std::size_t kAhead = std::size_t{1} << 18U;
     const std::size_t got =
-        fill(offset, static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kAhead), there)));
+        fill(offset, static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kAhead), available)));
     if (got < count) throw BagError({.offset = offset + got}, field, "the file became shorter while it was read", true);
   }
   return std::string_view(window_).substr(offset - begin_, count);

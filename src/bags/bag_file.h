@@ -8,11 +8,11 @@
 
 namespace robot_control {
 
-inline constexpr std::uint64_t kLargestBag = std::uint64_t{16} << 30U;  ///< bytes; an hour of trace has 2.5 GB
+inline constexpr std::uint64_t kMaxBag = std::uint64_t{16} << 30U;  ///< bytes; an hour of trace has 2.5 GB
 
 class BagFile {
  public:
-  /// Throws std::runtime_error: no regular file that can be read, or larger than kLargestBag.
+  /// Throws std::runtime_error: no regular file that can be read, or larger than kMaxBag.
   explicit BagFile(const std::string& path);
   ~BagFile();
   BagFile(const BagFile&) = delete;

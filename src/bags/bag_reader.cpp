@@ -20,7 +20,7 @@ struct FileRecord {
 
 FileRecord read_file_record(BagFile& file, std::uint64_t at) {
   const auto length = bag_number<std::uint32_t>(file.read(at, 4, "header_len"));
-  if (length > kLargestBagHeader) {
+  if (length > kMaxBagHeader) {
     throw BagError({.offset = at}, "header_len", std::to_string(length) + " bytes; at most 65536 are read");
   }
   FileRecord record;
@@ -32,10 +32,10 @@ FileRecord read_file_record(BagFile& file, std::uint64_t at) {
 }
 
 void expect_data(const BagFile& file, const FileRecord& record) {
-  const std::uint64_t there = file.size() - record.data;
-  if (record.length <= there) return;
+  const std::uint64_t available = file.size() - record.data;
+  if (record.length <= available) return;
   throw BagError({.offset = record.data - 4}, "data_len",
-                 std::to_string(record.length) + " bytes, but the file ends after " + std::to_string(there), true);
+                 std::to_string(record.length) + " bytes, but the file ends after " + std::to_string(available), true);
 }
 
 BagCompression compression_of(const BagHeader& header) {
@@ -171,18 +171,18 @@ void BagReader::read_chunk(std::uint64_t record, const BagHeader& header, std::u
                      .packed = length,
                      .size = header.u32("size"),
                      .compression = compression_of(header)};
-  if (chunks_.size() == kMostChunks) throw BagError(header.place(), "op", "the bag has more than 1048576 chunks");
+  if (chunks_.size() == kMaxChunks) throw BagError(header.place(), "op", "the bag has more than 1048576 chunks");
   if (chunk.compression == BagCompression::kNone && chunk.size != chunk.packed) {
     throw BagError(header.place(), "size",
                    std::to_string(chunk.size) + " bytes, but the data have " + std::to_string(chunk.packed));
   }
   if (chunk.compression != BagCompression::kNone) inflated_ += chunk.size;
-  const std::uint64_t most = kInflatesAnyhow + kInflatesTo * file_.size();
-  if (chunk.size > kLargestChunk || inflated_ > most) {
+  const std::uint64_t max_inflated = kInflatesAnyhow + kInflatesTo * file_.size();
+  if (chunk.size > kMaxChunk || inflated_ > max_inflated) {
     throw BagError(header.place(), "size",
                    "the bag inflates to " + std::to_string(std::max<std::uint64_t>(inflated_, chunk.size)) +
                        " bytes or more, with a chunk of " + std::to_string(chunk.size) + "; read are " +
-                       std::to_string(most) + " in all, " + std::to_string(kLargestChunk) +
+                       std::to_string(max_inflated) + " in all, " + std::to_string(kMaxChunk) +
                        " in a chunk. If it is sound, `rosbag decompress` or `rosbag filter` makes one that is read");
   }
   index_.begin(chunk);
@@ -194,7 +194,7 @@ void BagReader::read_chunk(std::uint64_t record, const BagHeader& header, std::u
 
 void BagReader::read_unfinished(std::uint64_t record, const BagHeader& header, std::uint64_t begin) {
   // rosbag writes the sizes into the header when the chunk is full.
-  const auto size = static_cast<std::uint32_t>(std::min<std::uint64_t>(file_.size() - begin, kLargestChunk));
+  const auto size = static_cast<std::uint32_t>(std::min<std::uint64_t>(file_.size() - begin, kMaxChunk));
   const BagChunkData chunk{.record = record, .begin = begin, .packed = size, .size = size};
   if (compression_of(header) != BagCompression::kNone) {
     throw BagError(header.place(), "size", "its recorder did not finish the last chunk, or the file ends in it", true);
@@ -264,7 +264,7 @@ void BagReader::add_connection(const BagHeader& header, std::string_view data, c
     throw BagError(header.place(), "conn", "another connection record " + std::to_string(number) + " stands before");
   }
   connection_bytes_ += data.size() + connection.topic.size();
-  if (connections_.size() == kMostConnections || connection_bytes_ > kLargestConnections) {
+  if (connections_.size() == kMaxConnections || connection_bytes_ > kMaxConnectionBytes) {
     throw BagError(header.place(), "conn", "the bag has more than 10000 connections, or 64 MiB of them");
   }
   connections_.emplace(number, connection);

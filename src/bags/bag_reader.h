@@ -3,8 +3,8 @@
 ///
 /// The file comes from outside. Records, header fields, chunk sizes, compression, the index of each chunk, connection
 /// records and the chunk list at the end are compared with each other; the first contradiction refuses the whole bag
-/// with byte and field. Memory is bounded by kLargestChunk (twice, and 24 bytes per message of it) and
-/// kMostConnections' text, whatever the file says; time by the size of the file and kInflatesTo. What passes is also
+/// with byte and field. Memory is bounded by kMaxChunk (twice, and 24 bytes per message of it) and
+/// kMaxConnections' text, whatever the file says; time by the size of the file and kInflatesTo. What passes is also
 /// safe for librosbag, whose own parser reads out of bounds. What no format shows stays: of the messages' data only
 /// compressed chunks have a checksum.
 ///
@@ -30,9 +30,9 @@ namespace robot_control {
 
 inline constexpr std::uint64_t kInflatesTo = 100;  ///< times the file; telemetry in bz2: 5 to 20
 inline constexpr std::uint64_t kInflatesAnyhow = std::uint64_t{64} << 20U;  ///< bytes that a small bag may have besides
-inline constexpr std::size_t kMostConnections = 10'000;
-inline constexpr std::size_t kLargestConnections = std::size_t{64} << 20U;  ///< bytes of all their records together
-inline constexpr std::size_t kMostChunks = std::size_t{1} << 20U;
+inline constexpr std::size_t kMaxConnections = 10'000;
+inline constexpr std::size_t kMaxConnectionBytes = std::size_t{64} << 20U;  ///< bytes of all their records together
+inline constexpr std::size_t kMaxChunks = std::size_t{1} << 20U;
 
 struct BagConnection {
   std::string topic, type, md5sum, definition;

@@ -51,7 +51,7 @@ BagHeader::BagHeader(std::string_view bytes, const BagPlace& place) : place_(pla
     }
     const std::string_view name = field.substr(0, equals);
     if (has(name)) throw BagError(place + (at + kLength), quoted(name), "stands in the header twice");
-    if (count_ == kMostFields) throw BagError(place + at, quoted(name), "the header has too many fields");
+    if (count_ == kMaxFields) throw BagError(place + at, quoted(name), "the header has too many fields");
     fields_[count_++] = {.name = name, .value = field.substr(equals + 1), .offset = at + kLength + equals + 1};
     at += kLength + length;
   }
@@ -104,7 +104,7 @@ std::string_view BagHeader::text(std::string_view name) const {
 
 BagRecord read_bag_record(std::string_view bytes, const BagPlace& place) {
   const std::uint32_t header = length_at(bytes, 0, place, "header_len");
-  if (header > kLargestBagHeader) {
+  if (header > kMaxBagHeader) {
     throw BagError(place, "header_len", std::to_string(header) + " bytes; at most 65536 are read");
   }
   const std::size_t data_length_at = kLength + header;

@@ -15,7 +15,7 @@ namespace robot_control {
 
 inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 
-inline constexpr std::uint32_t kLargestBagHeader = 1U << 16U;  ///< bytes; rosbag's own have less than 200, and a topic
+inline constexpr std::uint32_t kMaxBagHeader = 1U << 16U;  ///< bytes; rosbag's own have less than 200, and a topic
 
 /// Values of the field `op`.
 enum class BagOp : std::uint8_t {
@@ -44,7 +44,7 @@ std::uint64_t bag_time_ns(std::string_view bytes, const BagPlace& place, const s
 class BagHeader {
  public:
   /// Throws BagError: a field is longer than the header, lacks its `=` or a name, or stands there twice; more than
-  /// kMostFields.
+  /// kMaxFields.
   BagHeader(std::string_view bytes, const BagPlace& place);
 
   /// Each throws BagError where the field is absent or of another size.
@@ -62,13 +62,13 @@ class BagHeader {
     std::string_view name, value;
     std::uint64_t offset;  // of the value, in the header
   };
-  static constexpr std::size_t kMostFields = 32;
+  static constexpr std::size_t kMaxFields = 32;
 
   const Field* find(std::string_view name) const;
   const Field& sized(std::string_view name, std::size_t size) const;
 
   BagPlace place_;
-  std::array<Field, kMostFields> fields_;
+  std::array<Field, kMaxFields> fields_;
   std::size_t count_ = 0;
 };
 

@@ -43,7 +43,7 @@ void refuse(const std::string& source, const std::string& element, const std::st
 }
 
 RobotDescription load_description(const std::string& path) {
-  InputFile file = read_input_file(path, kLargestDescription);
+  InputFile file = read_input_file(path, kMaxDescription);
   if (file.problem.empty() && is_lfs_pointer(file.text)) refuse(path, "URDF", kLfsPointer, kLfsRemedy);
   if (ends_with_xacro(path)) return {expand_xacro(path), path};
   if (!file.problem.empty()) refuse(path, "URDF", "it cannot be read: " + file.problem, "Give the path of a URDF file");

@@ -33,7 +33,7 @@ std::string python_path() {
 }  // namespace
 
 std::string expand_xacro(const std::string& path) {
-  if (const std::string problem = input_file_problem(path, kLargestDescription); !problem.empty()) {
+  if (const std::string problem = input_file_problem(path, kMaxDescription); !problem.empty()) {
     refuse(path, "xacro", "it cannot be read: " + problem, "Give the path of a file");
   }
   const std::string interpreter = python();

@@ -23,10 +23,10 @@ constexpr double kSettleTime = 20;  // s
 
 /// The battery alone must bear what is not a motor.
 void check_battery(double voltage, double resistance) {
-  const double most = voltage / (2 * kIdleCurrent);
-  if (voltage <= 0 || resistance <= most) return;
+  const double max_resistance = voltage / (2 * kIdleCurrent);
+  if (voltage <= 0 || resistance <= max_resistance) return;
   throw DriverError("mujoco_plant: battery_resistance is " + number(resistance) + " ohm; a battery of " +
-                    number(voltage) + " V (battery_voltage) with more than " + number(most) +
+                    number(voltage) + " V (battery_voltage) with more than " + number(max_resistance) +
                     " ohm cannot feed the robot's electronics. Set less.");
 }
 

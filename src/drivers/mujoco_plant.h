@@ -124,7 +124,7 @@ class MujocoPlant final : public Driver {
 
   using Commands = std::array<JointCommand, kMaxJoints>;
   Commands received_{};
-  DelayLine<Commands, kLongestDelay> actuator_delay_;
+  DelayLine<Commands, kMaxDelay> actuator_delay_;
   InjectedFaults injected_{};
   std::uint64_t cycle_ = 0;  ///< writes since `start`
 

@@ -11,7 +11,7 @@
 namespace robot_control {
 namespace {
 
-std::string problem_of(const struct stat& status, std::size_t most) {
+std::string problem_of(const struct stat& status, std::size_t max_bytes) {
   const std::string only = "; only a regular file is read";
   switch (status.st_mode & S_IFMT) {
     case S_IFREG:
@@ -25,8 +25,8 @@ std::string problem_of(const struct stat& status, std::size_t most) {
     default:
       return "is a device" + only;
   }
-  if (static_cast<std::size_t>(status.st_size) <= most) return "";
-  return "has " + std::to_string(status.st_size) + " bytes, at most " + std::to_string(most) + " are read";
+  if (static_cast<std::size_t>(status.st_size) <= max_bytes) return "";
+  return "has " + std::to_string(status.st_size) + " bytes, at most " + std::to_string(max_bytes) + " are read";
 }
 
 class InputDescriptor {
@@ -47,32 +47,32 @@ class InputDescriptor {
 
 }  // namespace
 
-std::string input_file_problem(const std::string& path, std::size_t most) {
+std::string input_file_problem(const std::string& path, std::size_t max_bytes) {
   struct stat status {};
   if (path.find('\0') != std::string::npos) return "has a NUL character in its name";
-  return stat(path.c_str(), &status) == 0 ? problem_of(status, most) : std::strerror(errno);
+  return stat(path.c_str(), &status) == 0 ? problem_of(status, max_bytes) : std::strerror(errno);
 }
 
-InputFile read_input_file(const std::string& path, std::size_t most) {
+InputFile read_input_file(const std::string& path, std::size_t max_bytes) {
   InputFile result;
   const auto refused = [&](const std::string& problem) { return InputFile{.text = "", .problem = problem}; };
-  if (const std::string problem = input_file_problem(path, most); !problem.empty()) return refused(problem);
+  if (const std::string problem = input_file_problem(path, max_bytes); !problem.empty()) return refused(problem);
   const InputDescriptor file(path);
   struct stat status {};
   if (file.number() < 0 || fstat(file.number(), &status) != 0) return refused(std::strerror(errno));
-  if (const std::string problem = problem_of(status, most); !problem.empty()) return refused(problem);
+  if (const std::string problem = problem_of(status, max_bytes); !problem.empty()) return refused(problem);
   constexpr std::size_t kPiece = std::size_t{1} << 16U;
   result.text.reserve(static_cast<std::size_t>(status.st_size));
   for (;;) {  // files of /proc have no size, others may grow
     const std::size_t before = result.text.size();
-    result.text.resize(before + std::min(kPiece, most + 1 - before));
+    result.text.resize(before + std::min(kPiece, max_bytes + 1 - before));
     const ssize_t count = read(file.number(), result.text.data() + before, result.text.size() - before);
     const int error = errno;
     result.text.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     if (count < 0 && error == EINTR) continue;
     if (count < 0) return refused(std::strerror(error));
     if (count == 0) return result;
-    if (result.text.size() > most) return refused("has more than " + std::to_string(most) + " bytes");
+    if (result.text.size() > max_bytes) return refused("has more than " + std::to_string(max_bytes) + " bytes");
   }
 }
 

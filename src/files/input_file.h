@@ -11,9 +11,9 @@ namespace robot_control {
 
 /// Bytes. A parameter file or calibration has some kB; a description or scene, with its shapes, some MB; a command
 /// script has 30 bytes per row, a row per cycle for an hour at 1 kHz makes 108 MB.
-inline constexpr std::size_t kLargestParameterFile = std::size_t{1} << 20U;
-inline constexpr std::size_t kLargestDescription = std::size_t{64} << 20U;
-inline constexpr std::size_t kLargestScript = std::size_t{256} << 20U;
+inline constexpr std::size_t kMaxParameterFile = std::size_t{1} << 20U;
+inline constexpr std::size_t kMaxDescription = std::size_t{64} << 20U;
+inline constexpr std::size_t kMaxScript = std::size_t{256} << 20U;
 
 struct InputFile {
   std::string text;
@@ -21,9 +21,9 @@ struct InputFile {
 };
 
 /// At most `most` bytes; more is a problem.
-InputFile read_input_file(const std::string& path, std::size_t most);
+InputFile read_input_file(const std::string& path, std::size_t max_bytes);
 
 /// The same judgement without reading, for files that a library opens by itself; empty: none.
-std::string input_file_problem(const std::string& path, std::size_t most);
+std::string input_file_problem(const std::string& path, std::size_t max_bytes);
 
 }  // namespace robot_control

@@ -66,13 +66,13 @@ std::size_t utf8_end(std::string_view text) {
   return at;
 }
 
-std::string printable(std::string_view text, std::size_t most) {
+std::string printable(std::string_view text, std::size_t max_bytes) {
   std::string result;
   std::size_t at = 0;
   while (at < text.size()) {
     const std::size_t bytes = character_bytes(text.substr(at));
     const std::string_view character = text.substr(at, std::max<std::size_t>(bytes, 1));
-    if (at + character.size() > most) return result + "…";
+    if (at + character.size() > max_bytes) return result + "…";
     if (bytes == 0 || is_control(character)) {
       append_character(result, character);
     } else {
@@ -86,7 +86,7 @@ std::string printable(std::string_view text, std::size_t most) {
 std::string fit_for_message(std::string_view sentence) {
   std::string result;
   for (std::size_t at = 0; at < sentence.size();) {
-    if (result.size() > kLongestSentence) return result + " …";
+    if (result.size() > kMaxSentence) return result + " …";
     if (sentence[at] == ' ' || sentence[at] == '\n') {
       result += sentence[at++];
       continue;

@@ -64,8 +64,8 @@ class OutputDescriptor {
 
 /// Where symbolic links lead to, whether it exists or not.
 fs::path behind_links(fs::path path) {
-  constexpr int kLongestChain = 40;  // of the kernel's
-  for (int links = 0; links < kLongestChain; ++links) {
+  constexpr int kMaxLinks = 40;  // of the kernel's
+  for (int links = 0; links < kMaxLinks; ++links) {
     std::error_code error;
     if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
     const fs::path target = fs::read_symlink(path);

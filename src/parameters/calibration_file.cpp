@@ -155,8 +155,8 @@ std::string text_of(const Content& content) {
   return text;
 }
 
-double grown(double learned, double added, double most) {
-  return std::min(most, std::hypot(learned, added));
+double grown(double learned, double added, double max) {
+  return std::min(max, std::hypot(learned, added));
 }
 
 bool estimated(const Vector3& deviation) {

@@ -13,10 +13,10 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kLargest = 65536;   // bytes
-constexpr std::size_t kMostEntries = 32;  // of each list
-constexpr double kLongestTimeout = 60;    // s
-constexpr int kHighestPriority = 255;     // twist_mux's
+constexpr std::size_t kMaxSourceFile = 65536;  // bytes
+constexpr std::size_t kMaxEntries = 32;        // of each list
+constexpr double kMaxTimeout = 60;             // s
+constexpr int kMaxPriority = 255;              // twist_mux's
 constexpr const char* kListRemedy = "docs/driving.md shows a list";
 
 /// One entry of a list, read key by key.
@@ -32,15 +32,15 @@ class EntryReader {
     return value;
   }
 
-  double number(const std::string& key, double most, const std::string& rule) {
+  double number(const std::string& key, double max, const std::string& rule) {
     const double value = scalar<double>(key, rule).value_or(0);
-    if (!(std::isfinite(value) && value >= 0 && value <= most)) problem(key, rule);
+    if (!(std::isfinite(value) && value >= 0 && value <= max)) problem(key, rule);
     return value;
   }
 
-  int whole(const std::string& key, int most, const std::string& rule) {
+  int whole(const std::string& key, int max, const std::string& rule) {
     const int value = scalar<int>(key, rule).value_or(0);
-    if (value < 0 || value > most) problem(key, rule);
+    if (value < 0 || value > max) problem(key, rule);
     return value;
   }
 
@@ -92,8 +92,8 @@ Entry read_common(EntryReader& reader) {
   Entry entry;
   entry.name = reader.text("name", kNameLetters, "lower-case letters, digits and _");
   entry.topic = reader.text("topic", kTopicLetters, "the name of a topic");
-  entry.timeout = reader.number("timeout", kLongestTimeout, "a number of 0 … 60 s (0 = never)");
-  entry.priority = reader.whole("priority", kHighestPriority, "a whole number of 0 … 255");
+  entry.timeout = reader.number("timeout", kMaxTimeout, "a number of 0 … 60 s (0 = never)");
+  entry.priority = reader.whole("priority", kMaxPriority, "a whole number of 0 … 255");
   return entry;
 }
 
@@ -111,7 +111,7 @@ template <class Entry>
 std::vector<Entry> read_list(const YAML::Node& list, const std::string& name, const std::string& file,
                              ProblemList& problems) {
   std::vector<Entry> entries;
-  if (!list.IsSequence() || list.size() > kMostEntries) {
+  if (!list.IsSequence() || list.size() > kMaxEntries) {
     problems.add({name, "", "must be a list of at most 32 entries", file, kListRemedy});
     return entries;
   }
@@ -144,7 +144,7 @@ void refuse_twice(const std::vector<Entry>& entries, Value Entry::*member, const
 CommandSourceList read_command_sources(const std::string& path) {
   const std::string subject = "diff_drive_controller.command_sources refused (" + path + ")";
   ProblemList problems;
-  const auto text = read_text_file(path, kLargest, "name a file that can be read, or \"\" for none", problems);
+  const auto text = read_text_file(path, kMaxSourceFile, "name a file that can be read, or \"\" for none", problems);
   problems.throw_if_any(subject);
   CommandSourceList list;
   try {

@@ -147,7 +147,7 @@ void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& p
   std::error_code ignored;
   const std::filesystem::path path = std::filesystem::absolute(yaml_path, ignored);
   const auto text =
-      read_text_file(yaml_path, kLargestParameterFile, "name a YAML file like config/robot_params.yaml", problems);
+      read_text_file(yaml_path, kMaxParameterFile, "name a YAML file like config/robot_params.yaml", problems);
   if (!text) return;
   try {
     const Documents documents(*text);
@@ -212,8 +212,8 @@ void lay_request_over(const std::string& block, const std::string& text, Paramet
     problems.add({"request", printable(text), rule, "", "for example {max_linear_speed: 0.5}"});
   };
   const std::string form = "must be a YAML map of keys of " + block;
-  if (text.size() > kLongestRequest) {
-    refuse(form + " in at most " + std::to_string(kLongestRequest) + " bytes, not " + std::to_string(text.size()));
+  if (text.size() > kMaxRequest) {
+    refuse(form + " in at most " + std::to_string(kMaxRequest) + " bytes, not " + std::to_string(text.size()));
     return;
   }
   try {

@@ -39,11 +39,11 @@ struct ParameterTree {
 ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems,
                         const std::string& base_path = "");
 
-/// Lays a request over the tree: the text of a YAML map of keys of `block`, of at most kLongestRequest bytes. Anything
+/// Lays a request over the tree: the text of a YAML map of keys of `block`, of at most kMaxRequest bytes. Anything
 /// else is one problem.
 void lay_request_over(const std::string& block, const std::string& text, ParameterTree& tree, ProblemList& problems);
 
 /// Bytes; every key of a block with a value needs a quarter of it.
-inline constexpr std::size_t kLongestRequest = 4096;
+inline constexpr std::size_t kMaxRequest = 4096;
 
 }  // namespace robot_control

@@ -145,30 +145,31 @@ class TreeReader {
     }
     const DriveControllerParameters& drive = parameters_.controller;
     const SpeedLimits limits = speed_limits(drive);
-    const auto check_axis = [&](const std::string& axis, const MotionLimits& of, bool own_deceleration,
+    const auto check_axis = [&](const std::string& axis, const MotionLimits& axis_limits, bool own_deceleration,
                                 std::optional<double> jerk) {
       const std::string block = "diff_drive_controller.max_" + axis;
       const std::string emergency = block + "_emergency_deceleration";
       const std::string usual = block + (own_deceleration ? "_deceleration" : "_acceleration");
-      if (sound_.contains(emergency) && sound_.contains(usual) && of.emergency_deceleration < of.deceleration) {
+      if (sound_.contains(emergency) && sound_.contains(usual) &&
+          axis_limits.emergency_deceleration < axis_limits.deceleration) {
         const Entry& entry = tree_.entries.at(usual);
         refuse(emergency, "must not be below " + usual + " = " + as_written(entry) + " [" + entry.origin + "]");
       }
       const std::string reverse = block + "_deceleration_reverse";
       if (sound_.contains(emergency) && sound_.contains(reverse) &&
-          of.emergency_deceleration < of.deceleration_from(-1)) {
+          axis_limits.emergency_deceleration < axis_limits.deceleration_from(-1)) {
         const Entry& entry = tree_.entries.at(reverse);
         refuse(emergency, "must not be below " + reverse + " = " + as_written(entry) + " [" + entry.origin + "]");
       }
       // The jerk limit must let the brake of an emergency come.
       constexpr double kBuildUp = 1.0;  // s
       if (!sound_.contains(block + "_jerk") || jerk.value_or(0) == 0) return;
-      if (*jerk * kBuildUp >= of.emergency_deceleration) return;
+      if (*jerk * kBuildUp >= axis_limits.emergency_deceleration) return;
       const auto entry = tree_.entries.find(emergency);
       const bool given = sound_.contains(emergency) && entry != tree_.entries.end();
       refuse(block + "_jerk", "must be 0 (off) or reach " + emergency + " = " +
                                   (given ? as_written(entry->second) + " [" + entry->second.origin + "]"
-                                         : shortest(of.emergency_deceleration) + " (derived)") +
+                                         : shortest(axis_limits.emergency_deceleration) + " (derived)") +
                                   " within " + shortest(kBuildUp) + " s");
     };
     check_axis("linear", limits.linear, drive.max_linear_deceleration.has_value(), drive.max_linear_jerk);

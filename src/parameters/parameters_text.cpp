@@ -39,8 +39,8 @@ class ValueText {
   template <class Enum>
   std::string operator()(const Enum* value) const {
     const auto words = words_of(field_);
-    const auto word =
-        std::find_if(words.begin(), words.end(), [&](const Word& of) { return of.value == static_cast<int>(*value); });
+    const auto word = std::find_if(words.begin(), words.end(),
+                                   [&](const Word& word) { return word.value == static_cast<int>(*value); });
     return std::string(word->text);
   }
 

@@ -12,8 +12,8 @@ namespace robot_control {
 namespace {
 
 struct PeerKey {
-  std::string_view there;
-  std::string_view here;  ///< empty: nothing is to be set
+  std::string_view peer_name;
+  std::string_view own_path;  ///< empty: nothing is to be set
 };
 
 constexpr auto kPeerKeys = std::to_array<PeerKey>({
@@ -84,8 +84,8 @@ bool is_ours(std::string_view block) {
 
 /// The signs that no file of ours has.
 std::string sign_in(const YAML::Node& node, bool foreign, int depth) {
-  constexpr int kDeepest = 6;  // an alias may nest a map in itself
-  if (!node.IsMap() || depth > kDeepest) return "";
+  constexpr int kMaxDepth = 6;  // an alias may nest a map in itself
+  if (!node.IsMap() || depth > kMaxDepth) return "";
   for (const auto& pair : node) {
     if (!pair.first.IsScalar()) continue;
     const std::string& key = pair.first.Scalar();
@@ -119,9 +119,9 @@ std::string peer_configuration(const YAML::Node& root) {
 }
 
 std::string suggest_for_peer_key(std::string_view name) {
-  const auto found = std::ranges::find(kPeerKeys, name, &PeerKey::there);
+  const auto found = std::ranges::find(kPeerKeys, name, &PeerKey::peer_name);
   if (found == kPeerKeys.end()) return "";
-  const std::string here = found->here.empty() ? "needs no key here" : "here " + std::string(found->here);
+  const std::string here = found->own_path.empty() ? "needs no key here" : "here " + std::string(found->own_path);
   return "a key of ros_controllers, " + here + "; " + kPeerTable;
 }
 

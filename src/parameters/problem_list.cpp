@@ -34,7 +34,7 @@ std::string listing(std::string_view subject, const std::vector<std::string>& li
   std::string message = fit_for_message(subject);
   message.append(": ").append(std::to_string(lines.size())).append(lines.size() == 1 ? " problem" : " problems");
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (i > 0 && message.size() + lines[i].size() > kLongestListing) {
+    if (i > 0 && message.size() + lines[i].size() > kMaxListing) {
       return message.append("\n  … and ").append(std::to_string(lines.size() - i)).append(" more");
     }
     message.append("\n  ").append(lines[i]);

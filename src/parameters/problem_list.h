@@ -34,9 +34,9 @@ class ProblemList {
 };
 
 /// Characters of a listing: what a terminal shows, and ROS carries in one message.
-inline constexpr std::size_t kLongestListing = 1900;
+inline constexpr std::size_t kMaxListing = 1900;
 
-/// "`subject`: 2 problems", and each of them on a line of its own below; beyond kLongestListing "… and 7 more".
+/// "`subject`: 2 problems", and each of them on a line of its own below; beyond kMaxListing "… and 7 more".
 std::string listing(std::string_view subject, const std::vector<std::string>& lines);
 
 /// Shortest text that reads back as the same number.

@@ -41,8 +41,8 @@ std::string suggest_key(std::string_view path) {
   const std::string_view block_name = path.substr(0, dot);
   const std::string_view key_name = dot == std::string_view::npos ? path : path.substr(dot + 1);
   if (std::string peer = suggest_for_peer_key(key_name); !peer.empty()) return peer;
-  constexpr std::size_t kLongestWord = 100;
-  if (key_name.size() > kLongestWord) return {};
+  constexpr std::size_t kMaxWord = 100;
+  if (key_name.size() > kMaxWord) return {};
   std::size_t nearest = farthest(key_name) + 1;
   std::string word;
   const auto consider = [&](const Block& block, const std::string& candidate) {

@@ -4,9 +4,9 @@
 
 namespace robot_control {
 
-std::optional<std::string> read_text_file(const std::string& path, std::size_t most, const std::string& remedy,
+std::optional<std::string> read_text_file(const std::string& path, std::size_t max_bytes, const std::string& remedy,
                                           ProblemList& problems) {
-  InputFile file = read_input_file(path, most);
+  InputFile file = read_input_file(path, max_bytes);
   if (file.problem.empty()) return std::move(file.text);
   problems.add({path, "", "cannot be read: " + file.problem, "", remedy});
   return std::nullopt;

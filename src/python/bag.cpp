@@ -17,9 +17,10 @@ namespace {
 py::dict connections(const BagReader& bag) {
   using namespace py::literals;
   py::dict all;
-  for (const auto& [number, of] : bag.connections()) {
-    all[py::int_(number)] = py::dict("topic"_a = py::bytes(of.topic), "type"_a = py::bytes(of.type),
-                                     "md5sum"_a = py::bytes(of.md5sum), "definition"_a = py::bytes(of.definition));
+  for (const auto& [number, connection] : bag.connections()) {
+    all[py::int_(number)] =
+        py::dict("topic"_a = py::bytes(connection.topic), "type"_a = py::bytes(connection.type),
+                 "md5sum"_a = py::bytes(connection.md5sum), "definition"_a = py::bytes(connection.definition));
   }
   return all;
 }

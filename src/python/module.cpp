@@ -140,9 +140,9 @@ Parameters parameters_from(const std::string& path, const Values& values) {
 py::dict controller_parameters(const Parameters& parameters) {
   using namespace py::literals;
   const SpeedLimits limits = speed_limits(parameters.controller);
-  const auto axis = [](const MotionLimits& of) {
-    return py::dict("speed"_a = of.speed, "acceleration"_a = of.acceleration, "deceleration"_a = of.deceleration,
-                    "jerk"_a = of.jerk);
+  const auto axis = [](const MotionLimits& axis_limits) {
+    return py::dict("speed"_a = axis_limits.speed, "acceleration"_a = axis_limits.acceleration,
+                    "deceleration"_a = axis_limits.deceleration, "jerk"_a = axis_limits.jerk);
   };
   return py::dict("linear"_a = axis(limits.linear), "angular"_a = axis(limits.angular),
                   "cmd_vel_timeout"_a = parameters.controller.cmd_vel_timeout, "rate"_a = parameters.loop.rate,

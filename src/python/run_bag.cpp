@@ -93,10 +93,10 @@ class Table {
   /// may pretend.
   void grow() {
     constexpr double kMore = 1.1;
-    constexpr std::size_t kLeast = 1 << 10, kMost = 1 << 20;  // rows at once; 2²⁰ are 1.3 GB of address space
+    constexpr std::size_t kMinGrowth = 1 << 10, kMaxGrowth = 1 << 20;  // rows at once; 2²⁰ are 1.3 GB of address space
     const std::size_t now = times_.size();
-    const double expected = std::min(expected_ * kMore, static_cast<double>(now + kMost));
-    const std::size_t rows = std::max({now + kLeast, 2 * now, static_cast<std::size_t>(expected)});
+    const double expected = std::min(expected_ * kMore, static_cast<double>(now + kMaxGrowth));
+    const std::size_t rows = std::max({now + kMinGrowth, 2 * now, static_cast<std::size_t>(expected)});
     for (FilledColumn& each : columns_) each.values.reserve(rows);
     times_.reserve(rows);
   }

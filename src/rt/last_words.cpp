@@ -54,8 +54,8 @@ class Text {
 };
 
 // Complete before the handlers stand, and never changed afterwards.
-Text<kLongestName> node_name;
-Text<kLongestConsequence> consequence_of_death;
+Text<kMaxName> node_name;
+Text<kMaxConsequence> consequence_of_death;
 
 std::atomic<bool> dying{false};
 

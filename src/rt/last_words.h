@@ -16,8 +16,8 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kLongestName = 64;  ///< bytes; more is cut off
-inline constexpr std::size_t kLongestConsequence = 100;
+inline constexpr std::size_t kMaxName = 64;  ///< bytes; more is cut off
+inline constexpr std::size_t kMaxConsequence = 100;
 
 /// `name`: of the node; `consequence`: of its end, "the motors brake without it". Earlier handlers of these signals are
 /// replaced, and the calling thread, the main one, gets an AlternateStack. Once per process, before it has threads.

@@ -12,14 +12,14 @@ void ignore_file_size_signal() noexcept {
 
 std::string descriptor_problem() {
   rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kFewestDescriptors) return "";
-  const rlim_t most = limit.rlim_max;
-  if (most >= kFewestDescriptors) {
-    limit.rlim_cur = kFewestDescriptors;
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kMinDescriptors) return "";
+  const rlim_t max_descriptors = limit.rlim_max;
+  if (max_descriptors >= kMinDescriptors) {
+    limit.rlim_cur = kMinDescriptors;
     if (setrlimit(RLIMIT_NOFILE, &limit) == 0) return "";
   }
-  return "only " + std::to_string(most) + " files may be open at a time (RLIMIT_NOFILE), a node needs at least " +
-         std::to_string(kFewestDescriptors) +
+  return "only " + std::to_string(max_descriptors) +
+         " files may be open at a time (RLIMIT_NOFILE), a node needs at least " + std::to_string(kMinDescriptors) +
          "; remedy: `ulimit -n 1024` before the start, or LimitNOFILE= of its service";
 }
 

@@ -11,9 +11,9 @@ void ignore_file_size_signal() noexcept;
 
 /// A node holds some thirty descriptors of its own: libraries, epoll, the master, channels, log. Others come with
 /// every peer of its topics.
-inline constexpr unsigned long kFewestDescriptors = 64;
+inline constexpr unsigned long kMinDescriptors = 64;
 
-/// Raises the soft limit on descriptors (RLIMIT_NOFILE) to kFewestDescriptors, where the hard one permits. What stands
+/// Raises the soft limit on descriptors (RLIMIT_NOFILE) to kMinDescriptors, where the hard one permits. What stands
 /// against a start, with its remedy; empty: nothing.
 std::string descriptor_problem();
 

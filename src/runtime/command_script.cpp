@@ -130,8 +130,7 @@ CommandScript CommandScript::parse(std::string_view text, const std::string& sou
 
 CommandScript::CommandScript(const std::string& path) {
   ProblemList problems;
-  const auto text =
-      read_text_file(path, kLargestScript, "name a CSV file or leave robot.command_script empty", problems);
+  const auto text = read_text_file(path, kMaxScript, "name a CSV file or leave robot.command_script empty", problems);
   problems.throw_if_any("command script refused");
   *this = parse(*text, path);
 }

@@ -57,7 +57,7 @@ TEST_P(ACompressedChunk, ThatIsBrokenIsRefused) {
 INSTANTIATE_TEST_SUITE_P(As, ACompressedChunk, ::testing::Values(BagCompression::kBz2, BagCompression::kLz4));
 
 TEST(AChunk, ThatWouldInflateWithoutBoundsIsRefusedBeforeIt) {
-  EXPECT_THAT(refusal(make_bag(BagCompression::kBz2, 1, 10, {.size_of_chunk = kLargestChunk}).bytes),
+  EXPECT_THAT(refusal(make_bag(BagCompression::kBz2, 1, 10, {.size_of_chunk = kMaxChunk}).bytes),
               HasSubstr("with a chunk of 26843"));
   EXPECT_THAT(refusal(make_bag(BagCompression::kLz4, 2, 10, {.size_of_chunk = 40U << 20U}).bytes),
               HasSubstr("field size: "));

@@ -51,7 +51,7 @@ TEST(BoundedMessage, TakesEveryMessageOfItsType) {
   EXPECT_TRUE(read<BoundedBool>(wire(msg::Bool{})).accepted);
   EXPECT_TRUE(read<BoundedEmpty>(wire(msg::Empty{})).accepted);
   EXPECT_TRUE(read<BoundedFloat64>(wire(msg::Float64{})).accepted);
-  const BoundedTwistStamped longest = read<BoundedTwistStamped>(wire(stamped(kLongestFrameId)));
+  const BoundedTwistStamped longest = read<BoundedTwistStamped>(wire(stamped(kMaxFrameId)));
   EXPECT_TRUE(longest.accepted);
   EXPECT_EQ(longest.message.twist.linear.x, 0.5);
 }
@@ -67,7 +67,7 @@ TEST(BoundedMessage, RefusesAnotherLengthWithoutAnException) {
 }
 
 TEST(BoundedMessage, CopiesNoNameThatIsTooLong) {
-  const BoundedTwistStamped received = read<BoundedTwistStamped>(wire(stamped(kLongestFrameId + 1)));
+  const BoundedTwistStamped received = read<BoundedTwistStamped>(wire(stamped(kMaxFrameId + 1)));
   EXPECT_FALSE(received.accepted);
   EXPECT_TRUE(received.message.header.frame_id.empty());
 }

@@ -117,8 +117,8 @@ std::string nested(int levels) {
 
 TEST(WireGuard, AValueIsNestedAsDeepAsTheLimitAndNoDeeper) {
   int offset = 0;
-  XmlRpc::XmlRpcValue value(nested(kDeepestValue - 1), &offset);
-  for (int level = 1; level < kDeepestValue; ++level) {
+  XmlRpc::XmlRpcValue value(nested(kMaxValueDepth - 1), &offset);
+  for (int level = 1; level < kMaxValueDepth; ++level) {
     ASSERT_EQ(value.getType(), XmlRpc::XmlRpcValue::TypeArray);
     const XmlRpc::XmlRpcValue inner = value[0];
     value = inner;
@@ -130,11 +130,11 @@ TEST(WireGuard, AValueIsNestedAsDeepAsTheLimitAndNoDeeper) {
 
 TEST(WireGuard, ARequestHasAnEnd) {
   const int file = memfd_create("request", 0);
-  ASSERT_EQ(ftruncate(file, 4 * static_cast<off_t>(kLongestRequest)), 0);
+  ASSERT_EQ(ftruncate(file, 4 * static_cast<off_t>(kMaxXmlRequest)), 0);
   std::string text;
   bool eof = false;
   EXPECT_FALSE(XmlRpc::XmlRpcSocket::nbRead(file, text, &eof));
-  EXPECT_LE(text.size(), kLongestRequest + 4096);
+  EXPECT_LE(text.size(), kMaxXmlRequest + 4096);
   ASSERT_EQ(ftruncate(file, 1000), 0);
   lseek(file, 0, SEEK_SET);
   text.clear();

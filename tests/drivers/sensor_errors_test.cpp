@@ -338,7 +338,7 @@ TEST_F(SensorErrorsTest, MakeAllSamplesLateTogether) {
 }
 
 TEST_F(SensorErrorsTest, RefuseADelayThatIsTooLong) {
-  parameters_.sensor_delay = kLongestDelay + 1;
+  parameters_.sensor_delay = kMaxDelay + 1;
   try {
     errors();
     FAIL() << "no refusal";

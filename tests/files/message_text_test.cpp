@@ -36,7 +36,7 @@ TEST(MessageText, CutsEveryLongQuotedPartOfASentence) {
 TEST(MessageText, BoundsTheSentenceAsAWhole) {
   std::string many;
   for (int i = 0; i < 10'000; ++i) many += "word ";
-  EXPECT_LT(fit_for_message(many).size(), kLongestSentence + 2 * kLongestEcho);
+  EXPECT_LT(fit_for_message(many).size(), kMaxSentence + 2 * kMaxEcho);
   EXPECT_THAT(fit_for_message(std::string("a\0b \x1b", 5)), Not(HasSubstr("\x1b")));
 }
 

@@ -153,12 +153,12 @@ TEST_F(LiveParameters, ReportsEveryReasonAtOnce) {
 
 TEST_F(LiveParameters, RefusesDeepAndHugeTextsAtOnce) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::string deep(kLongestRequest / 2, '[');
+  const std::string deep(kMaxRequest / 2, '[');
   for (const std::string& text :
-       {deep, "{pid_kp: " + deep, std::string(kLongestRequest / 2, '{'), std::string(kLongestRequest, '-'),
-        std::string(kLongestRequest, '?'), std::string(kLongestRequest, '&'), std::string(kLongestRequest, '\n'),
-        std::string(kLongestRequest, '\t'), std::string("\0\0\0", 3), std::string("\xff\xfe{\0}\0", 6),
-        std::string(100 << 20, 'x'), "{pid_kp: " + std::string(kLongestRequest, '1') + "}"}) {
+       {deep, "{pid_kp: " + deep, std::string(kMaxRequest / 2, '{'), std::string(kMaxRequest, '-'),
+        std::string(kMaxRequest, '?'), std::string(kMaxRequest, '&'), std::string(kMaxRequest, '\n'),
+        std::string(kMaxRequest, '\t'), std::string("\0\0\0", 3), std::string("\xff\xfe{\0}\0", 6),
+        std::string(100 << 20, 'x'), "{pid_kp: " + std::string(kMaxRequest, '1') + "}"}) {
     EXPECT_FALSE(read(text).problems.empty());
   }
   // None of them may hold the node's thread; 100 MB are compared with one number. Generous: sanitizers, stalls.

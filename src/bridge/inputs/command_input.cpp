@@ -12,7 +12,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kMostNames = 16;  // remembered, as in CommandSenders
+constexpr std::size_t kMaxNames = 16;  // remembered, as in CommandSenders
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(1.0e9 * seconds);
@@ -110,7 +110,7 @@ void CommandInput::refuse_stamp(const std::string& sender, const JudgedStamp& st
   const auto reported = reported_stamps_.find(sender);
   if (reported != reported_stamps_.end() && reported->second == stamp.verdict) return;
   if (!may_report(sender + (too_old ? " behind" : " ahead"), loop_ns)) return;
-  if (reported_stamps_.size() >= kMostNames) reported_stamps_.clear();
+  if (reported_stamps_.size() >= kMaxNames) reported_stamps_.clear();
   reported_stamps_[sender] = stamp.verdict;
   const double age = 1.0e-9 * static_cast<double>(stamp.age_ns);
   const std::string remedy =
@@ -145,7 +145,7 @@ void CommandInput::report_senders(std::int64_t loop_ns) {
 
 bool CommandInput::may_report(const std::string& what, std::int64_t loop_ns) {
   std::erase_if(reported_ns_, [&](const auto& entry) { return std::abs(loop_ns - entry.second) >= kRepeatAfter; });
-  return reported_ns_.size() < kMostNames && reported_ns_.emplace(what, loop_ns).second;
+  return reported_ns_.size() < kMaxNames && reported_ns_.emplace(what, loop_ns).second;
 }
 
 }  // namespace robot_control

@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kLongestCycle = 10'000'000;  // ns, robot.rate is 100 Hz at least
+constexpr std::int64_t kMaxCycle = 10'000'000;  // ns, robot.rate is 100 Hz at least
 
 /// A time that turned back by more than a timeout (a new simulation) leaves nothing live.
 bool recent(const std::optional<std::int64_t>& last_ns, double timeout, std::int64_t now_ns) {
@@ -126,7 +126,7 @@ void CommandMux::take_result(std::int64_t loop_ns, bool message) {
 }
 
 bool CommandMux::unread(std::int64_t loop_ns) const {
-  return message_ns_ && std::abs(loop_ns - *message_ns_) < kLongestCycle;
+  return message_ns_ && std::abs(loop_ns - *message_ns_) < kMaxCycle;
 }
 
 void CommandMux::add_refusals() {

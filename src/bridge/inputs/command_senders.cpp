@@ -5,7 +5,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kMostSenders = 16;  // a sender with ever new names takes no memory
+constexpr std::size_t kMaxSenders = 16;  // a sender with ever new names takes no memory
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void CommandSenders::forget(std::int64_t now_ns) {
 void CommandSenders::add(const std::string& sender, std::int64_t now_ns) {
   forget(now_ns);
   last_message_ns_[sender] = now_ns_;
-  if (last_message_ns_.size() <= kMostSenders) return;
+  if (last_message_ns_.size() <= kMaxSenders) return;
   last_message_ns_.erase(
       std::ranges::min_element(last_message_ns_, {}, [](const auto& entry) { return entry.second; }));
 }

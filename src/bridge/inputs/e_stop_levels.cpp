@@ -7,7 +7,7 @@ namespace {
 
 // A sender under ever new names takes bounded memory. What is sent under further names is true for ever: no false ends
 // it.
-constexpr std::size_t kMostPublishers = 1000;
+constexpr std::size_t kMaxPublishers = 1000;
 const char* const kFurther = "(further publishers)";
 const char* const kSilent = " (has sent nothing since safety_monitor was restarted)";
 const char* const kUnknown = "an unknown publisher, from before safety_monitor was restarted";
@@ -16,7 +16,7 @@ const char* const kUnknown = "an unknown publisher, from before safety_monitor w
 
 /// False: it was known, or there are too many.
 bool EStopLevels::remember(const std::string& publisher) {
-  return known_.size() < kMostPublishers && known_.insert(publisher).second;
+  return known_.size() < kMaxPublishers && known_.insert(publisher).second;
 }
 
 void EStopLevels::receive(const std::string& publisher, bool stop) {

@@ -12,16 +12,16 @@ std::string odometry_problem(const Vector3& pose) {
   struct Part {
     const char* name;
     const char* unit;
-    double most;
+    double max;
   };
-  constexpr std::array<Part, 3> kParts{{{"x", "m", kFarthest}, {"y", "m", kFarthest}, {"yaw", "rad", kMostTurned}}};
+  constexpr std::array<Part, 3> kParts{{{"x", "m", kMaxPosition}, {"y", "m", kMaxPosition}, {"yaw", "rad", kMaxYaw}}};
   std::string problems;
   for (std::size_t i = 0; i < kParts.size(); ++i) {
-    if (std::abs(pose[i]) <= kParts[i].most) continue;
-    const std::string most = shortest(kParts[i].most);
+    if (std::abs(pose[i]) <= kParts[i].max) continue;
+    const std::string max = shortest(kParts[i].max);
     problems.append(problems.empty() ? "" : "; ").append(kParts[i].name).append(" = ").append(shortest(pose[i]));
-    problems.append(" ").append(kParts[i].unit).append(": must be a number of -").append(most).append(" … ");
-    problems.append(most).append(" ").append(kParts[i].unit);
+    problems.append(" ").append(kParts[i].unit).append(": must be a number of -").append(max).append(" … ");
+    problems.append(max).append(" ").append(kParts[i].unit);
   }
   return problems;
 }

@@ -9,10 +9,10 @@ namespace robot_control {
 
 /// m; beyond, double arithmetic of odometry loses micrometres, and no robot drives there: map coordinates (UTM) belong
 /// into the frame map (REP 105).
-inline constexpr double kFarthest = 1.0e6;
+inline constexpr double kMaxPosition = 1.0e6;
 
 /// rad; a yaw in degrees passes, one beyond this is no angle.
-inline constexpr double kMostTurned = 1.0e6;
+inline constexpr double kMaxYaw = 1.0e6;
 
 /// What is wrong with (x [m], y [m], yaw [rad]), with value, rule and remedy; empty: nothing.
 std::string odometry_problem(const Vector3& pose);

@@ -26,13 +26,13 @@ struct Bounded {
 };
 
 /// The longest accepted frame_id.
-inline constexpr std::uint32_t kLongestFrameId = 256;
+inline constexpr std::uint32_t kMaxFrameId = 256;
 
 using BoundedBool = Bounded<msg::Bool, 1>;
 using BoundedEmpty = Bounded<msg::Empty, 0>;
 using BoundedFloat64 = Bounded<msg::Float64, 8>;
 using BoundedTwist = Bounded<msg::Twist, 48>;
-using BoundedTwistStamped = Bounded<msg::TwistStamped, 64, 64 + kLongestFrameId>;
+using BoundedTwistStamped = Bounded<msg::TwistStamped, 64, 64 + kMaxFrameId>;
 
 }  // namespace robot_control
 

@@ -5,7 +5,7 @@
 /// MessageAllocator has it; names, checksums and bytes on the wire are templates over the allocator and stay.
 ///
 /// It also bounds what a received message allocates: roscpp resizes an array to the length that the sender wrote, up to
-/// 2³² elements, before it looks whether the message is as long. Beyond kLargestArray bytes it throws
+/// 2³² elements, before it looks whether the message is as long. Beyond kMaxArray bytes it throws
 /// std::length_error, which roscpp catches: the message or request is rejected.
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -34,13 +34,13 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kLargestArray = std::size_t{1} << 20;  ///< bytes
+inline constexpr std::size_t kMaxArray = std::size_t{1} << 20;  ///< bytes
 
 template <class T>
 struct MessageAllocator : std::allocator<T> {
   using std::allocator<T>::allocator;
   T* allocate(std::size_t count) {
-    if (count > kLargestArray / sizeof(T)) throw std::length_error("an array of a message is longer than 1 MiB");
+    if (count > kMaxArray / sizeof(T)) throw std::length_error("an array of a message is longer than 1 MiB");
     return std::allocator<T>::allocate(count);
   }
   template <class U>

@@ -28,8 +28,8 @@
 namespace robot_control {
 namespace {
 
-constexpr int kLeastDatagram = 64;     // B; UDPROS puts 8 of its own before the data
-constexpr int kMostDatagram = 65'507;  // B; IPv4's 65,535 less both headers
+constexpr int kMinDatagram = 64;      // B; UDPROS puts 8 of its own before the data
+constexpr int kMaxDatagram = 65'507;  // B; IPv4's 65,535 less both headers
 constexpr int kDefaultDatagram = 1500;
 
 constexpr const char* kParseShared =
@@ -156,7 +156,7 @@ void Connection::read(std::uint32_t size, const ReadFinishedFunc& callback) {
   using namespace robot_control;
   static const auto original_read = original<decltype(&Connection::read)>(kRead);
   const bool before_header = header_.getValues()->empty();
-  if (size > (before_header ? kLongestHeader : kLongestMessage)) {
+  if (size > (before_header ? kMaxHeader : kMaxMessage)) {
     overlong.fetch_add(1);
     return drop(TransportDisconnect);
   }
@@ -176,7 +176,7 @@ bool console::get_loggers(std::map<std::string, levels::Level>& loggers) {
 TransportUDPPtr TransportUDP::createOutgoing(std::string host, int port, int conn_id, int max_datagram_size) {
   using namespace robot_control;
   static const auto original_create = original<decltype(&TransportUDP::createOutgoing)>(kCreateOutgoing);
-  const bool possible = max_datagram_size >= kLeastDatagram && max_datagram_size <= kMostDatagram;
+  const bool possible = max_datagram_size >= kMinDatagram && max_datagram_size <= kMaxDatagram;
   return (this->*original_create)(std::move(host), port, conn_id, possible ? max_datagram_size : kDefaultDatagram);
 }
 
@@ -186,10 +186,10 @@ namespace XmlRpc {
 
 bool XmlRpcSocket::nbRead(int socket, std::string& s, bool* eof) {
   using namespace robot_control;
-  const std::size_t most = is_request(socket) ? kLongestRequest : kLongestAnswer;
+  const std::size_t max_size = is_request(socket) ? kMaxXmlRequest : kMaxXmlAnswer;
   std::array<char, 4096> buffer{};
   *eof = false;
-  while (s.size() <= most) {
+  while (s.size() <= max_size) {
     const ssize_t count = ::read(socket, buffer.data(), buffer.size());
     if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == EINPROGRESS;
     if (count == 0) {
@@ -209,7 +209,7 @@ bool XmlRpcValue::fromXml(const std::string& value_xml, int* offset) {
     Level() { ++depth; }
     ~Level() { --depth; }
   } const level;
-  return depth <= kDeepestValue && (this->*original_from)(value_xml, offset);
+  return depth <= kMaxValueDepth && (this->*original_from)(value_xml, offset);
 }
 
 bool XmlRpcServerConnection::executeMethod(const std::string& name, XmlRpcValue& params, XmlRpcValue& result) {

@@ -192,13 +192,13 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     CommandFrame command;
     const bool runs = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head) &&
                       process().output().newest(command) == Lookup::kFrame && command.head.run == sensors.head.run;
-    if (!runs && !dropped_told_) {
+    if (!runs && !dropped_reported_) {
       ROS_WARN(
           "a command of %s arrived before the loop runs and is dropped, as are all until it does; send it again "
           "when safety_status says READY",
           sender.c_str());
     }
-    dropped_told_ = !runs;
+    dropped_reported_ = !runs;
   }
 
   /// Stamp of the newest sensor frame. Any thread that holds the lock.
@@ -311,7 +311,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   std::optional<CommandMux> mux_;    ///< where there is a list of sources; then `input_` receives nothing
   CommandIntake* intake_ = &input_;  ///< the one of the two that receives
   std::int64_t loop_ns_ = 0;
-  bool dropped_told_ = false;
+  bool dropped_reported_ = false;
   Pacer pace_;
   CommandReport command_report_;
   CommandFrame command_;

@@ -101,7 +101,7 @@ class ConnectionNote {
       ROS_WARN(
           "%llu connections were closed that announced a header of more than %u or a message of more than %u "
           "bytes: this node takes none as long; look which program sends them: ss -tnp",
-          static_cast<unsigned long long>(refused - overlong_), kLongestHeader, kLongestMessage);
+          static_cast<unsigned long long>(refused - overlong_), kMaxHeader, kMaxMessage);
     }
     evicted_ = evicted;
     overlong_ = refused;
@@ -150,8 +150,8 @@ class NodeLoop {
 
   /// In one line: every node logs it.
   void log_refusals(const std::vector<std::string>& refusals) {
-    if (refusals_told_ || refusals.empty()) return;
-    refusals_told_ = true;
+    if (refusals_reported_ || refusals.empty()) return;
+    refusals_reported_ = true;
     std::string text;
     for (const std::string& refusal : refusals) text += (text.empty() ? "" : ", ") + refusal;
     ROS_WARN("%s: see docs/troubleshooting.md", text.c_str());
@@ -174,7 +174,7 @@ class NodeLoop {
   ros::Publisher diagnostics_;
   WaitingNote waiting_;
   ConnectionNote connections_;
-  bool refusals_told_ = false;
+  bool refusals_reported_ = false;
   std::int64_t next_poll_ns_ = 0;
   std::int64_t next_diagnostic_ns_ = 0;
 };
@@ -231,10 +231,10 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
 }
 
 std::int64_t publish_tick_ns(const Parameters& parameters, std::initializer_list<double> rates) {
-  constexpr double kShortest = 250'000;  // ns
-  constexpr double kLongest = 2'000'000;
-  if (parameters.loop.clock == ClockMode::kLockstep) return static_cast<std::int64_t>(kShortest);
-  return static_cast<std::int64_t>(std::clamp(1.0e9 / std::max(rates) / 4, kShortest, kLongest));
+  constexpr double kMinTick = 250'000;  // ns
+  constexpr double kMaxTick = 2'000'000;
+  if (parameters.loop.clock == ClockMode::kLockstep) return static_cast<std::int64_t>(kMinTick);
+  return static_cast<std::int64_t>(std::clamp(1.0e9 / std::max(rates) / 4, kMinTick, kMaxTick));
 }
 
 }  // namespace robot_control

@@ -149,11 +149,11 @@ class TelemetryNode final : public Node {
 
   bool record(msg::SetBoolRequest& request, msg::SetBoolResponse& response) {
     const bool on = request.data != 0;
-    const bool there = !process_.bag_path().empty();
-    response.success = static_cast<std::uint8_t>(there);
-    const std::string answer = !there ? "telemetry.record is off: there is no run.bag"
-                               : on   ? "run.bag holds every cycle from now on"
-                                      : "run.bag holds what telemetry.record says";
+    const bool recordable = !process_.bag_path().empty();
+    response.success = static_cast<std::uint8_t>(recordable);
+    const std::string answer = !recordable ? "telemetry.record is off: there is no run.bag"
+                               : on        ? "run.bag holds every cycle from now on"
+                                           : "run.bag holds what telemetry.record says";
     response.message = ascii(answer);
     requested_.store(on);
     return true;

@@ -13,8 +13,8 @@ namespace robot_control {
 namespace {
 
 constexpr double kFallen = 30 * M_PI / 180;
-constexpr double kLeastLoad = 0.001;
-constexpr double kLeastShare = 0.01;
+constexpr double kMinLoad = 0.001;
+constexpr double kMinShare = 0.01;
 
 /// A body's shapes stand in the MJCF in its own order (mjcf.cpp), but for those that roll, which are one each.
 std::string link_of(const MujocoModel& model, int geom) {
@@ -43,7 +43,7 @@ std::string unloaded_side(const MujocoModel& model, const WheelContacts& wheels)
     for (std::size_t i = 0; i < model.drive_wheels; ++i) {
       if (model.robot.wheels[i].side == side) load += wheels.normal_force(i);
     }
-    if (load < kLeastLoad * model.robot.mass * kGravity) return side == Side::kLeft ? "left" : "right";
+    if (load < kMinLoad * model.robot.mass * kGravity) return side == Side::kLeft ? "left" : "right";
   }
   return "";
 }
@@ -52,7 +52,7 @@ std::string unloaded_wheels(const MujocoModel& model, const WheelContacts& wheel
   const double share = model.robot.mass * kGravity / static_cast<double>(model.drive_wheels);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < model.drive_wheels; ++i) {
-    if (wheels.normal_force(i) < kLeastShare * share) names.push_back(model.robot.joints[i].name);
+    if (wheels.normal_force(i) < kMinShare * share) names.push_back(model.robot.joints[i].name);
   }
   return names.empty() ? "" : list(names);
 }

@@ -18,9 +18,9 @@ void SlipNoise::reset() {
   error_ = {};
 }
 
-void SlipNoise::step(Side side, double way) noexcept {
-  if (deviation_ == 0 || way == 0) return;
-  const double kept = std::exp(-std::abs(way) / kLength);
+void SlipNoise::step(Side side, double distance) noexcept {
+  if (deviation_ == 0 || distance == 0) return;
+  const double kept = std::exp(-std::abs(distance) / kLength);
   double& error = error_[index(side)];
   error = kept * error + deviation_ * std::sqrt(1 - kept * kept) * random_[index(side)].next();
 }

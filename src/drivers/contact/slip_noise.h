@@ -26,7 +26,7 @@ class SlipNoise {
   void reset();
 
   /// The rims of `side` went `way` m.
-  void step(Side side, double way) noexcept;
+  void step(Side side, double distance) noexcept;
 
   /// ε of `side`.
   double error(Side side) const noexcept { return error_[index(side)]; }

@@ -115,11 +115,11 @@ void WheelContacts::reset() {
 /// The way of a side is the mean of its wheels'.
 void WheelContacts::roll_on(const mjData& data) noexcept {
   for (const Side side : {Side::kLeft, Side::kRight}) {
-    double way = 0;
+    double distance = 0;
     for (const Wheel& wheel : wheels_) {
-      if (wheel.side == side) way += std::abs(data.qvel[wheel.dof]) * wheel.radius * model_->opt.timestep;
+      if (wheel.side == side) distance += std::abs(data.qvel[wheel.dof]) * wheel.radius * model_->opt.timestep;
     }
-    slip_noise_.step(side, way / static_cast<double>(drive_wheels_ / 2));
+    slip_noise_.step(side, distance / static_cast<double>(drive_wheels_ / 2));
   }
 }
 

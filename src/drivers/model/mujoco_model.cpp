@@ -159,7 +159,7 @@ MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& 
   files.add(name, robot_mjcf(result.robot, parameters, place));
   // In the scene's directory, so that its own relative paths stay true.
   result.model = load((scene.parent_path() / name).string(), files.get(), robot.source + " in scene " + scene.string());
-  result.substeps = static_cast<int>(std::ceil(period / kLongestStep - 1e-9));
+  result.substeps = static_cast<int>(std::ceil(period / kMaxStep - 1e-9));
   set_options(*result.model, period / result.substeps, parameters.slope, place.pose);
   apply_angles(result.robot, *result.model);
   find_addresses(result);

@@ -27,7 +27,7 @@
 namespace robot_control {
 
 /// A MuJoCo step is at most this long, s: the contact's time constant of 4 ms (mjcf.h) needs four steps.
-inline constexpr double kLongestStep = 0.001;
+inline constexpr double kMaxStep = 0.001;
 
 struct DeleteMujoco {
   void operator()(mjModel* model) const noexcept { mj_deleteModel(model); }

@@ -42,7 +42,7 @@ class SceneFiles {
 
   void look(const std::filesystem::path& path) {
     if (!seen_.insert(path).second) return;
-    const InputFile file = read_input_file(path, kLargestDescription);
+    const InputFile file = read_input_file(path, kMaxDescription);
     if (!file.problem.empty()) refuse_scene(path, file.problem);
     for (const std::string_view name : {"meshdir", "texturedir", "assetdir"}) {
       for (const std::string& folder : attribute_values(file.text, name)) folders_.insert(folder);
@@ -55,7 +55,7 @@ class SceneFiles {
   void look_at(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return;
-    const std::string problem = input_file_problem(path, kLargestDescription);
+    const std::string problem = input_file_problem(path, kMaxDescription);
     if (!problem.empty()) refuse_scene(path, problem);
     if (path.extension() == ".xml" || path.extension() == ".mjcf") look(path);
   }

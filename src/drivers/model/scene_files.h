@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-/// Throws DriverError: the scene is no regular file of at most kLargestDescription bytes, or a file that it names is
+/// Throws DriverError: the scene is no regular file of at most kMaxDescription bytes, or a file that it names is
 /// there and is none. What is not there is left to MuJoCo's own message.
 void check_scene_files(const std::string& scene);
 

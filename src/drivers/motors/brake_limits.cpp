@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPartOfLifting = 0.5;
 constexpr double kAlmostLifting = 0.9;
-constexpr double kLeastPart = 0.1;
+constexpr double kMinPart = 0.1;
 constexpr double kSlopeHeld = 10 * M_PI / 180;
 constexpr double kSlopeBraked = 5 * M_PI / 180;
 constexpr double kHoldSpeed = 0.03;  // m/s at the rim
@@ -33,8 +33,7 @@ Brake brake_of(const RobotModel& robot, std::size_t index, const MujocoPlantPara
   const double friction = joint.friction + parameters.gear_ratio * parameters.motor_friction;
   const auto effort = [&](double force) {
     const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
-    return std::min(parameters.brake_effort.value_or(std::max(share - friction, kLeastPart * share)),
-                    joint.effort_limit);
+    return std::min(parameters.brake_effort.value_or(std::max(share - friction, kMinPart * share)), joint.effort_limit);
   };
 
   Brake brake;

@@ -35,7 +35,7 @@ class LateSamples {
 
   /// Cycles after which a sample has arrived for certain; 0: all are on time.
   std::size_t longest() const noexcept {
-    return delay_ == 0 && jitter_ == 0 ? 0 : static_cast<std::size_t>(std::ceil(delay_ + kMost * jitter_));
+    return delay_ == 0 && jitter_ == 0 ? 0 : static_cast<std::size_t>(std::ceil(delay_ + kMaxDeviations * jitter_));
   }
 
   /// In goes the sample of this cycle, out comes what the driver reports, in its place.
@@ -43,7 +43,7 @@ class LateSamples {
     if (delay_ == 0 && jitter_ == 0) return;
     if (cycle_ == 0) reported_ = value;
     const auto now = static_cast<double>(cycle_++);
-    const double late = jitter_ > 0 ? jitter_ * std::min(kMost, std::abs(random_.next())) : 0;
+    const double late = jitter_ > 0 ? jitter_ * std::min(kMaxDeviations, std::abs(random_.next())) : 0;
     last_arrival_ = std::max(last_arrival_, now + delay_ + late);
     on_the_way_[sent_++ % on_the_way_.size()] = {value, last_arrival_};
     while (arrived_ < sent_ && on_the_way_[arrived_ % on_the_way_.size()].arrival <= now + kRounding) {
@@ -53,8 +53,8 @@ class LateSamples {
   }
 
  private:
-  static constexpr double kMost = 6;         ///< standard deviations
-  static constexpr double kRounding = 1e-6;  ///< cycles
+  static constexpr double kMaxDeviations = 6;  ///< standard deviations
+  static constexpr double kRounding = 1e-6;    ///< cycles
 
   struct Sample {
     Value value{};

@@ -46,7 +46,7 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kLongestDelay = 100;  ///< cycles, of sensors as of actuators
+inline constexpr std::size_t kMaxDelay = 100;  ///< cycles, of sensors as of actuators
 
 /// The noise and the bias of a device with three axes.
 class InertialError {
@@ -73,7 +73,7 @@ class InertialError {
 
 class SensorErrors {
  public:
-  /// Throws DriverError: a delay of more than kLongestDelay cycles. At kIdeal all steps change nothing.
+  /// Throws DriverError: a delay of more than kMaxDelay cycles. At kIdeal all steps change nothing.
   SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
   /// Ordinary thread: restarts.
@@ -104,10 +104,10 @@ class SensorErrors {
   LateSamples<ImuSample> late_imu_;
   using Encoders = std::array<JointSample, kMaxWheels>;
   LateSamples<Encoders> late_encoders_;
-  DelayLine<Measurement, kLongestDelay> delay_;
+  DelayLine<Measurement, kMaxDelay> delay_;
 };
 
-/// A delay in cycles out of the parameters; throws DriverError naming it where it is above kLongestDelay.
+/// A delay in cycles out of the parameters; throws DriverError naming it where it is above kMaxDelay.
 std::size_t checked_delay(const char* name, std::uint64_t cycles);
 
 }  // namespace robot_control
