@@ -12,7 +12,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kMaxNames = 16;  // remembered, as in CommandSenders
+constexpr std::size_t kMaxNames = 16;  // names stored at most, as in CommandSenders
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(1.0e9 * seconds);

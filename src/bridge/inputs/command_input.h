@@ -1,22 +1,23 @@
 #pragma once
-/// Messages on `cmd_vel` and `cmd_vel_stamped` → the controller's inbox, and the reports about them. Pure.
+/// CommandInput checks messages of `cmd_vel` and `cmd_vel_stamped`, passes them to the controller's inbox and reports
+/// about them. It is pure.
 ///
 /// A message passes these checks:
-///   1. its stamp (command_stamp.h): refused if it is too old or in the future. The last command stays in force until
-///      its timeout, and the sender of the refused message does not count as a sender;
-///   2. its sender (command_senders.h): with `one_sender`, while messages of two or more senders arrived within
-///      cmd_vel_timeout, but no less than kSenderWindow, the messages of all of them are refused, and the robot ramps
-///      to rest until one sender is left. Without it each message overrides the one before, and that is reported;
+///   1. its stamp (command_stamp.h): a message that is too old or in the future is refused. The last command stays in
+///      force until its timeout, and the sender of the refused message does not count as a sender;
+///   2. its sender (command_senders.h): with `one_sender`, two or more senders within cmd_vel_timeout, but at least
+///      within kSenderWindow, exclude each other: all their messages are refused, and the robot ramps to rest until one
+///      sender is left. Without `one_sender` each message overrides the one before, and that is reported;
 ///   3. its connection (motion_requests.h): motion is refused while the connection is revoked;
 ///   4. NaN and infinity are refused by the controller (control/command_watch.h).
 ///
-/// A zero velocity that arrives while another connection requests motion, by a message within cmd_vel_timeout (1 s if
-/// that is 0), is contested (VelocityCommand::contested): it is executed, but is no evidence
-/// (safety/latch/motion_release.h). When the permission to move is withdrawn, the command in force ends; until it is
-/// granted again, it ends as well when no connection requests motion any more, whatever its timeout.
+/// A zero velocity is contested (VelocityCommand::contested) if another connection has requested motion within
+/// cmd_vel_timeout (1 s if that is 0). It is executed, but does not count as evidence (safety/latch/motion_release.h).
+/// The command in force ends when the permission to move is withdrawn. Until permission is granted again, it also ends
+/// when no connection requests motion any more, whatever its timeout.
 ///
-/// Reports: one warning per sender with wrong stamps, one per revoked sender, one per set of competing senders;
-/// repeated after kRepeatAfter at the earliest, in the loop's time.
+/// One warning is reported per sender with wrong stamps, per revoked sender and per set of competing senders. A warning
+/// is repeated after kRepeatAfter at the earliest, in the loop's time.
 
 #include <cstdint>
 #include <map>
@@ -32,39 +33,39 @@
 
 namespace robot_control {
 
-/// s; the default of cmd_vel_timeout. A shorter timeout may lie below the senders' periods, and would then show no two
-/// of them at once.
+/// s, the default of cmd_vel_timeout. A shorter timeout may be below the senders' periods, so that two of them would
+/// never be counted at the same time.
 inline constexpr double kSenderWindow = 1.25;
 inline constexpr std::int64_t kRepeatAfter = 10'000'000'000;  ///< ns
 
 struct ArrivedCommand {
   Publisher sender;
   Twist twist;
-  std::int64_t stamp_ns = 0;  ///< 0: none
+  std::int64_t stamp_ns = 0;  ///< 0 if the message has none
 };
 
-/// When a message arrived.
+/// The time at which a message arrived, on two clocks.
 struct ArrivalTime {
-  std::int64_t ros_ns = 0;   ///< on the clock that senders stamp with
+  std::int64_t ros_ns = 0;   ///< on the clock that senders use for stamps
   std::int64_t loop_ns = 0;  ///< stamp of the newest sensor frame; 0 before the first
 };
 
 class CommandInput final : public CommandIntake {
  public:
-  /// `timeout`: cmd_vel_timeout, s; 0: never.
+  /// `timeout` is cmd_vel_timeout in s; 0 means that commands never time out.
   CommandInput(double timeout, bool one_sender);
 
-  /// Another timeout, s, from the next message on.
+  /// Sets the timeout in s for the next message and all later ones.
   void set_timeout(double timeout) override;
 
-  /// Seconds for which a sender's last message requests motion, > 0, where that is not `timeout`.
+  /// Sets for how many seconds (> 0) a sender's last message requests motion, if that is not `timeout`.
   void set_silence(double silence);
 
   void receive(const ArrivedCommand& arrived, const ArrivalTime& time);
 
   void start(const EarlierController& earlier) override { requests_.start(earlier); }
 
-  /// If nothing arrived: removes senders that have become silent. True if that changed the value of the inbox.
+  /// Removes senders that have become silent. Returns true if that changed the value of the inbox.
   bool look(std::int64_t loop_ns) override;
 
   const VelocityCommand& value() const noexcept override { return value_; }
@@ -75,7 +76,7 @@ class CommandInput final : public CommandIntake {
 
   std::vector<std::string> revoked() const override { return requests_.revoked_names(); }
 
-  /// A connection requests motion, as above.
+  /// Returns whether any connection requests motion.
   bool motion_requested(std::int64_t loop_ns) const { return requests_.any(loop_ns); }
 
  private:
@@ -91,9 +92,10 @@ class CommandInput final : public CommandIntake {
   CommandSenders senders_;
   MotionRequests requests_;
   VelocityCommand value_;
-  std::map<std::string, StampVerdict> reported_stamps_;  ///< of senders with wrong stamps, as last reported
-  std::map<std::string, std::int64_t> reported_ns_;      ///< by sender and verdict, or by the names of a crowd
-  std::vector<std::string> reported_senders_;            ///< as last reported; empty: one sender, or none
+  std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps
+  std::map<std::string, std::int64_t>
+      reported_ns_;  ///< time of each report, by sender and verdict or by the competing senders' names
+  std::vector<std::string> reported_senders_;  ///< last reported competing senders; empty: one sender, or none
   std::vector<ReportLine> lines_;
 };
 

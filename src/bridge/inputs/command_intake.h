@@ -1,6 +1,6 @@
 #pragma once
-/// Selects the command for the controller: the newest one (CommandInput), or that of the winner among several sources
-/// (CommandMux). Pure; time is that of the loop's frames.
+/// A CommandIntake selects the command for the controller: the newest one (CommandInput), or that of the winner among
+/// several sources (CommandMux). It is pure; time is that of the loop's frames.
 
 #include <cstdint>
 #include <string>
@@ -21,35 +21,36 @@ class CommandIntake {
   CommandIntake& operator=(CommandIntake&&) = default;
   virtual ~CommandIntake() = default;
 
-  /// Before the first message and the first call of `follow`.
+  /// Sets the situation at the start; is called before the first message and the first call of `follow`.
   virtual void start(const EarlierController& earlier) = 0;
 
-  /// Follows what happens without a message: silence. True if the value of the inbox changed.
+  /// Updates the value for the time that has passed without a message. Returns true if the value of the inbox changed.
   virtual bool look(std::int64_t loop_ns) = 0;
 
-  /// Follows the safety monitor; before each message that arrives, and at least at every `look`. True if the command in
-  /// force ended (motion_requests.h).
+  /// Applies the safety monitor's permission. It is called before each message and at least at every `look`. Returns
+  /// true if the command in force ended (motion_requests.h).
   virtual bool follow(const MotionPermission& permission, std::int64_t loop_ns) = 0;
 
-  /// Names of the senders whose motion is refused until their next zero velocity, whether they request one or not.
+  /// Returns the names of the senders whose motion is refused until their next zero velocity, whether they request
+  /// motion or not.
   virtual std::vector<std::string> revoked() const = 0;
 
-  /// The value for the inbox.
+  /// Returns the value for the inbox.
   virtual const VelocityCommand& value() const noexcept = 0;
 
-  /// The new reports since the last call.
+  /// Returns the reports since the last call.
   virtual std::vector<ReportLine> lines() = 0;
 
-  /// Sorted by name.
+  /// Returns the senders of commands, sorted by name.
   virtual std::vector<std::string> senders(std::int64_t loop_ns) = 0;
 
-  /// Another cmd_vel_timeout, s.
+  /// Sets another cmd_vel_timeout in s.
   virtual void set_timeout(double timeout) = 0;
 
-  /// The source that commands; empty: none, or there is no list.
+  /// Returns the source that commands; "" if none does, or if there is no list.
   virtual std::string winner() const { return {}; }
 
-  /// One text per source of a list.
+  /// Returns one text per source of the list.
   virtual std::vector<std::string> states() const { return {}; }
 };
 

@@ -8,9 +8,10 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kMaxCycle = 10'000'000;  // ns, robot.rate is 100 Hz at least
+constexpr std::int64_t kMaxCycle = 10'000'000;  // ns; robot.rate is at least 100 Hz
 
-/// A time that turned back by more than a timeout (a new simulation) leaves nothing live.
+/// Returns whether a message is not older than `timeout`. A time that went back by more than that (a new simulation)
+/// makes it old.
 bool recent(const std::optional<std::int64_t>& last_ns, double timeout, std::int64_t now_ns) {
   if (!last_ns) return false;
   return timeout == 0 || std::abs(now_ns - *last_ns) <= std::llround(1.0e9 * timeout);

@@ -1,22 +1,23 @@
 #pragma once
-/// Several sources of commands → the controller's inbox: the words and rules of twist_mux. Pure.
+/// CommandMux selects one of several command sources for the controller's inbox, with the terms and rules of twist_mux.
+/// It is pure.
 ///
 ///   live      its last accepted message is no older than the source's timeout (0: never too old)
-///   locked    a lock of a higher priority is set: its last message was true, or it has a timeout and its
-///             last message is older, or none was received
+///   locked    a lock of a higher priority is set: its last message was true, or it has a timeout and received no
+///             message within it
 ///   winner    the live source of the highest priority that is not locked
 ///
-/// The result is the winner's command, with the checks of CommandInput. Where there is no winner it is a zero velocity,
-/// renewed at every look, so that nothing times out and the robot is at rest by command. When the winner changes, the
-/// new one's last command takes effect at once; the controller's S-curve leads from one to the other.
+/// The result is the winner's command, with the checks of CommandInput. Without a winner it is a zero velocity, renewed
+/// at every look: it never times out, and the robot is at rest by command. When the winner changes, the last command of
+/// the new one takes effect at once; the controller's S-curve connects both.
 ///
 /// A source whose command was ended by the safety monitor (motion_requests.h) is not live until its next accepted
 /// message, whatever its timeout.
 ///
-/// Evidence that no motion is requested (safety/latch/motion_release.h) counts the messages of all sources: a zero
-/// result is contested while any of them requests motion, masked or locked as it may be, because that motion would
-/// begin with the silence of the winner or the end of the lock. The zero where there is no winner is no message
-/// (kNoMessage), unless a locked source still requests motion.
+/// Evidence that no motion is requested (safety/latch/motion_release.h) depends on the messages of all sources. A zero
+/// result is contested while any source requests motion, also a masked or locked one. Its motion would begin when the
+/// winner becomes silent or the lock ends. The zero velocity without a winner is no message (kNoMessage), unless a
+/// locked source still requests motion.
 ///
 /// Time is that of the loop's frames.
 
@@ -32,19 +33,19 @@ namespace robot_control {
 
 class CommandMux final : public CommandIntake {
  public:
-  /// `timeout`: cmd_vel_timeout, s; 0: never.
+  /// `timeout` is cmd_vel_timeout in s; 0 means that commands never time out.
   CommandMux(const CommandSourceList& list, double timeout, bool one_sender);
 
-  /// Sources have timeouts of their own; this is that of the evidence.
+  /// Sets the timeout of the evidence; each source has a timeout of its own for its commands.
   void set_timeout(double timeout) override;
 
   void start(const EarlierController& earlier) override;
 
-  /// `source`: index in the list, which is sorted by priority.
+  /// `source` is an index of the list, which is sorted by priority.
   void receive(std::size_t source, const ArrivedCommand& arrived, const ArrivalTime& time);
   void receive_lock(std::size_t lock, bool set, std::int64_t loop_ns);
 
-  /// Follows timeouts and locks. True if the value of the inbox changed.
+  /// Updates winner and value by timeouts and locks. Returns true if the value of the inbox changed.
   bool look(std::int64_t loop_ns) override;
 
   bool follow(const MotionPermission& permission, std::int64_t loop_ns) override;
@@ -54,11 +55,11 @@ class CommandMux final : public CommandIntake {
   std::vector<ReportLine> lines() override;
   std::vector<std::string> senders(std::int64_t loop_ns) override;
 
-  /// Name of the winner at the last look or message; empty: none.
+  /// Returns the name of the winner at the last look or message; "" if there was none.
   std::string winner() const override;
 
-  /// One text per source, by priority: "joy_vel: silent", "key_vel: commands", "cmd_vel: masked by key_vel",
-  /// "path_vel: locked by pause", "path_vel: revoked" (the motion of a sender is refused).
+  /// Returns one text per source, by priority: "joy_vel: silent", "key_vel: commands", "cmd_vel: masked by key_vel",
+  /// "path_vel: locked by pause", "path_vel: revoked". Revoked means that the motion of a sender is refused.
   std::vector<std::string> states() const override;
 
  private:
@@ -67,7 +68,7 @@ class CommandMux final : public CommandIntake {
     CommandInput input;
     std::optional<std::int64_t> last_ns;  ///< when its last accepted message arrived
     bool live = false;
-    std::optional<std::size_t> lock;  ///< that masks it
+    std::optional<std::size_t> lock;  ///< lock that masks it
   };
   struct Lock {
     CommandLock given;
@@ -76,18 +77,18 @@ class CommandMux final : public CommandIntake {
     bool locks = false;
   };
 
-  /// True if the winner changed.
+  /// Selects the winner. Returns true if it changed.
   bool select(std::int64_t loop_ns);
-  /// `message`: because of one that arrived.
+  /// Adopts the winner's command; `message` says that a message caused the call.
   void take_result(std::int64_t loop_ns, bool message);
-  /// A message arrived within the last cycle: the controller may not have read it yet.
+  /// Returns whether a message arrived within the last cycle, so that the controller may not have read it yet.
   bool unread(std::int64_t loop_ns) const;
   void add_refusals();
 
   std::vector<Source> sources_;
   std::vector<Lock> locks_;
   std::optional<std::size_t> winner_;
-  std::optional<std::int64_t> message_ns_;  ///< when the last message arrived, of whatever source
+  std::optional<std::int64_t> message_ns_;  ///< when the last message of any source arrived
   VelocityCommand value_;
   std::vector<ReportLine> lines_;
 };

@@ -5,7 +5,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kMaxSenders = 16;  // a sender with ever new names takes no memory
+constexpr std::size_t kMaxSenders = 16;  // bounds the memory that a sender with ever new names can take
 
 }  // namespace
 

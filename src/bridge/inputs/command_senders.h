@@ -1,9 +1,9 @@
 #pragma once
-/// The senders of commands: every node with a message within `window`, by name. Pure.
+/// CommandSenders lists the nodes that sent a command within `window`. It is pure.
 ///
-/// A node that only advertises cmd_vel is not a sender. Both topics of one node are one
-/// sender. Time is that of the loop's frames, so that no clock moves it; should it turn back by more than the window (a
-/// new simulation), all are forgotten.
+/// A node that only advertises cmd_vel is not a sender. Both topics of one node count as one sender. Time is that of
+/// the loop's frames and independent of the system's clock. If it goes back by more than the window (a new simulation),
+/// all senders are forgotten.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,12 +15,12 @@ namespace robot_control {
 
 class CommandSenders {
  public:
-  /// `window_ns` > 0.
+  /// Sets the window; `window_ns` > 0.
   void set_window(std::int64_t window_ns) { window_ns_ = window_ns; }
 
   void add(const std::string& sender, std::int64_t now_ns);
 
-  /// Those with a message within the window, sorted by name.
+  /// Returns the senders with a message within the window, sorted by name.
   std::vector<std::string> at(std::int64_t now_ns);
   std::size_t count(std::int64_t now_ns);
 

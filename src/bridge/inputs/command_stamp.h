@@ -1,27 +1,27 @@
 #pragma once
-/// The stamp of a command, judged once, when it arrives.
+/// The stamp of a command is checked once, when the command arrives.
 ///
 ///   age = arrival − stamp   both on the sender's clock, the time of day or /clock; a stamp of 0 is none: age 0
 ///
-/// Usable: −kClockSkew ≤ age ≤ timeout; an age below zero counts as zero, so that no command outlives the timeout.
-/// Older: it timed out in transport. In the future: the two clocks differ, and its age is not known.
-/// With timeout 0 no command is ever too old: no stamp is looked at.
+/// A command is usable if −kClockSkew ≤ age ≤ timeout. An age below zero counts as zero, so that no command outlives
+/// the timeout. An older command timed out in transport. A stamp in the future means that the two clocks differ and the
+/// age is not known. With timeout 0 stamps are not checked, and no command is too old.
 
 #include <algorithm>
 #include <cstdint>
 
 namespace robot_control {
 
-/// ns. Far above what NTP leaves between the machines of one network (RFC 5905, abstract: down to tens of
-/// microseconds), far below any usual cmd_vel_timeout: a clock that is not synchronised is reported, one that is
-/// synchronised is not.
+/// ns, the largest accepted difference of two clocks. It is far above that of machines synchronised by NTP (RFC 5905,
+/// abstract: down to tens of microseconds). It is far below any usual cmd_vel_timeout. So only clocks that are not
+/// synchronised are reported.
 inline constexpr std::int64_t kClockSkew = 100'000'000;
 
 enum class StampVerdict { kUsable, kTooOld, kFuture };
 
 struct JudgedStamp {
   StampVerdict verdict = StampVerdict::kUsable;
-  std::int64_t age_ns = 0;  ///< usable: ≥ 0; else as found
+  std::int64_t age_ns = 0;  ///< ≥ 0 if usable, else as measured
 };
 
 constexpr JudgedStamp judge_stamp(std::int64_t stamp_ns, std::int64_t arrival_ns, std::int64_t timeout_ns) noexcept {

@@ -5,8 +5,8 @@
 namespace robot_control {
 namespace {
 
-// A sender under ever new names takes bounded memory. What is sent under further names is true for ever: no false ends
-// it.
+// This bounds the memory that a sender with ever new names can take. All further publishers share one level, which no
+// false message ends.
 constexpr std::size_t kMaxPublishers = 1000;
 const char* const kFurther = "(further publishers)";
 const char* const kSilent = " (has sent nothing since safety_monitor was restarted)";
@@ -14,7 +14,7 @@ const char* const kUnknown = "an unknown publisher, from before safety_monitor w
 
 }  // namespace
 
-/// False: it was known, or there are too many.
+/// Returns whether the publisher is new and was stored; false if it was known or there are too many.
 bool EStopLevels::remember(const std::string& publisher) {
   return known_.size() < kMaxPublishers && known_.insert(publisher).second;
 }

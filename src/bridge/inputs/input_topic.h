@@ -1,8 +1,9 @@
 #pragma once
-/// A topic into the loop: sent without delay, its queue bounded, its messages of the right length.
+/// An InputTopic subscribes to a topic for the loop, without delay (TCP_NODELAY), with a bounded queue and checked
+/// message lengths.
 ///
-/// A flood of messages delays only the ordinary threads of ROS: the queue drops its oldest message, and a received
-/// value goes into an inbox that keeps the latest one only (rt/latest_value.h).
+/// A flood of messages delays only the ordinary threads of ROS. The queue drops its oldest message, and received values
+/// go into an inbox that keeps only the latest one (rt/latest_value.h).
 
 #include <ros/ros.h>
 
@@ -23,13 +24,13 @@ class InputTopic {
  public:
   using Message = decltype(BoundedMessage::message);
 
-  /// Queue lengths: 1 where only the latest message counts, more where none must be lost.
+  /// `queue` is the queue's length: 1 if only the latest message counts, more if none may be lost.
   InputTopic(std::string name, std::uint32_t queue) : name_(std::move(name)), queue_(queue) {}
   InputTopic(const InputTopic&) = delete;
   InputTopic& operator=(const InputTopic&) = delete;
 
-  /// `malformed`: called instead of `receive` for data that is no message of this type, with a warning every 10 s at
-  /// most.
+  /// `malformed` is called instead of `receive` for data that are no message of this type; a warning follows at most
+  /// every 10 s.
   void connect(
       ros::NodeHandle& handle, const std::function<void(const Message&)>& receive,
       const std::function<void()>& malformed = [] {}) {
@@ -38,7 +39,7 @@ class InputTopic {
         [malformed](const std::string&) { malformed(); });
   }
 
-  /// The same with the connection over which it came and the node at its other end.
+  /// Subscribes as `connect` does; `receive` also gets the publisher of the message.
   void connect_with_sender(
       ros::NodeHandle& handle, const std::function<void(const Message&, const Publisher&)>& receive,
       const std::function<void(const std::string&)>& malformed = [](const std::string&) {}) {

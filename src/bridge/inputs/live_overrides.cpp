@@ -10,7 +10,7 @@ namespace robot_control {
 std::string write_overrides(const std::vector<LiveValue>& values) {
   std::string unwritten;
   for (const LiveValue& value : values) {
-    // Without a master ros::param::set would wait without end. After one failure no other call is tried.
+    // Without a master ros::param::set would wait for ever. After one failure the remaining values are not tried.
     if (!unwritten.empty() || !ros::master::check()) {
       unwritten += (unwritten.empty() ? "" : ", ") + value.key;
       continue;

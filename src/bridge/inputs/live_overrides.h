@@ -1,6 +1,7 @@
 #pragma once
-/// Accepted live values → this node's overrides on the parameter server: `rosparam get` shows the values in force, and
-/// a node that is started again reads them as any override (overlays.h). They outlive the node in roscore, as those do.
+/// Accepted live values are written to the parameter server as overrides of this node. `rosparam get` then shows the
+/// values in force, and the node reads them when it is started again (overlays.h). They stay in roscore after the end
+/// of the node, as all overrides do.
 
 #include <string>
 #include <vector>
@@ -9,8 +10,8 @@
 
 namespace robot_control {
 
-/// "pid_kp" → ~pid_kp, "feed_forward.mass" → ~feed_forward/mass. Empty, or which of them could not be written, and why.
-/// May take as long as the master does.
+/// Writes "pid_kp" to ~pid_kp, "feed_forward.mass" to ~feed_forward/mass. Returns "", or which values could not be
+/// written and why. It waits for the master.
 std::string write_overrides(const std::vector<LiveValue>& values);
 
 }  // namespace robot_control

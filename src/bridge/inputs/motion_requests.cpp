@@ -37,7 +37,7 @@ MotionRequests::Record& MotionRequests::record_of(const Publisher& sender) {
 
 void MotionRequests::forget_the_oldest_closed() {
   const auto closed = [](const Record& record) { return record.connection.expired(); };
-  if (std::ranges::count_if(records_, closed) >= static_cast<std::ptrdiff_t>(kMostClosed))
+  if (std::ranges::count_if(records_, closed) >= static_cast<std::ptrdiff_t>(kMaxClosed))
     records_.erase(std::ranges::find_if(records_, closed));
 }
 

@@ -27,7 +27,7 @@ void put(msg::Config& config, const LiveParameter& parameter, const Value& value
   }
 }
 
-/// The groups that a client expects in every Config.
+/// Returns a Config without values, but with the group that a client expects in every Config.
 msg::Config empty_config() {
   msg::Config config;
   config.groups.emplace_back();

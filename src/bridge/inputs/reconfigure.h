@@ -1,8 +1,9 @@
 #pragma once
-/// dynamic_reconfigure's view of the live parameters: flat names, plain numbers, a range of each. Pure.
+/// These functions show the live parameters to dynamic_reconfigure as flat names, plain numbers and ranges. They are
+/// pure.
 ///
-/// `feed_forward.mass` is `feed_forward_mass` here, as in run.csv. A value that is left out, and so derived, is shown
-/// as the number that holds (of the first wheel, where wheels differ); setting it fixes it.
+/// `feed_forward.mass` is named `feed_forward_mass`, as in run.csv. A value that is left out is derived, and shown as
+/// the derived number (that of the first wheel if wheels differ). Setting it replaces the derived number.
 
 #include <string>
 #include <vector>
@@ -12,14 +13,14 @@
 
 namespace robot_control {
 
-/// `parameters`: in force, derived values filled in (runtime/retuning.h).
+/// `parameters` are the ones in force, with derived values filled in (runtime/retuning.h).
 msg::Config config_of(const std::vector<LiveParameter>& parameters);
 
-/// One group, "Default"; `parameters` are those of the start.
+/// Returns a description with one group, "Default"; `parameters` are those of the start.
 msg::ConfigDescription description_of(const std::vector<LiveParameter>& parameters);
 
-/// The request as the text of a YAML map for ~set_parameter_map; empty: it names no value. A name that is none of the
-/// parameters' goes into it as it is, so that it is refused with the others' problems.
+/// Returns the request as the text of a YAML map for ~set_parameter_map; "" if it names no value. An unknown name is
+/// copied unchanged, so that it is refused together with all other problems.
 std::string request_text(const msg::Config& request, const std::vector<LiveParameter>& parameters);
 
 }  // namespace robot_control

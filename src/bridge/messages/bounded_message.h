@@ -1,10 +1,10 @@
 #pragma once
-/// A message that is looked at only if it is as long as its type can be.
+/// A Bounded message is parsed only if its length on the wire is possible for its type.
 ///
-/// roscpp hands over whatever a publisher sent, and where it is too short throws and logs once per message: a broken or
-/// hostile sender would fill the log. Here its length on the wire is judged first; what is out of bounds is neither
-/// copied nor parsed, `accepted` stays false. (Before that roscpp has already received it, up to what wire_guard.h
-/// allows.)
+/// roscpp parses every message that a publisher sends. If one is too short, roscpp throws and logs it, so that a broken
+/// or hostile sender would fill the log. Here the length is checked first. A message out of bounds is neither copied
+/// nor parsed, and `accepted` stays false. Before that, roscpp has received the message, up to the size that
+/// wire_guard.h allows.
 
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
@@ -16,7 +16,7 @@
 
 namespace robot_control {
 
-/// `Least`, `Most`: bytes on the wire.
+/// `Least` and `Most` are bounds of the message's length on the wire, in bytes.
 template <class Message, std::uint32_t Least, std::uint32_t Most = Least>
 struct Bounded {
   using ConstPtr = boost::shared_ptr<const Bounded>;
@@ -25,7 +25,7 @@ struct Bounded {
   bool accepted = false;
 };
 
-/// The longest accepted frame_id.
+/// A frame_id has at most this many bytes.
 inline constexpr std::uint32_t kMaxFrameId = 256;
 
 using BoundedBool = Bounded<msg::Bool, 1>;
@@ -39,7 +39,7 @@ using BoundedTwistStamped = Bounded<msg::TwistStamped, 64, 64 + kMaxFrameId>;
 namespace ros {
 
 namespace message_traits {
-// To its publisher it is the message itself.
+// A publisher sees the type of the message itself.
 template <class Message, std::uint32_t Least, std::uint32_t Most>
 struct MD5Sum<robot_control::Bounded<Message, Least, Most>> : MD5Sum<Message> {};
 template <class Message, std::uint32_t Least, std::uint32_t Most>
@@ -57,7 +57,7 @@ struct Serializer<robot_control::Bounded<Message, Least, Most>> {
     try {
       stream.next(to.message);
       to.accepted = true;
-    } catch (const StreamOverrunException&) {  // a length within it is wrong
+    } catch (const StreamOverrunException&) {  // a length inside the message is wrong
     }
   }
 };

@@ -1,12 +1,12 @@
 #pragma once
-/// The messages that cross this folder, in a form that C++20 accepts.
+/// This file declares the messages that the bridge sends and receives, in a form that C++20 accepts.
 ///
-/// The generated headers of ROS 1 ask the allocator for its member `rebind`, which std::allocator lost in C++20.
-/// MessageAllocator has it; names, checksums and bytes on the wire are templates over the allocator and stay.
+/// The generated headers of ROS 1 need the allocator's member `rebind`, which std::allocator lost in C++20.
+/// MessageAllocator has it. Names, checksums and bytes on the wire do not depend on the allocator.
 ///
-/// It also bounds what a received message allocates: roscpp resizes an array to the length that the sender wrote, up to
-/// 2³² elements, before it looks whether the message is as long. Beyond kMaxArray bytes it throws
-/// std::length_error, which roscpp catches: the message or request is rejected.
+/// MessageAllocator also bounds the memory of a received message. Otherwise roscpp resizes an array to the length that
+/// the sender wrote, up to 2³² elements, before it checks the length of the message. Beyond kMaxArray bytes the
+/// allocator throws std::length_error, which roscpp catches, and the message or request is rejected.
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/TransformStamped.h>
@@ -49,7 +49,7 @@ struct MessageAllocator : std::allocator<T> {
   };
 };
 
-/// Strings stay std::string.
+/// With this allocator strings stay std::string.
 template <>
 template <>
 struct MessageAllocator<void>::rebind<char> {
@@ -85,7 +85,7 @@ using Vector3 = geometry_msgs::Vector3_<Allocator>;
 
 }  // namespace msg
 
-// std_srvs/Trigger.h itself cannot be included.
+// These replace std_srvs/Trigger.h, which cannot be included (service_text.h).
 inline constexpr Service kTriggerService{"std_srvs/Trigger", "937c9679a518e3a18d831e57125ea522"};
 template <>
 inline constexpr Service kServiceOf<msg::TriggerRequest> = kTriggerService;

@@ -1,5 +1,5 @@
 #pragma once
-/// The service robot_control/SetOdometry as messages.
+/// This file declares the messages of the service robot_control/SetOdometry.
 
 #include <robot_control/SetOdometryRequest.h>
 #include <robot_control/SetOdometryResponse.h>

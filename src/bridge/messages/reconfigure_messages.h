@@ -1,5 +1,5 @@
 #pragma once
-/// The messages of dynamic_reconfigure, in the form of messages.h.
+/// This file declares the messages of dynamic_reconfigure in the form of messages.h.
 
 #include <dynamic_reconfigure/Config.h>
 #include <dynamic_reconfigure/ConfigDescription.h>

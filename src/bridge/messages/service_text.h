@@ -1,18 +1,18 @@
 #pragma once
-/// Hash and type of a service, in the two forms in which roscpp reads them from its request and its response. The
-/// generated service headers that contain them cannot be included in C++20, see messages.h.
+/// roscpp reads type and hash of a service from traits of its request and of its response. The generated service
+/// headers define these traits, but cannot be included in C++20 (messages.h); this file defines them instead.
 
 #include <ros/service_traits.h>
 
 namespace robot_control {
 
-/// `hash`: `rossrv md5 SERVICE`, of what stands in the .srv file, comments aside.
+/// `hash` is the output of `rossrv md5 SERVICE`: the checksum of the .srv file without comments.
 struct Service {
   const char* type = nullptr;
   const char* hash = nullptr;
 };
 
-/// The service of which `Message` is request or response. Specialised beside the messages.
+/// The service whose request or response `Message` is. It is specialised beside each message.
 template <class Message>
 inline constexpr Service kServiceOf{};
 

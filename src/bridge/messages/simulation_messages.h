@@ -1,6 +1,6 @@
 #pragma once
-/// The services of a simulated machine as messages: std_srvs/SetBool, robot_control/Step, robot_control/InjectFault.
-/// Their own headers (SetBool.h …) cannot be included in C++20, see messages.h; below is what they contain.
+/// This file declares the messages of a simulated machine's services: std_srvs/SetBool, robot_control/Step and
+/// robot_control/InjectFault. Their own headers (SetBool.h …) cannot be included in C++20 (messages.h).
 
 #include <robot_control/InjectFaultRequest.h>
 #include <robot_control/InjectFaultResponse.h>

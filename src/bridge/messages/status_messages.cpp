@@ -14,7 +14,7 @@
 namespace robot_control {
 namespace {
 
-/// "sentence (remedy)" per bit set.
+/// Returns "sentence (remedy)" for each bit that is set.
 std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t bits) {
   std::vector<std::string> texts;
   for (const BitName& row : table) {
@@ -23,25 +23,25 @@ std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t
   return texts;
 }
 
-/// A message's vector has its own allocator.
+/// Copies texts into a message, whose vector has its own allocator.
 template <class Strings>
 void assign(Strings& to, const std::vector<std::string>& from) {
   to.assign(from.begin(), from.end());
 }
 
-/// "17.3 rad/s"
+/// Returns "17.3 rad/s".
 std::string quantity(double value, std::string_view unit) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.4g ", value);
   return std::string(text.data()).append(unit);
 }
 
-/// "free the wheel, then call e_stop_reset"
+/// Returns "free the wheel, then call e_stop_reset".
 std::string with_reset(std::string_view remedy) {
   return std::string(remedy).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
 }
 
-/// "the battery is low: 20.9 V, limit 21 V (charge it soon)"
+/// Returns "the battery is low: 20.9 V, limit 21 V (charge it soon)".
 std::string warning_sentence(const BitName& row, const std::string& measured) {
   std::string text(row.sentence);
   if (!measured.empty()) text.append(": ").append(measured);

@@ -19,7 +19,7 @@ void TimeMap::update(std::int64_t stamp_ns, std::int64_t offset_ns) noexcept {
 
 void TimeMap::follow(const SensorFrame& sensors) {
   if (clock_ == ClockMode::kLockstep) return;
-  constexpr std::int64_t kPreempted = 50'000;  // ns; a longer gap between the readings would be taken for an offset
+  constexpr std::int64_t kPreempted = 50'000;  // ns; a longer gap between the readings would distort the offset
   const std::int64_t before = monotonic_ns();
   const auto day = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
   const std::int64_t gap = monotonic_ns() - before;

@@ -1,11 +1,12 @@
 #pragma once
-/// Sample stamps → ROS time, never backwards.
+/// A TimeMap converts stamps of samples to ROS time, which never goes backwards.
 ///
-/// Wall clock: stamps are CLOCK_MONOTONIC, behind it by what a simulated plant let slip or was held; ROS time is the
-/// time of day:   ros = stamp + offset,   offset → (time of day − monotonic) as measured + slipped + held.
-/// An offset that grew is adopted at once; one that shrank (the system's clock was set back) is approached by at
-/// most half of the stamps' progress, so that ROS time slows down but never turns back.
-/// Lockstep: the stamps are the time, and the driver publishes them on /clock.
+/// Wall clock: stamps are CLOCK_MONOTONIC, less the delays of a simulated plant (`slipped`) and its pauses (`held`).
+/// ROS time is the time of day:
+///   ros = stamp + offset,   offset → (time of day − monotonic) as measured + slipped + held.
+/// A larger offset is adopted at once. A smaller one (the system's clock was set back) is approached by at most half of
+/// the stamps' progress: ROS time slows down, but never goes backwards. Lockstep: the stamps are ROS time, and the
+/// driver publishes them on /clock.
 
 #include <cstdint>
 
@@ -22,7 +23,7 @@ class TimeMap {
  public:
   explicit TimeMap(ClockMode clock) noexcept : clock_(clock) {}
 
-  /// Before each use: `stamp_ns` of the newest frame, `offset_ns` measured now.
+  /// Adopts the measured offset `offset_ns`; `stamp_ns` is that of the newest frame. It is called before each use.
   void update(std::int64_t stamp_ns, std::int64_t offset_ns) noexcept;
 
   /// Measures the offset itself; `sensors` is the newest frame of the driver.

@@ -1,5 +1,5 @@
 #pragma once
-/// The service robot_control/SetParameters as messages.
+/// This file declares the messages of the service robot_control/SetParameters.
 
 #include <robot_control/SetParametersRequest.h>
 #include <robot_control/SetParametersResponse.h>

@@ -20,7 +20,8 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kExhaustedPause = 10'000'000;  // ns; roscpp calls accept again at once, and logs each time
+constexpr std::int64_t kExhaustedPause =
+    10'000'000;  // ns; without it roscpp would call accept again at once and log each failure
 
 std::atomic<std::uint64_t> evicted{0};
 
@@ -35,7 +36,7 @@ bool has_sent(int socket) {
   return getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &length) != 0 || info.tcpi_bytes_received > 0;
 }
 
-/// Sockets that are open, as far as they were added.
+/// The list of those sockets that were added and are still open.
 class OpenSockets {
  public:
   void add(int descriptor) {
@@ -51,7 +52,7 @@ class OpenSockets {
     return sockets_.size();
   }
 
-  /// See the header.
+  /// Shuts down the socket that the header's rule selects.
   void evict_one() {
     const std::lock_guard lock(mutex_);
     forget_closed();
@@ -72,11 +73,11 @@ class OpenSockets {
     ino_t inode = 0;
     std::int64_t since_ns = 0;
 
-    /// The number may belong to another descriptor by now.
+    /// Compares the inode, because the number may belong to another file by now.
     bool is_open() const { return inode_of(descriptor) == inode; }
   };
 
-  /// See the header. There is one at least; they stand in the order of their arrival.
+  /// Returns the socket that the header's rule selects. The list is not empty.
   std::vector<Socket>::iterator victim() {
     const std::int64_t now_ns = monotonic_ns();
     const auto is_young = [now_ns](const Socket& socket) { return now_ns - socket.since_ns < kHandshake; };
@@ -117,7 +118,8 @@ bool reaches_into_reserve(int descriptor, std::uint64_t eighths) {
   return static_cast<std::uint64_t>(descriptor) >= limit - reserve_of(limit) * eighths / 8;
 }
 
-/// Half of all may be connections that this process makes. (Only where so many are in use need they be counted.)
+/// Returns whether this process's own connections take half of all descriptors. They are counted only if the new
+/// descriptor's number shows that so many are in use.
 bool are_half_of_all(int descriptor) {
   const std::uint64_t half = descriptor_limit() / 2;
   return static_cast<std::uint64_t>(descriptor) >= half && own_sockets().count() >= half;

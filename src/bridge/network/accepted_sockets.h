@@ -1,40 +1,40 @@
 #pragma once
 /// Connections never take the last file descriptors of this process.
 ///
-/// A connection that others make brings observers of topics and callers of services, no command: cmd_vel, e_stop and
-/// heartbeat come over connections that this process makes itself. So where descriptors run out, an accepted connection
-/// gives way to a new one: e_stop_trigger stays reachable. accepted_sockets.cpp puts an accept(2) of its own before the
-/// C library's, for every socket of the program:
+/// A connection made by another process serves an observer of topics or a caller of services. Commands, e_stop and
+/// heartbeat arrive over connections that this process makes itself. When descriptors run out, an accepted connection
+/// is therefore closed for a new one: e_stop_trigger stays reachable. The file accepted_sockets.cpp replaces the C
+/// library's accept(2) for every socket of the program:
 ///
 ///   a descriptor is the lowest free number (POSIX), so its value says how many are in use. At
-///   value ≥ limit − kReserve, or where accept fails for want of descriptors, one connection is shut down:
-///     of those that never sent a byte the oldest, if it is older than 200 ms or there are more than 16;
-///     else of those that are younger than 200 ms the oldest, if there are more than 16;
-///     else of the others the youngest.
-///   So a flood of connections displaces itself: a call has 200 ms, and observers from before the flood stay.
-///   roscpp then closes it as if the peer had.
+///   value ≥ limit − kReserve, or if accept fails because descriptors ran out, one connection is shut down:
+///     the oldest of those that never sent a byte, if it is older than 200 ms or there are more than 16;
+///     else the oldest of those that are younger than 200 ms, if there are more than 16;
+///     else the youngest of the others.
+///   In a flood, new connections therefore displace each other: a call has 200 ms, and earlier observers stay.
+///   roscpp then closes the connection as if the peer had closed it.
 ///
-/// A connection that this process makes, too, takes a descriptor, and XML-RPC's publisherUpdate makes it connect to
-/// whatever it names. So socket(2) is replaced likewise: where half of all descriptors are such connections, or in the
-/// last 6/8 of the reserve, it fails with EMFILE for Internet sockets, which roscpp takes for a peer that cannot be
-/// reached.
+/// Connections that this process makes take descriptors as well, and XML-RPC's publisherUpdate makes it connect to
+/// every peer that the request names. So socket(2) is also replaced. For Internet sockets it fails with EMFILE if half
+/// of all descriptors are such connections, or in the last 6/8 of the reserve. To roscpp such a peer cannot be reached.
 ///
-/// The reserve is what the process needs itself: shared memory, connections to publishers, to the master, log files;
-/// XML-RPC of roscpp refuses where fewer than 32 are free. An observer in roscpp that lost its connection connects
-/// again, one in rospy when the master next names the publishers.
+/// The reserve covers the needs of the process: shared memory, connections to publishers and to the master, log files.
+/// The XML-RPC of roscpp refuses requests if fewer than 32 descriptors are free. A roscpp observer that lost its
+/// connection connects again, a rospy observer when the master next names the publishers.
 
 #include <cstdint>
 
 namespace robot_control {
 
-inline constexpr std::uint64_t kReserve = 64;  ///< descriptors, of a limit of 256 or more; else a quarter of it
+inline constexpr std::uint64_t kReserve =
+    64;  ///< descriptors, for a limit of 256 or more; below, a quarter of the limit
 
-/// Descriptors that accepted connections leave free under this limit (RLIMIT_NOFILE).
+/// Returns the number of descriptors that accepted connections leave free under this limit (RLIMIT_NOFILE).
 constexpr std::uint64_t reserve_of(std::uint64_t limit) {
   return limit >= 4 * kReserve ? kReserve : limit / 4;
 }
 
-/// Connections shut down for want of descriptors, so far. Any thread.
+/// Returns how many connections were shut down so far because descriptors ran out. Any thread may call it.
 std::uint64_t evicted_connections() noexcept;
 
 }  // namespace robot_control

@@ -9,7 +9,7 @@ namespace robot_control {
 
 namespace {
 
-/// [[topic, [node, …]], …] of publishers, then of subscribers.
+/// Returns the master's lists [[topic, [node, …]], …], first that of publishers, then that of subscribers.
 std::optional<XmlRpc::XmlRpcValue> system_state() {
   XmlRpc::XmlRpcValue request;
   XmlRpc::XmlRpcValue response;

@@ -1,5 +1,5 @@
 #pragma once
-/// Questions to the ROS master.
+/// These functions ask the ROS master for publishers.
 
 #include <optional>
 #include <string>
@@ -7,14 +7,14 @@
 
 namespace robot_control {
 
-/// Nodes that publish any of these topics (resolved names); empty when the master does not answer.
+/// Returns the nodes that publish any of these topics (resolved names), or none if the master does not answer.
 std::vector<std::string> publishers_of(const std::vector<std::string>& topics);
 
-/// Of this node's XML-RPC server; empty when the master does not answer, or does not know the node.
+/// Returns the address of a node's XML-RPC server; "" if the master does not answer or does not know the node.
 std::string uri_of(const std::string& node);
 
-/// Nodes that publish this topic (resolved name), from a master that knows this node as its subscriber. None: it does
-/// not answer, or does not know this node, as after its restart; then it does not know the others either.
+/// Returns the nodes that publish this topic (resolved name). Returns nothing if the master does not answer or does not
+/// know this node as a subscriber. A restarted master knows neither this node nor the publishers.
 std::optional<std::vector<std::string>> publishers_known_to_reach(const std::string& topic);
 
 }  // namespace robot_control

@@ -1,10 +1,10 @@
 #pragma once
-/// Functions of roscpp that this program replaces by checked ones: does the loaded roscpp really call ours?
+/// Checks whether the loaded roscpp really calls the functions by which this program replaces roscpp's own.
 ///
-/// A shared library finds a function that it imports through the global scope, and there the executable comes first
-/// (System V gABI, "Shared Object Dependencies"): a function that the executable defines and exports replaces that of a
-/// library. That holds as long as the library refers to it by name, in its table of relocations; a library built with
-/// -Bsymbolic, or one that had the function inlined, would not.
+/// The dynamic linker looks up the imported functions of a shared library in the global scope. The executable comes
+/// first there (System V gABI, "Shared Object Dependencies"). So a function that the executable defines and exports
+/// replaces the library's function of this name. This requires that the library's table of relocations refers to the
+/// function by name. A library built with -Bsymbolic, or with the function inlined, does not.
 
 #include <dlfcn.h>
 
@@ -15,25 +15,25 @@
 namespace robot_control {
 
 struct Interposed {
-  std::string library;      ///< part of its file's name: "libroscpp.so"
-  std::string symbol;       ///< mangled
-  std::string description;  ///< for the warning: "the parser of connection headers"
+  std::string library;      ///< part of the library's file name: "libroscpp.so"
+  std::string symbol;       ///< mangled name of the function
+  std::string description;  ///< words for the warning: "the parser of connection headers"
 };
 
-/// The loaded library refers to `symbol` by name, and that name leads into this program. False where no such library is
-/// loaded.
+/// Returns whether the loaded library refers to `symbol` by name and that name is resolved to this program. Returns
+/// false if no such library is loaded.
 bool leads_here(const Interposed& function);
 
-/// The function of this type that the program's own one replaces: a member that is not virtual.
+/// Returns the library's member function that this program replaces. It must not be virtual.
 template <class Member>
 Member original(const char* symbol) {
   void* const address = dlsym(RTLD_NEXT, symbol);
   Member member{};
-  std::memcpy(&member, &address, sizeof address);  // its address and 0
+  std::memcpy(&member, &address, sizeof address);  // the pointer is its address and 0
   return member;
 }
 
-/// Descriptions of those that do not lead here.
+/// Returns the descriptions of those functions for which `leads_here` is false.
 std::vector<std::string> not_replaced(const std::vector<Interposed>& functions);
 
 }  // namespace robot_control

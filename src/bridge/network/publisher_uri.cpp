@@ -21,11 +21,11 @@ std::string publisher_uri(const ros::M_string& header) {
 
 namespace ros {
 
-/// Overwrites what a peer sends under this name.
+/// Adds the address to the header. It overwrites a field of this name from the peer.
 bool PublisherLink::setHeader(const Header& header) {
   using namespace robot_control;
   static const auto original_set = original<decltype(&PublisherLink::setHeader)>(kSetHeader);
-  Header complete = header;  // shares its fields
+  Header complete = header;  // both share their fields
   (*complete.getValues())[kPublisherUri] = publisher_xmlrpc_uri_;
   return (this->*original_set)(complete);
 }

@@ -1,9 +1,9 @@
 #pragma once
-/// Which process is at the other end of a subscription's connection?
+/// publisher_uri identifies the process at the other end of a subscription's connection.
 ///
-/// A connection header names the publisher's node, and a node that was restarted has the same name. roscpp knows the
-/// address of the node's XML-RPC server as well, from the master, and does not pass it on. Here it joins the header:
-/// ros::PublisherLink::setHeader is replaced (interposition.h).
+/// A connection header names the publisher's node, and a restarted node has the same name. The master gives roscpp the
+/// address of the node's XML-RPC server, but roscpp does not pass it on. Here ros::PublisherLink::setHeader is replaced
+/// (interposition.h), so that the address is added to the header.
 
 #include <ros/datatypes.h>
 
@@ -11,10 +11,10 @@
 
 namespace robot_control {
 
-/// Of ros::PublisherLink::setHeader, mangled.
+/// The mangled name of ros::PublisherLink::setHeader.
 inline constexpr const char* kSetHeader = "_ZN3ros13PublisherLink9setHeaderERKNS_6HeaderE";
 
-/// From a connection header that roscpp keeps; empty where the loaded roscpp does not use the replacement.
+/// Returns the address in a connection header that roscpp keeps; "" if the loaded roscpp does not use the replacement.
 std::string publisher_uri(const ros::M_string& header);
 
 }  // namespace robot_control

@@ -28,8 +28,8 @@
 namespace robot_control {
 namespace {
 
-constexpr int kMinDatagram = 64;      // B; UDPROS puts 8 of its own before the data
-constexpr int kMaxDatagram = 65'507;  // B; IPv4's 65,535 less both headers
+constexpr int kMinDatagram = 64;      // bytes; the data follow a UDPROS header of 8 bytes
+constexpr int kMaxDatagram = 65'507;  // bytes; IPv4's 65,535 minus both headers
 constexpr int kDefaultDatagram = 1500;
 
 constexpr const char* kParseShared =
@@ -53,12 +53,12 @@ constexpr const char* kExecuteMethod =
 
 std::atomic<std::uint64_t> overlong{0};
 
-/// The socket is one that the XML-RPC server of this process has accepted.
+/// Returns whether the XML-RPC server of this process accepted the socket, so that a request comes over it.
 bool is_request(int socket) {
   sockaddr_storage address{};
   socklen_t length = sizeof address;
   if (getsockname(socket, reinterpret_cast<sockaddr*>(&address), &length) != 0) return true;
-  std::uint16_t port = 0;  // at one place in both families
+  std::uint16_t port = 0;  // both families have the port at the same offset
   static_assert(offsetof(sockaddr_in, sin_port) == offsetof(sockaddr_in6, sin6_port));
   std::memcpy(&port, reinterpret_cast<const char*>(&address) + offsetof(sockaddr_in, sin_port), sizeof port);
   return ntohs(port) == ros::XMLRPCManager::instance()->getServerPort();
@@ -89,7 +89,7 @@ bool parse(ros::M_string& values, std::string_view rest, std::string& problem) {
   return true;
 }
 
-/// One for each level of a logger. rosconsole keeps the address of each until the process ends.
+/// A LoggerProbe has one location per level of a logger. rosconsole keeps the address of each until the process ends.
 struct LoggerProbe {
   std::string name;
   std::array<ros::console::LogLocation, ros::console::levels::Count> levels;

@@ -1,6 +1,7 @@
 #pragma once
-/// Keeps what state_estimator learns in its file: every 30 s when more was learned, and at the end. Called from the
-/// ordinary thread, which also publishes: a disk may take a second, so a thread of its own waits for it.
+/// Writes the calibration that state_estimator learns to its file: every 30 s if it changed, and at the end. It is
+/// called from the ordinary thread, which also publishes. A disk may take a second, so a thread of its own writes the
+/// file.
 
 #include <cstdint>
 #include <future>
@@ -13,21 +14,21 @@ namespace robot_control {
 
 class CalibrationKeeper {
  public:
-  static constexpr std::int64_t kPeriod = 30'000'000'000;  ///< ns; a crash loses that much of a slow learning
+  static constexpr std::int64_t kPeriod = 30'000'000'000;  ///< ns; a crash loses at most what was learned in this time
 
-  /// `parameters`: as the user gave them, before anything was read from the file.
+  /// `parameters` are as the user gave them, without the calibration of the file.
   CalibrationKeeper(const Parameters& parameters, const RobotModel& robot)
       : path_(parameters.estimator.self_calibration ? parameters.calibration_file : ""),
         robot_(robot),
         parameters_(parameters.estimator) {}
 
-  /// Any time; begins to write when it is due.
+  /// Begins to write if a write is due; may be called at any time.
   void look(const StateFrame& state, std::int64_t now_ns);
 
-  /// Waits until a write that has begun ends; a failure is reported once.
+  /// Waits until a write that has begun ends. A failure is reported once.
   void wait();
 
-  /// At the end: writes and waits.
+  /// Writes the last state and waits for the end of the write.
   void finish(const StateFrame& state);
 
  private:
@@ -37,13 +38,13 @@ class CalibrationKeeper {
   std::string path_;
   RobotModel robot_;
   EstimatorParameters parameters_;
-  LearnedCalibration saved_;  ///< or about to be
+  LearnedCalibration saved_;  ///< content of the file, or of the write that is running
   std::int64_t next_ns_ = 0;
   bool failed_ = false;
   std::future<void> writing_;
 };
 
-/// `parameters` with what its calibration_file holds, if there is one. Throws ParameterError.
+/// Returns `parameters` with the calibration of its calibration_file, if there is one. Throws ParameterError.
 Parameters with_calibration(const Parameters& parameters, const RobotModel& robot);
 
 }  // namespace robot_control

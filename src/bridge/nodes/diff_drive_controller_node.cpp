@@ -102,7 +102,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   }
 
  private:
-  /// Two topics, two threads, one inbox.
+  /// Two topics call this from two threads; the mutex protects their common inbox.
   void receive(const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
     log_dropped(arrived.sender.name);
@@ -111,7 +111,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     process().cycle().inbox().store(input_.value());
   }
 
-  /// Likewise, of the source with this index.
+  /// Receives a command of the source with index `source` of the list.
   void receive_from(std::size_t source, const ArrivedCommand& arrived) {
     const std::lock_guard lock(input_mutex_);
     log_dropped(arrived.sender.name);
@@ -120,14 +120,14 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     process().cycle().inbox().store(mux_->value());
   }
 
-  /// True if the command in force ended. Any thread that holds the lock.
+  /// Returns true if the command in force ended. The caller holds input_mutex_.
   bool follow_permission() {
     Permit permit;
     if (process().permits().newest(permit) != Lookup::kFrame || !process().is_current(permit.head)) return false;
     return intake_->follow(motion_permission(permit), loop_ns());
   }
 
-  /// Now. Any thread that holds the lock.
+  /// Returns the present time on both clocks. The caller holds input_mutex_.
   ArrivalTime arrival_time() {
     const bool lockstep = parameters().loop.clock == ClockMode::kLockstep;
     ArrivalTime time{.ros_ns = 0, .loop_ns = loop_ns()};
@@ -135,7 +135,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     return time;
   }
 
-  /// Before this node subscribes to a command topic and before its loop runs.
+  /// Returns the situation at the start. It is called before this node subscribes to a command topic and before its
+  /// loop runs.
   EarlierController earlier_controller(ros::NodeHandle& handle) {
     std::vector<std::string> topics;
     for (const CommandSource& source : list_.sources) topics.push_back(handle.resolveName(source.topic));
@@ -186,7 +187,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     message.revoked.assign(revoked.begin(), revoked.end());
   }
 
-  /// A command that arrives before the loop runs moves nothing later: one warning, until the loop has run.
+  /// A command that arrives before the loop runs has no effect later. This is reported once until the loop has run.
   void log_dropped(const std::string& sender) {
     SensorFrame sensors;
     CommandFrame command;
@@ -201,7 +202,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     dropped_reported_ = !runs;
   }
 
-  /// Stamp of the newest sensor frame. Any thread that holds the lock.
+  /// Returns the stamp of the newest sensor frame. The caller holds input_mutex_.
   std::int64_t loop_ns() {
     SensorFrame sensors;
     const bool found = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
@@ -209,7 +210,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     return loop_ns_;
   }
 
-  /// Whatever it cannot read keeps it from starting, too.
+  /// Checks retuning against the monitor's parameters. A monitor whose parameters are refused does not start, so they
+  /// need no check here.
   void expect_monitor() {
     try {
       process().retuning().expect_monitor(parameters_of("safety_monitor"));
@@ -224,7 +226,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     return true;
   }
 
-  /// As dynamic_reconfigure has it: the response holds what is in force, whether the request was taken or not.
+  /// As dynamic_reconfigure requires, the response holds the values in force, whether the request was accepted or not.
   bool set_parameters(msg::ReconfigureRequest& request, msg::ReconfigureResponse& response) {
     const std::string text = request_text(request.config, process().retuning().live());
     if (!text.empty()) retune(text);
@@ -237,10 +239,10 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     std::string text;
   };
 
-  /// Takes a set as a whole or refuses it; says so in the log.
+  /// Accepts the whole set of values or refuses it, and logs which.
   Answer retune(const std::string& request) {
-    // One set at a time, so that the server holds the set that was applied last. A second caller does not wait: the
-    // master may hang, and a callback thread must stay free for commands.
+    // Only one set is applied at a time, so that the server holds the set that was applied last. A second caller does
+    // not wait: the master may hang, and a callback thread must stay free for commands.
     const std::unique_lock lock(tuning_mutex_, std::try_to_lock);
     Answer answer;
     if (!lock) {
@@ -264,7 +266,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     return answer;
   }
 
-  /// What beside the controller goes by its limits.
+  /// Gives the new limits to the parts of this node that use them beside the controller.
   void follow(const DriveControllerParameters& parameters) {
     const std::lock_guard lock(input_mutex_);
     intake_->set_timeout(parameters.cmd_vel_timeout);
@@ -282,7 +284,8 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
     write_log(lines);
   }
 
-  /// What the wheels do now was planned two cycles ago; while that is not known, nothing was.
+  /// Returns the command of two cycles ago, which planned the present motion of the wheels. Returns an empty command if
+  /// that one is not available.
   CommandFrame plan() {
     CommandFrame plan;
     const FrameHead& head = command_.head;
@@ -304,12 +307,12 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   ros::ServiceServer set_parameter_map_;
   ros::Publisher descriptions_;
   ros::Publisher updates_;
-  std::mutex tuning_mutex_;                   ///< one set at a time; locked by try_lock alone
+  std::mutex tuning_mutex_;                   ///< protects the application of one set; locked only by try_lock
   std::atomic<bool> report_outdated_{false};  ///< `command_report_` still holds earlier limits
   std::mutex input_mutex_;
   CommandInput input_;
-  std::optional<CommandMux> mux_;    ///< where there is a list of sources; then `input_` receives nothing
-  CommandIntake* intake_ = &input_;  ///< the one of the two that receives
+  std::optional<CommandMux> mux_;    ///< present if there is a list of sources; then `input_` receives nothing
+  CommandIntake* intake_ = &input_;  ///< `mux_` if it is present, else `input_`
   std::int64_t loop_ns_ = 0;
   bool dropped_reported_ = false;
   Pacer pace_;
@@ -317,7 +320,7 @@ class DiffDriveControllerNode final : public ProcessNode<ControllerProcess> {
   CommandFrame command_;
   ReasonHistory history_;
   std::uint64_t since_message_ = 0;  ///< CommandReason bits since the last drive_state
-  std::uint64_t since_report_ = 0;   ///< likewise, of /diagnostics
+  std::uint64_t since_report_ = 0;   ///< CommandReason bits since the last /diagnostics
 };
 
 }  // namespace

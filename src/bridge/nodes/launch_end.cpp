@@ -10,7 +10,7 @@
 namespace robot_control {
 
 bool is_roslaunch(const std::string& command_line) {
-  constexpr int kProgram = 2;  // an interpreter and its script
+  constexpr int kProgram = 2;  // roslaunch is the first argument, or the script behind its interpreter
   std::istringstream arguments(command_line);
   std::string argument;
   for (int i = 0; i < kProgram && std::getline(arguments, argument, '\0'); ++i) {

@@ -1,21 +1,23 @@
 #pragma once
-/// The normal end of a simulated run ends its launch, too.
+/// The normal end of a simulated run also ends its launch.
 ///
 /// A node that roslaunch requires ends the launch with "REQUIRED process has died", whatever its exit code. A plant
-/// whose run has come to its last cycle therefore ends the launch as Ctrl-C does, and is ended by it; a plant that dies
-/// is still reported as such. Only where the launch file sets kEndsLaunch on the node, and only a roslaunch.
+/// whose run has reached its last cycle therefore interrupts roslaunch as Ctrl-C does, and roslaunch then ends the
+/// plant. A plant that dies is still reported as dead. This applies only if the launch file sets kEndsLaunch on the
+/// node, and only to roslaunch as parent.
 
 #include <string>
 
 namespace robot_control {
 
-/// Environment variable that a launch file sets on the node whose end ends the launch.
+/// A launch file sets this environment variable on the node whose end ends the launch.
 inline constexpr const char* kEndsLaunch = "ROBOT_CONTROL_ENDS_LAUNCH";
 
-/// Is this the command line of roslaunch, as /proc/PID/cmdline has it (arguments end with NUL)?
+/// Returns whether this is a command line of roslaunch in the form of /proc/PID/cmdline (arguments end with NUL).
 bool is_roslaunch(const std::string& command_line);
 
-/// SIGINT to the roslaunch that started this process. False: there is none, or kEndsLaunch is not set.
+/// Sends SIGINT to the roslaunch that started this process. Returns false if there is none, or if kEndsLaunch is not
+/// set.
 bool end_launch();
 
 }  // namespace robot_control

@@ -1,6 +1,6 @@
 #pragma once
-/// mujoco_plant: imu/data_raw, ground_truth/odom, /clock (lockstep), robot_description; ~set_pause, ~step, ~reset,
-/// ~inject_fault.
+/// mujoco_plant publishes imu/data_raw, ground_truth/odom and, in lockstep, /clock, and sets robot_description. It has
+/// the services ~set_pause, ~step, ~reset and ~inject_fault.
 
 #include <memory>
 
@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-/// Publishes robot_description once it holds the locks and before its first frame.
+/// The node publishes robot_description after it has taken the locks and before its first frame.
 std::unique_ptr<Node> make_mujoco_plant(const Setup& setup);
 
 }  // namespace robot_control

@@ -32,16 +32,16 @@ namespace {
 constexpr std::int64_t kPollPeriod = 100'000'000;          // ns
 constexpr std::int64_t kDiagnosticPeriod = 1'000'000'000;  // ns
 constexpr std::int64_t kSilentWait = 2'000'000'000;        // ns; a node that waits longer reports for which nodes
-constexpr unsigned kCallbackThreads = 2;                   // one may wait in a service while the other receives e_stop
+constexpr unsigned kCallbackThreads = 2;  // one may wait in a service while the other one receives e_stop
 
 std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // as a signal handler needs
+static_assert(std::atomic<bool>::is_always_lock_free);  // required in a signal handler
 
 void interrupt(int /*signal*/) {
   interrupted.store(true);
 }
 
-/// ROS's own handler would shut the connections down before the node has put its things away.
+/// Replaces ROS's own handler, which would shut down the connections before the node has saved its data.
 void catch_signals() {
   struct sigaction action {};
   action.sa_handler = interrupt;
@@ -49,7 +49,7 @@ void catch_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-/// Reports once which nodes this node waits for, after kSilentWait, and once that all of them run.
+/// A WaitingNote reports once, after kSilentWait, for which nodes this node waits, and once that all of them run.
 class WaitingNote {
  public:
   void look(const std::vector<std::string>& missing, std::int64_t now_ns) {
@@ -71,7 +71,7 @@ class WaitingNote {
   std::int64_t since_ns_ = monotonic_ns();
 };
 
-/// Without a master no parameter could be read: waits for it, which is logged once. False when interrupted.
+/// Waits for the master, without which no parameter can be read, and logs this once. Returns false when interrupted.
 bool await_master(const std::string& name) {
   constexpr std::int64_t kRetry = 200'000'000;  // ns
   for (bool reported = false; !ros::master::check(); reported = true) {
@@ -83,7 +83,7 @@ bool await_master(const std::string& name) {
   return true;
 }
 
-/// Reports closed connections, every 10 s at most.
+/// Reports closed connections, at most once in 10 s.
 class ConnectionNote {
  public:
   void look(std::int64_t now_ns) {
@@ -115,7 +115,7 @@ class ConnectionNote {
   std::int64_t next_ns_ = 0;
 };
 
-/// roslaunch ends its nodes one after the other, and would report one that ends before its turn as dead.
+/// Waits for SIGINT: roslaunch ends its nodes one after the other and reports one that ends before its turn as dead.
 void await_interrupt() {
   constexpr std::int64_t kLimit = 20'000'000'000;  // ns; roslaunch gives a node 15 s before SIGTERM
   constexpr std::int64_t kLook = 10'000'000;       // ns
@@ -148,7 +148,7 @@ class NodeLoop {
     log_refusals(node_.realtime_messages());
   }
 
-  /// In one line: every node logs it.
+  /// Logs all refusals in one line, because every node logs them.
   void log_refusals(const std::vector<std::string>& refusals) {
     if (refusals_reported_ || refusals.empty()) return;
     refusals_reported_ = true;
@@ -188,8 +188,8 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     std::fputs(answer->text.c_str(), answer->refused ? stderr : stdout);
     return answer->refused ? 1 : 0;
   }
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log that is no terminal shows nothing before the end
-  std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep their point
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log file stays empty until the end
+  std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep the decimal point
   install_last_words(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
   ignore_file_size_signal();
   if (const std::string problem = descriptor_problem(); !problem.empty()) {
@@ -207,7 +207,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     const std::unique_ptr<Node> node = program.make(setup);
 
     ros::NodeHandle handle;
-    catch_signals();  // again: ROS puts a handler of its own
+    catch_signals();  // a second time, because ROS has installed its own handler
     if (const std::string problem = unguarded(); !problem.empty()) ROS_WARN("%s", problem.c_str());
     if (const std::size_t ended = remove_ended_buses(setup.bus).size(); ended != 0) {
       ROS_INFO("removed the shared memory of %zu runs that have ended", ended);
@@ -219,7 +219,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     ros::AsyncSpinner callbacks(kCallbackThreads);
     callbacks.start();
     NodeLoop(*node, setup, handle).run();
-    node->stop();  // first, so that a service that waits for cycles comes to its end
+    node->stop();  // before the callbacks stop, so that a service that waits for cycles ends
     callbacks.stop();
     if (node->finished() && !interrupted.load() && end_launch()) await_interrupt();
     return 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// A Node that runs a Process: the common part of the four nodes of the loop.
+/// A ProcessNode is a Node that runs a Process; it is the common part of the four nodes of the loop.
 
 #include <string>
 #include <utility>
@@ -14,7 +14,7 @@ namespace robot_control {
 template <class Work>
 class ProcessNode : public Node {
  public:
-  /// `more`: what the constructor of Work takes beyond parameters, robot and bus.
+  /// `more` are the arguments of Work's constructor behind parameters, robot and bus.
   template <class... More>
   explicit ProcessNode(const Setup& setup, More&&... more)
       : setup_(setup),
@@ -25,7 +25,7 @@ class ProcessNode : public Node {
   bool finished() const override { return process_.finished(); }
   void stop() override { process_.stop(); }
 
-  /// As of the last poll; any thread.
+  /// Returns the state of the last poll; any thread may call it.
   std::vector<std::string> missing() const override { return process_.last_missing(); }
 
   std::vector<std::string> realtime_messages() const override { return process_.realtime_messages(); }

@@ -22,11 +22,11 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kStatusPeriod = 1'000'000'000;  // ns, at the latest
-constexpr std::int64_t kStatusGap = 20'000'000;  // ns, at the earliest: a flickering cause does not flood subscribers
-constexpr std::int64_t kTriggerWait = 500'000'000;  // ns; the other callback thread still receives the topic e_stop
-constexpr std::int64_t kResetWait = 1'000'000'000;  // ns
-constexpr std::int64_t kResetLook = 2'000'000;      // ns
+constexpr std::int64_t kStatusPeriod = 1'000'000'000;  // ns, at most, between two messages
+constexpr std::int64_t kStatusGap = 20'000'000;        // ns, at least: a flickering cause does not flood subscribers
+constexpr std::int64_t kTriggerWait = 500'000'000;     // ns; the other callback thread still receives the topic e_stop
+constexpr std::int64_t kResetWait = 1'000'000'000;     // ns
+constexpr std::int64_t kResetLook = 2'000'000;         // ns
 
 class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
  public:
@@ -85,12 +85,12 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     return process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head);
   }
 
-  /// A permit of this process. What an earlier one left is none.
+  /// Reads the newest permit of this process. The permit of an earlier process does not count.
   bool seen(Permit& permit) {
     return process().output().newest(permit) == Lookup::kFrame && permit.head.run == process().cycle().published_run();
   }
 
-  /// On which the controller listens. A list that it refuses keeps it from starting.
+  /// Returns the topics to which the controller subscribes. With a list that is refused the controller does not start.
   std::vector<std::string> command_topics() {
     std::vector<std::string> topics;
     try {
@@ -133,8 +133,8 @@ class SafetyMonitorNode final : public ProcessNode<MonitorProcess> {
     process().cycle().inbox().store(input_);
   }
 
-  /// Ends the levels that end with a reset request, where the publishers are known. The master is not asked while the
-  /// inputs are locked: it may take its time.
+  /// Ends the levels that end with a reset request, if the publishers are known. The request to the master may take
+  /// long, so the inputs are not locked during it.
   void settle_e_stop() {
     {
       const std::lock_guard lock(input_mutex_);

@@ -1,5 +1,6 @@
 #pragma once
-/// safety_monitor: e_stop, heartbeat, clearance in; safety_status (latched) out; services e_stop_trigger, e_stop_reset.
+/// safety_monitor subscribes to e_stop, heartbeat and clearance, publishes safety_status (latched), and has the
+/// services e_stop_trigger and e_stop_reset.
 
 #include <memory>
 

@@ -38,7 +38,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     wheel_odom_ = handle.advertise<msg::Odometry>("wheel_odom", 10);
     imu_ = handle.advertise<msg::Imu>("imu/data", 10);
     battery_ = handle.advertise<msg::BatteryState>("battery_state", 1);
-    // Relative, so that the frames of a second robot in a namespace do not mix with the first one's.
+    // The name is relative, so that the frames of two robots in two namespaces do not mix.
     if (report().publish_tf) tf_ = handle.advertise<msg::TFMessage>("tf", 100);
     reset_ = handle.advertiseService("reset_odometry", &StateEstimatorNode::reset_odometry, this);
     set_ = handle.advertiseService("set_odometry", &StateEstimatorNode::set_odometry, this);
@@ -91,7 +91,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
     tf_.publish(transforms);
   }
 
-  /// The samples that this state descends from: newer ones may be there already.
+  /// Publishes the samples from which this state descends; newer samples may already exist.
   void publish_imu() {
     SensorFrame sample;
     if (process().sensors().at(state_.head.run, state_.head.cycle, sample) != Lookup::kFrame) return;
@@ -100,7 +100,7 @@ class StateEstimatorNode final : public ProcessNode<EstimatorProcess> {
                           time().at(state_.head.stamp_ns)));
   }
 
-  /// Empty: the pose is taken from the next cycle on.
+  /// Requests this pose from the next cycle on. Returns "" or the reason of a refusal.
   std::string take(const Vector3& pose) {
     const std::vector<std::string> missing = this->missing();
     if (!missing.empty()) return "not done: no sensors, " + missing.front() + " does not run";

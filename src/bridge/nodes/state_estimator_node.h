@@ -1,6 +1,6 @@
 #pragma once
-/// state_estimator: joint_states, odom, wheel_odom, imu/data, tf; services reset_odometry, set_odometry; the
-/// calibration file.
+/// state_estimator publishes joint_states, odom, wheel_odom, imu/data and tf. It has the services reset_odometry and
+/// set_odometry, and writes the calibration file.
 
 #include <memory>
 

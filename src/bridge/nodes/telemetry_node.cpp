@@ -21,12 +21,12 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kDrainPeriod = 2'000'000;  // ns; what the black box may miss after a crash
+constexpr std::int64_t kDrainPeriod = 2'000'000;  // ns; the black box misses at most this much after a crash
 constexpr double kLookSeconds = 1;
-constexpr std::int64_t kLockstepDrainPeriod = 1'000'000;  // ns; there, a full ring holds the loop up
+constexpr std::int64_t kLockstepDrainPeriod = 1'000'000;  // ns; in lockstep a full ring delays the loop
 
-/// The header of a log holds what every node has read: its private parameters, too. Of one whose parameters are
-/// refused, which does not start, those that this node has read.
+/// Returns the parameters of all nodes for the header of a log, with their private ones. A node whose parameters are
+/// refused does not start; for it the header has those that this node has read.
 Parameters with_blocks_of_other_nodes(Parameters parameters) {
   const auto take = [](const char* node, auto put) {
     try {
@@ -68,7 +68,8 @@ class TelemetryNode final : public Node {
   }
   void poll() override { process_.poll(); }
   void publish() override {
-    // From the first call on: what other programs hold up is missing in the black box after a crash.
+    // The priority is raised from the first call on: rows that other programs delay are missing in the black box after
+    // a crash.
     if (std::exchange(precedes_, false)) precede_ordinary_threads();
     process_.drain();
     parameter_changes_.store(process_.parameter_changes());
@@ -136,8 +137,8 @@ class TelemetryNode final : public Node {
     return std::filesystem::absolute(path).lexically_normal().string();
   }
 
-  /// Twice for each change: the controller computes with new values before the server has them. A callback thread: it
-  /// may wait for the master.
+  /// Reads the parameters twice for each change, because the controller uses new values before the server has them. It
+  /// runs in a callback thread, because it may wait for the master.
   void read_parameters_again() {
     const std::uint64_t changes = parameter_changes_.load();
     if (changes == changes_followed_ || !ros::master::check()) return;
@@ -161,16 +162,16 @@ class TelemetryNode final : public Node {
 
   const Setup& setup_;
   bool lockstep_;
-  bool precedes_;         ///< this thread shall, and does not yet
+  bool precedes_;         ///< this thread is still to be given a higher priority
   double quota_;          ///< GB
-  std::string reported_;  ///< problem
+  std::string reported_;  ///< problem that was reported last
   std::atomic<bool> requested_{false};
   TelemetryProcess process_;
   std::atomic<std::uint64_t> parameter_changes_{0};
-  std::uint64_t changes_read_ = 0;      ///< once
-  std::uint64_t changes_followed_ = 0;  ///< and again
+  std::uint64_t changes_read_ = 0;      ///< number of changes after which the parameters were read once
+  std::uint64_t changes_followed_ = 0;  ///< number of changes after which they were read twice
   std::mutex header_mutex_;
-  std::optional<LogHeader> header_;  ///< for the ordinary thread
+  std::optional<LogHeader> header_;  ///< read by a callback thread, written to the log by the ordinary one
   ros::ServiceServer record_;
   ros::WallTimer look_;
 };

@@ -1,5 +1,6 @@
 #pragma once
-/// telemetry: every cycle of the four nodes → run.bag and run.csv. No topics but /diagnostics; service ~record.
+/// telemetry writes every cycle of the four nodes to run.bag and run.csv. Its only topic is /diagnostics, its service
+/// ~record.
 
 #include <memory>
 

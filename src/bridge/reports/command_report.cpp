@@ -21,7 +21,7 @@ std::string format(const char* pattern, Values... values) {
   return text.data();
 }
 
-/// What a sender's arithmetic left of a zero is one.
+/// Returns the text of the request. Speeds below kRounding, remains of a sender's arithmetic, are shown as zero.
 std::string requested_text_of(const PlanarTwist& requested) {
   constexpr double kRounding = 1e-6;  // m/s and rad/s
   const auto shown = [](double speed) { return std::abs(speed) < kRounding ? 0.0 : speed; };
@@ -121,7 +121,7 @@ std::vector<ReportLine> CommandReport::look(const CommandFrame& command) {
   if ((reported_ && same(made, *reported_)) || !settled || !line_gap_.over(now_ns)) return lines;
   const bool stood = !reported_ || reported_->zero;
   reported_ = made;
-  if (made.zero && (stood || made.hindrance != 0)) return lines;  // it stands, as it shall
+  if (made.zero && (stood || made.hindrance != 0)) return lines;  // the robot stands as requested
   lines.push_back({made.hindrance != 0, text(made, command)});
   line_gap_.begin(now_ns);
   return lines;

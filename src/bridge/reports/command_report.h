@@ -1,15 +1,15 @@
 #pragma once
-/// The controller's log lines about received commands and their effect. Pure.
+/// CommandReport writes the controller's log lines about received commands and their effect. It is pure.
 ///
 ///   normal driving        the wheel speeds that result, after the speed limits if these apply
-///   brake or ramp         that the command has no effect, and why
-///   slowed down           by the safety monitor, and where the reason is shown
+///   brake or ramp         the command has no effect, with the reason
+///   slowed down           the safety monitor limits the speed, and where its reason is shown
 ///   warnings              a timeout that stopped a motion, a series of refused (NaN, infinite) messages
 ///
-/// A line is written when one of these changes, wheel speeds by kSpeedStep or more, and at most once per kGap each; a
-/// change within the gap is reported after it. Another effect is reported when it has lasted for kSettle, so a single
-/// late cycle is not. Messages that are refused for stamp or sender are reported by command_input.h. Time is that of
-/// the frames.
+/// A line is written when one of these changes; wheel speeds have to change by kSpeedStep or more. Lines of one kind
+/// are at least kGap apart, and a change within the gap is reported after it. A new effect is reported after it has
+/// lasted for kSettle, so that a single late cycle is not reported. CommandInput reports messages that are refused for
+/// their stamp or sender. Time is that of the frames.
 
 #include <cstdint>
 #include <optional>
@@ -33,14 +33,14 @@ class CommandReport {
 
   CommandReport(const RobotModel& robot, const DriveControllerParameters& parameters);
 
-  /// Other limits and another timeout, from now on.
+  /// Applies other limits and another timeout from now on.
   void limit(const DriveControllerParameters& parameters);
 
-  /// Any number of cycles may lie between two frames.
+  /// Returns the lines that are due at this frame. Any number of cycles may lie between two frames.
   std::vector<ReportLine> look(const CommandFrame& command);
 
  private:
-  /// The report about a command.
+  /// The content of a line about a command.
   struct Report {
     SidePair rims;  ///< m/s, after the speed limits
     bool zero = true;
@@ -48,7 +48,7 @@ class CommandReport {
     std::uint64_t hindrance = 0;  ///< CommandReason bits
   };
 
-  /// When a line of a kind came last.
+  /// The time since the last line of one kind.
   class Gap {
    public:
     bool over(std::int64_t now_ns) const { return !last_ns_ || now_ns - *last_ns_ >= kGap; }
@@ -67,11 +67,11 @@ class CommandReport {
   SpeedLimits limits_;
   double timeout_;  ///< s
   std::uint64_t run_ = 0;
-  std::uint64_t refused_ = 0;  ///< NaN, infinite
+  std::uint64_t refused_ = 0;  ///< messages with NaN or infinity
   std::uint64_t timeouts_ = 0;
   bool refusing_ = false;
-  std::optional<Report> reported_;  ///< of the present motion
-  std::uint64_t hindrance_ = 0;     ///< of the last frame
+  std::optional<Report> reported_;  ///< last line about the present motion
+  std::uint64_t hindrance_ = 0;     ///< CommandReason bits of the last frame
   std::int64_t hindered_since_ns_ = 0;
   Gap line_gap_;
   Gap timeout_gap_;

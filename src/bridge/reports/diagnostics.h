@@ -1,5 +1,5 @@
 #pragma once
-/// One node's entry on /diagnostics (REP 107): worst level, one sentence, named values.
+/// A DiagnosticReport is one node's entry on /diagnostics (REP 107): worst level, one sentence, named values.
 
 #include <cstdint>
 #include <span>
@@ -26,7 +26,7 @@ class DiagnosticReport {
   void value(const std::string& key, double number);
   void value(const std::string& key, std::uint64_t number) { value(key, std::to_string(number)); }
 
-  /// One value per bit set, "gate: command_held" = "the command is older than one cycle and is held".
+  /// Adds one value per bit that is set: "gate: command_held" = "the command is older than one cycle and is held".
   void reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits);
 
   const msg::DiagnosticStatus& message() const noexcept { return message_; }
@@ -37,15 +37,15 @@ class DiagnosticReport {
   msg::DiagnosticStatus message_;
 };
 
-/// A node that waits warns, with the names.
+/// Adds a warning with the names of missing nodes.
 void report_missing(DiagnosticReport& report, const std::vector<std::string>& missing);
 
 void report_driver(DiagnosticReport& report, const SensorFrame& sensors, double real_time_factor);
-/// `slip_lately`: SlipReason bits of any cycle since the last report.
+/// `slip_lately` has the SlipReason bits of all cycles since the last report.
 void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64_t slip_lately);
-/// `lately`: CommandReason bits of any cycle since the last report; `senders` of commands, by name. Several of them are
-/// a fault unless they send to different sources (`sources`: CommandMux::states; empty: there is no list). `revoked`:
-/// CommandIntake::revoked.
+/// `lately` has the CommandReason bits of all cycles since the last report; `senders` names the senders of commands.
+/// Several senders are a fault unless they send to different `sources` (CommandMux::states; empty: there is no list).
+/// `revoked` is CommandIntake::revoked.
 void report_command(DiagnosticReport& report, const CommandFrame& command, std::uint64_t lately,
                     const std::vector<std::string>& senders, const std::vector<std::string>& sources = {},
                     const std::vector<std::string>& revoked = {});

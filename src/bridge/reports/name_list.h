@@ -1,5 +1,5 @@
 #pragma once
-/// "a, b, c" of names or words, as messages to people have them.
+/// Joins names or words to the text "a, b, c".
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
-/// When is a topic due? By the stamps of the frames, not by a clock, so that a rate means simulated time in
-/// lockstep and real time otherwise.
+/// A Pacer decides when a topic is due, by the stamps of the frames instead of a clock. So a rate refers to simulated
+/// time in lockstep and to real time otherwise.
 
 #include <cstdint>
 
@@ -8,11 +8,11 @@ namespace robot_control {
 
 class Pacer {
  public:
-  /// `rate`: Hz, > 0.
+  /// `rate` is in Hz and > 0.
   explicit Pacer(double rate) noexcept : period_ns_(static_cast<std::int64_t>(1.0e9 / rate + 0.5)) {}
 
-  /// True at most once per period, exactly `rate` on average while the frames come at least that often. What
-  /// was missed is not made up for. A new run, or a stamp far back, restarts.
+  /// Returns true at most once per period, on average exactly at `rate` if frames arrive at least that often. Missed
+  /// messages are not sent later. A new run, or a stamp that went back by more than two periods, restarts the Pacer.
   bool due(std::uint64_t run, std::int64_t stamp_ns) noexcept {
     if (run != run_ || stamp_ns < next_ns_ - 2 * period_ns_) {
       run_ = run;

@@ -1,5 +1,5 @@
 #pragma once
-/// CommandReason bits of every cycle, not only of those that a slower thread happens to look at.
+/// A ReasonHistory collects the CommandReason bits of every cycle for a slower thread.
 
 #include <cstdint>
 
@@ -10,8 +10,8 @@ namespace robot_control {
 
 class ReasonHistory {
  public:
-  /// Bits of all cycles behind that of the last call up to `newest`, as far as the channel still has them; in a new run
-  /// of `newest` alone.
+  /// Returns the bits of all cycles after that of the last call up to `newest`, as far as the channel still has them.
+  /// In a new run it returns those of `newest` alone.
   std::uint64_t look(const FrameReader<CommandFrame>& channel, const CommandFrame& newest) noexcept {
     const bool same_run = newest.head.run == run_;
     std::uint64_t bits = newest.reasons;

@@ -11,7 +11,7 @@ struct ReportLine {
   std::string text;
 };
 
-/// Writes them to the log of ROS, at WARN or INFO.
+/// Writes the lines to the log of ROS at level WARN or INFO.
 void write_log(const std::vector<ReportLine>& lines);
 
 }  // namespace robot_control

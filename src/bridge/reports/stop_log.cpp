@@ -12,7 +12,7 @@ bool may_drive(const msg::SafetyStatus& status) {
   return status.state == msg::SafetyStatus::READY || status.state == msg::SafetyStatus::DRIVE;
 }
 
-/// "stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint)"
+/// Returns "stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint)".
 std::string cause_text(const msg::SafetyStatus& status, std::size_t i) {
   std::string text = status.causes[i] + ": " + status.sentences[i];
   if (!status.details[i].empty()) text += " (" + status.details[i] + ")";
@@ -59,7 +59,7 @@ void StopLog::look_at_causes(const msg::SafetyStatus& status, std::vector<Report
     lines.push_back({false, "STOPPED: the ramp has ended, the robot brakes"});
   }
   stopping_ = stopping;
-  // Without a permit there are no causes to be seen, and nothing is released by that.
+  // A status without a permit has no causes, which does not mean that the stop was released.
   if (!latched_.empty() && status.causes.empty() && may_drive(status)) {
     latched_.clear();
     starting_ = false;

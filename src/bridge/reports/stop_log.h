@@ -1,14 +1,14 @@
 #pragma once
-/// What the safety monitor writes into its log: one line per event of SafetyStatus, so that no stop is silent.
+/// A StopLog writes the safety monitor's log: one line per event of SafetyStatus, so that no stop is silent.
 ///
-///   a cause latches            WARN  state, cause, what was measured and its limit, remedy; several at once: one line
+///   a cause latches            WARN  state, cause, evidence and remedy; several at once: one line
 ///   a ramp has ended           INFO
 ///   a reset releases           INFO
 ///   INIT has ended             INFO  "ready: send cmd_vel"
-///   INIT waits for a zero      WARN  once the wait is longer than silence on cmd_vel would need to end it
-///   a warning, no speed        WARN  at most every kRepeat s for each
+///   INIT waits for a zero      WARN  once, after a silence on cmd_vel would have ended INIT
+///   a warning, no speed        WARN  each at most once in kRepeat s
 ///
-/// Time is counted in cycles of the permits. Pure.
+/// Time is counted in cycles of the permits. The class is pure.
 
 #include <cstdint>
 #include <map>
@@ -25,14 +25,14 @@ namespace robot_control {
 class StopLog {
  public:
   static constexpr double kRepeat = 10;  ///< s
-  /// s, beyond the silence that counts as a zero request, until INIT is reported to wait for a zero.
+  /// s, added to the silence that counts as a zero request, until the log reports that INIT waits for a zero.
   static constexpr double kReserve = 0.25;
-  static constexpr double kNoSpeed = 0.01;  ///< m/s; a speed limit below it is none to drive with
+  static constexpr double kNoSpeed = 0.01;  ///< m/s; below this speed limit the robot cannot drive
 
-  /// `period` of the loop and `cmd_vel_timeout` [s]: a silence of that length counts as a zero request.
+  /// `period` is that of the loop in s. A silence on cmd_vel of `cmd_vel_timeout` [s] counts as a zero request.
   StopLog(double period, double cmd_vel_timeout) : period_(period), zero_silence_(silence_needed(cmd_vel_timeout)) {}
 
-  /// Every status that is published, in that order.
+  /// Returns the lines that are due at this status. Every published status is passed in the order of publication.
   std::vector<ReportLine> look(const msg::SafetyStatus& status);
 
  private:
@@ -47,10 +47,10 @@ class StopLog {
   bool stopping_ = false;
   bool starting_ = true;  ///< INIT since the last "ready"
   std::uint64_t run_ = 0;
-  double awaiting_since_ = -1;  ///< s of this run; negative: it does not wait, or that was logged
+  double awaiting_since_ = -1;  ///< s of this run; negative: INIT does not wait, or that was logged
   bool awaiting_ = false;
-  std::set<std::string> present_;           ///< warnings of the last status
-  std::map<std::string, double> reported_;  ///< s of this run, by warning
+  std::set<std::string> present_;           ///< warnings in the last status
+  std::map<std::string, double> reported_;  ///< time of the last line in s of this run, by warning
 };
 
 }  // namespace robot_control

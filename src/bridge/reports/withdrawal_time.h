@@ -1,8 +1,9 @@
 #pragma once
-/// Until when were requests of motion void? Pure.
+/// WithdrawalTime holds the time before which requests of motion have no effect. It is pure.
 ///
-/// Until now while a stop is latched, and whenever a permission to drive has ended since the last look. The waiting for
-/// a first permission ends none: what is requested meanwhile may begin with it.
+/// This is the present time while a stop is latched, and whenever a permission to drive has ended since the last look.
+/// Waiting for the first permission ends no request: a motion that is requested meanwhile may begin with the
+/// permission.
 
 #include <cstdint>
 #include <optional>
@@ -13,7 +14,7 @@ namespace robot_control {
 
 class WithdrawalTime {
  public:
-  /// At each tick; ns of any clock that never turns back.
+  /// Updates the time at each tick; `now_ns` is in ns of any clock that never goes backwards.
   void look(const Permit& permit, std::int64_t now_ns) {
     const bool granted = permit.action == PermitAction::kDrive;
     const bool ended = granted_ && (!granted || permit.withdrawals != withdrawals_);
@@ -22,7 +23,7 @@ class WithdrawalTime {
     withdrawals_ = permit.withdrawals;
   }
 
-  /// None: never.
+  /// Returns the time, or nothing if there has been neither a stop nor an end of a permission.
   std::optional<std::int64_t> last_ns() const { return last_ns_; }
 
  private:

@@ -25,7 +25,7 @@ RobotDescription chosen_description(const Parameters& parameters, bool urdf_requ
     RobotDescription file = load_description(parameters.urdf);
     if (file.text == published) return file;
   } catch (const RobotError&) {
-    // The file is not asked for.
+    // The text on the server is used; the file is not needed.
   }
   return {published, name};
 }

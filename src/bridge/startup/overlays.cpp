@@ -27,7 +27,7 @@ std::string text_of(XmlRpc::XmlRpcValue value) {
       return text.append("]");
     }
     default:
-      return yaml_quoted(value.toXml());  // what no parameter is: the schema refuses it
+      return yaml_quoted(value.toXml());  // no parameter has this type: the schema refuses it
   }
 }
 

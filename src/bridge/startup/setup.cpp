@@ -34,7 +34,7 @@ std::string server_text(const std::string& name, const std::string& what) {
   return text_parameter(on_server(name), name, what);
 }
 
-/// `~config`, which lies over the installed file, else that one.
+/// Returns `~config`, whose file is laid over the installed one, else the path of the installed file.
 std::string config_path() {
   const std::string path = server_text(ros::names::resolve("~config"), kYamlPath);
   return path.empty() ? installed_config() : path;
@@ -58,7 +58,7 @@ std::vector<Overlay> server_overlays(const std::string& node) {
 RobotDescription description(const Parameters& parameters, const std::vector<Overlay>& overlays, std::string& unread) {
   const std::string name = ros::names::resolve("robot_description");
   const std::string published = server_text(name, "that of a URDF");
-  std::string asked_for;  // the last one holds
+  std::string asked_for;  // the last overlay is in force
   for (const Overlay& overlay : overlays) {
     if (overlay.path == "robot.urdf") asked_for = overlay.origin;
   }
@@ -112,7 +112,7 @@ void fill_setup(const std::string& node, Setup& setup) {
   try {
     setup.parameters = read_parameters(path, overlays, installed_config());
   } catch (const ParameterError& error) {
-    throw SetupError(error.what());  // without parameters nothing else can be judged
+    throw SetupError(error.what());  // without parameters nothing else can be checked
   }
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
   try {
@@ -125,7 +125,7 @@ void fill_setup(const std::string& node, Setup& setup) {
     add(problems, error.what());
   }
   if (!problems.empty()) throw SetupError(problems);
-  // Each robot has a folder of its own: logs of two namespaces never meet in one file.
+  // Each namespace has a folder of its own, so that two robots never write to one file.
   std::string& directory = setup.parameters.telemetry.directory;
   directory += (directory.empty() ? "." : "") + ros::this_node::getNamespace();
   setup.parameters.latch_file = latch_path(setup.parameters.latch_file, host_name(), ros::this_node::getNamespace());

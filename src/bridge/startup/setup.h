@@ -1,8 +1,8 @@
 #pragma once
-/// Everything a node reads before it takes its locks: parameters, robot, name of the bus.
+/// A Setup holds everything that a node reads before it takes its locks: parameters, robot, name of the bus.
 ///
-/// Read after ros::init and before the first NodeHandle, because a NodeHandle registers this node's name and ROS
-/// would then shut a running node of that name down.
+/// It is read after ros::init and before the first NodeHandle. A NodeHandle registers this node's name, and ROS would
+/// then shut down a running node of that name.
 
 #include <stdexcept>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace robot_control {
 
-/// Every reason not to start, one problem a line.
+/// The text lists every reason not to start, one per line.
 class SetupError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,19 +24,20 @@ struct Setup {
   RobotModel robot;
   std::string bus;
   std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
-  std::vector<std::string> unexpected_overrides;  ///< of these, without those that the launch file itself causes
-  std::string unread_description;                 ///< that another robot_description stands on the server, or empty
+  std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that the launch file does not cause itself
+  std::string unread_description;                 ///< warning that another robot_description is on the server, or empty
 };
 
-/// `clock: wall` with /use_sim_time = true would stamp and time everything wrongly, `clock: lockstep` without it
-/// too; empty when they agree.
+/// Returns the problem if `clock: wall` meets /use_sim_time = true, or `clock: lockstep` meets false; "" if they agree.
+/// Otherwise all stamps and times would be wrong.
 std::string clock_problem(ClockMode clock, bool use_sim_time);
 
-/// What the node `node` beside this one reads where it starts now: its file, its overrides. Throws ParameterError.
+/// Returns the parameters that another node, `node`, would read from its file and its overrides if it started now.
+/// Throws ParameterError.
 Parameters parameters_of(const std::string& node);
 
-/// `node`: program and block of the YAML file ("state_estimator"). The robot is that of description.h. Throws
-/// SetupError with all problems at once.
+/// `node` names the program and its block of the YAML file ("state_estimator"). The robot is selected as in
+/// description.h. Throws SetupError with all problems at once.
 Setup read_setup(const std::string& node);
 
 }  // namespace robot_control
