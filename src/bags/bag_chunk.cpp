@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-/// One compressed stream.
+/// An Inflater inflates one compressed stream.
 class Inflater {
  public:
   struct Progress {

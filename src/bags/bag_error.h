@@ -1,5 +1,5 @@
 #pragma once
-/// Why a bag is refused: where in it, which field of which record, and what is wrong there.
+/// A BagError says why a bag is refused: the place in the bag, the field of a record, and the problem.
 
 #include <cstdint>
 #include <optional>
@@ -8,17 +8,17 @@
 
 namespace robot_control {
 
-/// A byte of a bag: of the file, or of what a compressed chunk of it holds.
+/// The place of a byte in a bag: in the file, or in the inflated content of a compressed chunk.
 struct BagPlace {
   std::uint64_t offset = 0;                 ///< from the first byte of the file, or of the inflated chunk
-  std::optional<std::uint64_t> chunk = {};  ///< offset in the file of the record of that chunk
+  std::optional<std::uint64_t> chunk = {};  ///< offset in the file of that chunk's record
 
   BagPlace operator+(std::uint64_t count) const { return {.offset = offset + count, .chunk = chunk}; }
 };
 
 class BagError : public std::runtime_error {
  public:
-  /// `ends`: the file, or the chunk, ends before what its own lengths announce.
+  /// `ends` says that the file or the chunk ends before the end that its own lengths announce.
   BagError(const BagPlace& place, const std::string& field, const std::string& problem, bool ends = false)
       : std::runtime_error(words(place) + ", field " + field + ": " + problem), ends_(ends) {}
 

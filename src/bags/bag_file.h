@@ -1,6 +1,6 @@
 #pragma once
-/// The bytes of a bag, read with pread: a file that another program shortens meanwhile ends in a message, whereas a
-/// mapping of it would end the process.
+/// A BagFile reads the bytes of a bag with pread. If another program shortens the file meanwhile, an error is reported;
+/// with a mapping of the file the process would end.
 
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@ inline constexpr std::uint64_t kMaxBag = std::uint64_t{16} << 30U;  ///< bytes; 
 
 class BagFile {
  public:
-  /// Throws std::runtime_error: no regular file that can be read, or larger than kMaxBag.
+  /// Throws std::runtime_error if the path is no regular file, cannot be read or is larger than kMaxBag.
   explicit BagFile(const std::string& path);
   ~BagFile();
   BagFile(const BagFile&) = delete;
@@ -20,7 +20,8 @@ class BagFile {
 
   std::uint64_t size() const { return size_; }
 
-  /// `count` bytes from `offset`, valid until the next call. Throws BagError for `field` where the file ends before.
+  /// Returns `count` bytes from `offset`, valid until the next call. Throws BagError for `field` if the file ends
+  /// before.
   std::string_view read(std::uint64_t offset, std::size_t count, const std::string& field);
 
  private:
@@ -28,7 +29,7 @@ class BagFile {
 
   int descriptor_;
   std::uint64_t size_ = 0;
-  std::uint64_t begin_ = 0;  // in the file, of what is in `window_`
+  std::uint64_t begin_ = 0;  // offset of `window_` in the file
   std::string window_;
 };
 

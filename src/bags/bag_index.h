@@ -1,6 +1,6 @@
 #pragma once
-/// The index behind each chunk, compared with the messages that the chunk really holds: an entry for every message, and
-/// no entry without one.
+/// The index behind each chunk is compared with the messages in the chunk: each message needs one entry, each entry one
+/// message.
 
 #include <cstdint>
 #include <string_view>
@@ -10,16 +10,16 @@
 
 namespace robot_control {
 
-/// A chunk and what its messages are.
+/// A chunk with a summary of its messages.
 struct BagChunk {
   BagChunkData data;
   std::uint64_t first_ns = 0, last_ns = 0;  ///< earliest and latest reception
   std::uint32_t messages = 0;
-  std::uint64_t connections = 0;  ///< bit n: messages of a connection whose number is n modulo 64
+  std::uint64_t connections = 0;  ///< bit n: the chunk has messages of a connection whose number is n modulo 64
   std::uint64_t counts = 0;       ///< digest of the pairs (connection, number of its messages)
 };
 
-/// The digest of `BagChunk::counts`, of pairs in any order.
+/// Computes the digest in `BagChunk::counts`; the order of the pairs does not matter.
 class BagCounts {
  public:
   void add(std::uint32_t connection, std::uint32_t count);
@@ -29,19 +29,19 @@ class BagCounts {
   std::uint64_t sum_ = 0;
 };
 
-/// The messages of the chunk that was parsed last.
+/// Compares the messages of the last parsed chunk with its index.
 class BagChunkIndex {
  public:
   void begin(const BagChunkData& chunk);
   void add(const BagMessage& message);
-  /// The chunk ends after `size` bytes: it was not finished.
+  /// Records that the chunk was not finished and ends after `size` bytes.
   void cut(std::uint32_t size) { chunk_.data.size = chunk_.data.packed = size; }
-  const BagChunk& chunk();  ///< after the last message
+  const BagChunk& chunk();  ///< is called after the last message
 
-  /// Data of one index record. Throws BagError: it contradicts the messages.
+  /// Compares the data of one index record. Throws BagError if they contradict the messages.
   void compare(std::uint32_t connection, std::uint32_t count, std::string_view data, const BagPlace& place);
 
-  /// After the last index record. Throws BagError: a message stands in none.
+  /// Is called after the last index record. Throws BagError if a message is in no index record.
   void finish() const;
 
  private:

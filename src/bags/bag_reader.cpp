@@ -8,7 +8,8 @@
 namespace robot_control {
 namespace {
 
-/// The header of a record in the file, and where its data are. The header's bytes are copied: the window moves on.
+/// The header of a record in the file and the offset of its data. The header's bytes are copied, because the next read
+/// moves the file's window.
 struct FileRecord {
   std::string bytes;
   std::uint64_t data = 0;  // offset
@@ -66,7 +67,7 @@ BagReader::BagReader(const std::string& path, Early early) : file_(path), early_
   } catch (const BagError& error) {
     const bool only_list_is_cut = error.ends() && behind_ && chunks_.size() == end.chunks;
     if (!end.cut && !only_list_is_cut) throw;
-    if (pending_ && error.ends()) commit();  // the chunk is whole, its index is not
+    if (pending_ && error.ends()) commit();  // the chunk is complete, its index is not
     describe_cut(error, end.index);
   }
   if (end.cut && cut_.empty()) {
@@ -193,7 +194,7 @@ void BagReader::read_chunk(std::uint64_t record, const BagHeader& header, std::u
 }
 
 void BagReader::read_unfinished(std::uint64_t record, const BagHeader& header, std::uint64_t begin) {
-  // rosbag writes the sizes into the header when the chunk is full.
+  // The sizes in the header are missing: rosbag writes them when the chunk is full.
   const auto size = static_cast<std::uint32_t>(std::min<std::uint64_t>(file_.size() - begin, kMaxChunk));
   const BagChunkData chunk{.record = record, .begin = begin, .packed = size, .size = size};
   if (compression_of(header) != BagCompression::kNone) {
@@ -311,7 +312,7 @@ void BagReader::describe_cut(const BagError& error, std::uint64_t index) {
 
 void BagReader::read(const BagChunk& chunk, const std::function<void(const BagMessage&)>& use) {
   inflate(chunk.data);
-  // An unfinished chunk may be followed by more than its sound part.
+  // Behind the correct part of an unfinished chunk there may be broken data.
   const std::string_view content = std::string_view(content_).substr(0, chunk.data.size);
   const auto message = [&](const BagMessage& found) {
     if (!connections_.contains(found.connection)) {

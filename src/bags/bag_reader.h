@@ -1,21 +1,20 @@
 #pragma once
-/// ROS bags of version 2.0, checked from the first byte to the last before any of it is given away.
+/// A BagReader reads ROS bags of version 2.0 and checks the whole file before it returns any of it.
 ///
-/// The file comes from outside. Records, header fields, chunk sizes, compression, the index of each chunk, connection
-/// records and the chunk list at the end are compared with each other; the first contradiction refuses the whole bag
-/// with byte and field. Memory is bounded by kMaxChunk (twice, and 24 bytes per message of it) and
-/// kMaxConnections' text, whatever the file says; time by the size of the file and kInflatesTo. What passes is also
-/// safe for librosbag, whose own parser reads out of bounds. What no format shows stays: of the messages' data only
-/// compressed chunks have a checksum.
+/// The file may come from anywhere. Records, header fields, chunk sizes, compression, the index of each chunk,
+/// connection records and the chunk list at the end are compared with each other. The first contradiction refuses the
+/// whole bag with byte and field. Memory is bounded by kMaxChunk (twice, and 24 bytes per message of a chunk) and
+/// kMaxConnectionBytes; time by the size of the file and kInflatesTo. An accepted bag is also safe for librosbag, whose
+/// own parser reads out of bounds. Wrong data of messages are not found in uncompressed chunks, because only compressed
+/// chunks have a checksum.
 ///
-/// One kind of damage is no reason to refuse: a bag without a valid end, because its recorder was killed, the disk was
-/// full or a copy was interrupted: `index_pos` is 0 or behind the end of the file, or the file ends in the list behind
-/// the chunks. Then everything before the first
-/// byte that is not sound is read, the messages of an unfinished uncompressed chunk included, and `cut` says which
-/// part.
+/// A bag without a valid end is accepted, because its recorder may have been killed, the disk full or a copy
+/// interrupted. Then `index_pos` is 0 or behind the end of the file, or the file ends in the list behind the chunks.
+/// Everything before the first broken byte is read, also the messages of an unfinished uncompressed chunk, and `cut`
+/// names this part.
 ///
-/// To inflate the chunks is half of the work. A caller that can drop what it got may therefore read each chunk while
-/// the file is checked (`Early`), and none twice.
+/// Half of the work is to inflate the chunks. A caller that can discard data may therefore read each chunk while the
+/// file is checked (`Early`), so that no chunk is inflated twice.
 
 #include <cstdint>
 #include <functional>
@@ -28,10 +27,12 @@
 
 namespace robot_control {
 
-inline constexpr std::uint64_t kInflatesTo = 100;  ///< times the file; telemetry in bz2: 5 to 20
-inline constexpr std::uint64_t kInflatesAnyhow = std::uint64_t{64} << 20U;  ///< bytes that a small bag may have besides
+inline constexpr std::uint64_t kInflatesTo = 100;  ///< times the size of the file; telemetry in bz2 has 5 to 20
+inline constexpr std::uint64_t kInflatesAnyhow = std::uint64_t{64}
+                                                 << 20U;  ///< bytes added to this bound for small bags
 inline constexpr std::size_t kMaxConnections = 10'000;
-inline constexpr std::size_t kMaxConnectionBytes = std::size_t{64} << 20U;  ///< bytes of all their records together
+inline constexpr std::size_t kMaxConnectionBytes = std::size_t{64}
+                                                   << 20U;  ///< bytes of all connection records together
 inline constexpr std::size_t kMaxChunks = std::size_t{1} << 20U;
 
 struct BagConnection {
@@ -42,30 +43,31 @@ struct BagConnection {
 
 class BagReader {
  public:
-  /// Gets each chunk as soon as it is sound by itself, and the reader, whose `connections` and `read` may be used. The
-  /// rest of the file may still refuse the bag: where the constructor throws, the caller drops what it got.
+  /// Is called for each chunk that is correct by itself, with the reader, whose `connections` and `read` may be used. A
+  /// later part of the file may still refuse the bag. If the constructor throws, the caller discards the chunks.
   using Early = std::function<void(BagReader& bag, const BagChunk& chunk)>;
 
-  /// Reads and checks the whole file. Throws BagError: it is no sound bag; std::runtime_error: no file to read.
+  /// Reads and checks the whole file. Throws BagError if the bag is broken, std::runtime_error if the file cannot be
+  /// read.
   explicit BagReader(const std::string& path, Early early = {});
 
-  /// By the number that messages have in `BagMessage::connection`.
+  /// Returns the connections by their number (`BagMessage::connection`).
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
   const std::vector<BagChunk>& chunks() const { return chunks_; }
   std::uint64_t messages() const { return messages_; }
 
-  /// Which part of the file is read, and why not all of it; empty: it is whole.
+  /// Says which part of the file is read and why the rest is not; "" if all is read.
   const std::string& cut() const { return cut_; }
 
-  /// Of the file, in bytes.
+  /// Returns the size of the file in bytes.
   std::uint64_t size() const { return file_.size(); }
 
-  /// The messages of one of the chunks, in the order of the file; their data are valid within the call. Throws
-  /// BagError: the file has changed.
+  /// Passes the messages of a chunk to `use` in the order of the file; their data are valid during the call. Throws
+  /// BagError if the file has changed.
   void read(const BagChunk& chunk, const std::function<void(const BagMessage&)>& use);
 
  private:
-  struct End;  // what the bag header announces of the end of the file
+  struct End;  // the properties of the file's end that the bag header announces
 
   End read_bag_header();
   void read_records(const End& end);
@@ -90,12 +92,12 @@ class BagReader {
   std::uint64_t messages_ = 0;
   std::uint64_t inflated_ = 0;  // bytes of all compressed chunks
   std::string cut_;
-  bool behind_ = false;  // the chunks
+  bool behind_ = false;  // the reader has passed the last chunk
 
-  // The chunk that was parsed last, until its index is compared.
+  // These members describe the last parsed chunk until its index is compared.
   bool pending_ = false;
   BagChunkIndex index_;
-  std::optional<std::uint64_t> inflated_record_;  // of the chunk that is in `content_`
+  std::optional<std::uint64_t> inflated_record_;  // record of the chunk whose content is in `content_`
   std::string content_;
 };
 

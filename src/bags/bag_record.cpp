@@ -11,7 +11,7 @@ std::string quoted(std::string_view text) {
   return "'" + printable(text, 40) + "'";
 }
 
-/// The four bytes of length at `at`, and that so many bytes follow.
+/// Returns the length in the four bytes at `at` and checks that so many bytes follow.
 std::uint32_t length_at(std::string_view bytes, std::size_t at, const BagPlace& place, const char* field) {
   if (bytes.size() - at < kLength) throw BagError(place + at, field, "ends within its 4 bytes", true);
   const auto length = bag_number<std::uint32_t>(bytes.substr(at));

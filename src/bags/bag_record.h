@@ -1,7 +1,8 @@
 #pragma once
-/// The record of ROS bags (http://wiki.ros.org/Bags/Format/2.0): four bytes of length, a header of so many bytes, four
-/// bytes of length, data of so many bytes. A header is a sequence of fields, each of four bytes of length and
-/// `name=value`; numbers are little-endian. Every length is compared with what there is before anything is read.
+/// A ROS bag consists of records (http://wiki.ros.org/Bags/Format/2.0). A record has four bytes with the header's
+/// length, the header, four bytes with the length of the data, and the data. A header is a sequence of fields, each
+/// with four bytes of length and `name=value`. Numbers are little-endian. Every length is compared with the available
+/// bytes before anything is read.
 
 #include <array>
 #include <cstdint>
@@ -15,9 +16,10 @@ namespace robot_control {
 
 inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
 
-inline constexpr std::uint32_t kMaxBagHeader = 1U << 16U;  ///< bytes; rosbag's own have less than 200, and a topic
+inline constexpr std::uint32_t kMaxBagHeader =
+    1U << 16U;  ///< bytes; headers of rosbag have less than 200, plus the topic's name
 
-/// Values of the field `op`.
+/// The values of the field `op`.
 enum class BagOp : std::uint8_t {
   kMessage = 0x02,
   kBagHeader = 0x03,
@@ -27,7 +29,7 @@ enum class BagOp : std::uint8_t {
   kConnection = 0x07,
 };
 
-/// Little-endian number at the begin of `bytes`, which holds it.
+/// Returns the little-endian number at the beginning of `bytes`, which are long enough.
 template <typename Number>
 Number bag_number(std::string_view bytes) {
   Number value = 0;
@@ -37,17 +39,18 @@ Number bag_number(std::string_view bytes) {
   return value;
 }
 
-/// Seconds and nanoseconds, four bytes each, as ns; nanoseconds of a whole second or more are refused.
+/// Returns seconds and nanoseconds, four bytes each, as ns. Throws BagError if the nanoseconds make a second or more.
 std::uint64_t bag_time_ns(std::string_view bytes, const BagPlace& place, const std::string& field);
 
-/// The fields of one header. Views into the bytes that it was made from.
+/// The fields of one header, as views into the bytes of the header.
 class BagHeader {
  public:
-  /// Throws BagError: a field is longer than the header, lacks its `=` or a name, or stands there twice; more than
-  /// kMaxFields.
+  /// Throws BagError if a field is longer than the header, has no `=` or no name, or occurs twice, or if there are more
+  /// than kMaxFields.
   BagHeader(std::string_view bytes, const BagPlace& place);
 
-  /// Each throws BagError where the field is absent or of another size.
+  /// The following functions return the value of a field. They throw BagError if the field is missing or has another
+  /// size.
   BagOp op() const;
   std::uint32_t u32(std::string_view name) const;
   std::uint64_t u64(std::string_view name) const;
@@ -60,7 +63,7 @@ class BagHeader {
  private:
   struct Field {
     std::string_view name, value;
-    std::uint64_t offset;  // of the value, in the header
+    std::uint64_t offset;  // offset of the value in the header
   };
   static constexpr std::size_t kMaxFields = 32;
 
@@ -72,15 +75,15 @@ class BagHeader {
   std::size_t count_ = 0;
 };
 
-/// One record in memory.
+/// A record in memory.
 struct BagRecord {
   BagHeader header;
   std::string_view data;
   BagPlace data_place;
-  std::size_t size;  ///< bytes, of the whole record
+  std::size_t size;  ///< bytes of the whole record
 };
 
-/// The record at the begin of `bytes`. Throws BagError; `ends`: `bytes` ends within the record.
+/// Returns the record at the beginning of `bytes`. Throws BagError, with `ends` if `bytes` end within the record.
 BagRecord read_bag_record(std::string_view bytes, const BagPlace& place);
 
 }  // namespace robot_control

@@ -1,14 +1,14 @@
 #pragma once
-/// Text for services, topics and diagnostics: rosservice and rostopic print every byte beyond ASCII as an escape, and
-/// what reads a C locale cannot show it.
+/// Texts of services, topics and diagnostics are ASCII. The programs rosservice and rostopic print other bytes as
+/// escapes, and programs in a C locale cannot show them.
 
 #include <string>
 #include <string_view>
 
 namespace robot_control {
 
-/// The signs of units and of this project's sentences in ASCII: "2 kg·m²" is "2 kg*m^2", "0.2°" is "0.2 deg". A byte
-/// that belongs to no known sign, a user's name or path, becomes \xNN.
+/// Replaces the symbols of units and of this project's sentences by ASCII: "2 kg·m²" becomes "2 kg*m^2", "0.2°" becomes
+/// "0.2 deg". A byte of any other symbol, for instance in a user's path, becomes \xNN.
 std::string ascii(std::string_view text);
 
 }  // namespace robot_control

@@ -63,7 +63,7 @@ InputFile read_input_file(const std::string& path, std::size_t max_bytes) {
   if (const std::string problem = problem_of(status, max_bytes); !problem.empty()) return refused(problem);
   constexpr std::size_t kPiece = std::size_t{1} << 16U;
   result.text.reserve(static_cast<std::size_t>(status.st_size));
-  for (;;) {  // files of /proc have no size, others may grow
+  for (;;) {  // reads up to the end: files of /proc have size 0, others may grow
     const std::size_t before = result.text.size();
     result.text.resize(before + std::min(kPiece, max_bytes + 1 - before));
     const ssize_t count = read(file.number(), result.text.data() + before, result.text.size() - before);

@@ -9,13 +9,14 @@ bool continues(char c) {
   return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
 }
 
-/// The first two of three or four bytes: longer than needed, a surrogate, or beyond U+10FFFF.
+/// Returns whether a character that begins with these two bytes is too long an encoding, a surrogate, or beyond
+/// U+10FFFF.
 bool is_forbidden(unsigned char first, unsigned char second) {
   return (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) || (first == 0xf0 && second < 0x90) ||
          (first == 0xf4 && second >= 0x90);
 }
 
-/// Bytes of the UTF-8 character that begins `text`; 0: none does.
+/// Returns the number of bytes of the UTF-8 character at the beginning of `text`; 0 if there is none.
 std::size_t character_bytes(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
   const std::size_t bytes = first < 0x80   ? 1
@@ -45,7 +46,7 @@ void append_character(std::string& to, std::string_view character) {
   }
 }
 
-/// Where the part that begins at `from` ends: after the closing quote, else before the next blank.
+/// Returns the end of the part that begins at `from`: after the closing quote, else before the next blank.
 std::size_t end_of_part(std::string_view text, std::size_t from) {
   if (text[from] == '"' || text[from] == '\'') {
     const std::size_t close = text.find(text[from], from + 1);

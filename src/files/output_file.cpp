@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kNewFile = 0644;  // less what the umask takes away
+constexpr mode_t kNewFile = 0644;  // minus the bits of the umask
 
 class OutputDescriptor {
  public:
@@ -45,7 +45,7 @@ class OutputDescriptor {
     if (::close(std::exchange(number_, -1)) != 0) fail();
   }
 
-  /// False: this user may not change the owner.
+  /// Returns false if this user may not change the owner.
   bool copy_owner_and_mode(const struct stat& old) const {
     struct stat own {};
     if (fstat(number_, &own) != 0) fail();
@@ -62,9 +62,9 @@ class OutputDescriptor {
   int number_;
 };
 
-/// Where symbolic links lead to, whether it exists or not.
+/// Returns the target of symbolic links, which need not exist.
 fs::path behind_links(fs::path path) {
-  constexpr int kMaxLinks = 40;  // of the kernel's
+  constexpr int kMaxLinks = 40;  // as the kernel
   for (int links = 0; links < kMaxLinks; ++links) {
     std::error_code error;
     if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
@@ -81,10 +81,10 @@ void write_in_place(const std::string& path, const std::string& text, int flags)
   file.close();
 }
 
-/// False: the old one's owner cannot be kept; nothing was changed.
+/// Returns false, and changes nothing, if the owner of the old file cannot be kept.
 bool replace(const fs::path& path, const struct stat* old, const std::string& text) {
   const std::string fresh = path.string() + ".new";
-  unlink(fresh.c_str());  // of a process that was killed
+  unlink(fresh.c_str());  // left by a process that was killed
   try {
     OutputDescriptor file(fresh, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
     if (old != nullptr && !file.copy_owner_and_mode(*old)) {

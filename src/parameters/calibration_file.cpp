@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kBlock = "calibration";
 constexpr const char* kRemedy = "delete it to restart the calibration, or name another file";
 
-/// All that stands in the file.
+/// The content of the file.
 struct Content {
   std::string robot;
   double wheel_radius = 0;
@@ -107,7 +107,7 @@ Content content_of(const ParameterTree& tree, const std::string& path, ProblemLi
   return content;
 }
 
-/// Numbers were written to the last digit.
+/// Compares two numbers. Numbers are written with all digits, so only rounding may differ.
 bool equal(double a, double b) {
   return std::abs(a - b) <= 1.0e-9 * std::max(std::abs(a), std::abs(b));
 }
@@ -218,7 +218,8 @@ std::optional<LearnedCalibration> read_calibration(const std::string& path, cons
     problems.throw_if_any(subject);
   }
   std::error_code error;
-  const auto status = std::filesystem::status(path, error);  // a link whose file is not there yet is none, too
+  const auto status =
+      std::filesystem::status(path, error);  // a link to a file that does not exist yet counts as no file
   if (status.type() == std::filesystem::file_type::not_found) return {};
   const ParameterTree tree = read_tree(path, {}, problems);
   if (tree.blocks.empty() && problems.empty()) problems.add({path, "", "holds no calibration", "", kRemedy});

@@ -14,12 +14,12 @@ namespace robot_control {
 namespace {
 
 constexpr std::size_t kMaxSourceFile = 65536;  // bytes
-constexpr std::size_t kMaxEntries = 32;        // of each list
+constexpr std::size_t kMaxEntries = 32;        // entries of each list
 constexpr double kMaxTimeout = 60;             // s
 constexpr int kMaxPriority = 255;              // twist_mux's
 constexpr const char* kListRemedy = "docs/driving.md shows a list";
 
-/// One entry of a list, read key by key.
+/// An EntryReader reads one entry of a list key by key.
 class EntryReader {
  public:
   EntryReader(const YAML::Node& node, std::string path, const std::string& file, ProblemList& problems)

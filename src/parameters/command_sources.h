@@ -1,16 +1,16 @@
 #pragma once
-/// The list of command sources: a YAML file in the words of twist_mux (wiki.ros.org/twist_mux).
+/// The list of command sources is a YAML file with the keys of twist_mux (wiki.ros.org/twist_mux).
 ///
 ///   topics:                  # at least one
 ///     - name: joystick       # [a-z0-9_], unique
 ///       topic: joy_vel       # relative names follow the namespace
-///       timeout: 0.5         # s after which it is silent; 0: never
+///       timeout: 0.5         # s after which the source is silent; 0: never
 ///       priority: 40         # 0 … 255, unique; the highest source that is not silent commands
 ///       stamped: false       # true: TwistStamped
 ///   locks:                   # may be left out; std_msgs/Bool
 ///     - name: pause
 ///       topic: pause
-///       timeout: 0           # s after which silence locks, too; 0: only `true` locks
+///       timeout: 0           # s after which silence also locks; 0: only `true` locks
 ///       priority: 255        # masks every source of a lower priority
 
 #include <string>

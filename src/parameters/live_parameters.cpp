@@ -44,7 +44,7 @@ Entry in_force(Entry::Kind kind, std::string text = {}) {
   return entry;
 }
 
-/// What holds now, as if it were written.
+/// Returns the values in force as a tree, as if a file contained them.
 ParameterTree tree_in_force(Parameters base, const Block& block) {
   ParameterTree tree;
   for (const Key& key : block.keys) {

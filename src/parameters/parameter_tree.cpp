@@ -30,7 +30,7 @@ Entry plain_entry_of(const YAML::Node& node) {
   return entry;
 }
 
-// One level: no parameter is a list of lists, and YAML's aliases can nest a list in itself.
+// Reads one level of a list: no parameter is a list of lists, and YAML's aliases can nest a list in itself.
 Entry entry_of(const YAML::Node& node) {
   Entry entry = plain_entry_of(node);
   if (node.IsSequence()) {
@@ -60,7 +60,7 @@ void for_each_key(const YAML::Node& map, const std::string& prefix, const std::s
   }
 }
 
-// The value, and of a map each of its values: no parameter nests deeper.
+// Puts the value and, if it is a map, each of its values; no parameter is nested deeper.
 template <class Put>
 void put_value(const std::string& path, const YAML::Node& value, const std::string& origin, const std::string& source,
                ProblemList& problems, Put put) {
@@ -99,14 +99,15 @@ void read_document(const YAML::Node& root, const std::string& source, const std:
   });
 }
 
-/// What the nodes of a text do not say: how many documents it has, and its tags.
+/// Documents counts the documents of a text and finds their tags, which YAML::Node does not show.
 class Documents : public YAML::EventHandler {
   using Mark = YAML::Mark;
   using Style = YAML::EmitterStyle::value;
   using Anchor = YAML::anchor_t;
 
  public:
-  // 0, 1, or 2 for more. YAML::LoadAll finds documents without end in a text that begins with a comma.
+  // The count is 0, 1, or 2 for more. YAML::LoadAll would find documents without end in a text that begins with a
+  // comma.
   explicit Documents(const std::string& text) {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
@@ -123,7 +124,7 @@ class Documents : public YAML::EventHandler {
   std::size_t count = 0;
 
  private:
-  // "": none; "?": a plain scalar's; "!": a quoted one's.
+  // Collects a tag. yaml-cpp passes "" for no tag, "?" for a plain scalar and "!" for a quoted one.
   void look(const std::string& tag, const Mark& mark) {
     if (tag.empty() || tag == "?" || tag == "!") return;
     constexpr std::string_view kCore = "tag:yaml.org,2002:";
@@ -169,7 +170,7 @@ void read_file(const std::string& yaml_path, ParameterTree& tree, ProblemList& p
   }
 }
 
-/// Key by key; of a map that both have, what the upper one does not name.
+/// Adds those keys of the base file that the tree does not have, also inside a map that both have.
 void lay_under(const std::string& base_path, const std::string& yaml_path, ParameterTree& tree, ProblemList& problems) {
   std::error_code error;
   if (base_path.empty() || !std::filesystem::exists(base_path, error)) return;
@@ -192,7 +193,7 @@ void lay_over(const Overlay& overlay, ParameterTree& tree, ProblemList& problems
     Documents(overlay.text).refuse_tags(overlay.origin, problems);
     put_value(overlay.path, YAML::Load(overlay.text), overlay.origin, overlay.origin, problems,
               [&](const std::string& path, Entry entry, const std::string&) {
-                // An empty string has no other spelling on a server.
+                // On a server an empty string cannot be written in quotes.
                 if (overlay.text.empty()) entry.kind = Entry::Kind::kQuoted;
                 entry.origin = overlay.origin;
                 entry.folder = folder;

@@ -1,5 +1,5 @@
 #pragma once
-/// The parameter values as text, before they are interpreted.
+/// A ParameterTree holds the parameter values as text, before they are interpreted.
 
 #include <filesystem>
 #include <map>
@@ -15,11 +15,11 @@ struct Entry {
   enum class Kind { kPlain, kQuoted, kNothing, kList, kMap };
   Kind kind = Kind::kNothing;
   std::string text;              ///< scalars only
-  std::vector<Entry> items;      ///< lists only; kind and text of each
-  std::string origin;            ///< "robot_params.yaml:12", or the overlay's own
-  std::filesystem::path folder;  ///< what a relative path in it is relative to
+  std::vector<Entry> items;      ///< lists only; each item has kind and text
+  std::string origin;            ///< "robot_params.yaml:12", or the origin of the overlay
+  std::filesystem::path folder;  ///< folder to which a relative path refers
   bool overlay = false;
-  bool base = false;  ///< of the file below the file
+  bool base = false;  ///< the value is that of the base file
 };
 
 struct BlockEntry {
@@ -28,22 +28,22 @@ struct BlockEntry {
 };
 
 struct ParameterTree {
-  std::map<std::string, Entry> entries;  ///< by path: "block.key" and, of a map, its keys' "block.key.inner", too
-  std::vector<BlockEntry> blocks;        ///< those of the file
+  std::map<std::string, Entry> entries;  ///< by path: "block.key", and "block.key.inner" for each key of a map
+  std::vector<BlockEntry> blocks;        ///< blocks of the file
 };
 
-/// Reads the file (none if `yaml_path` is empty), then lays the overlays over it, the last one on top.
-/// Unreadable and malformed YAML, duplicate keys and blocks that are no maps become problems. An overlay that is a map
-/// is laid over key by key: what it does not name stays. So is the file over that of `base_path`, where one is there
-/// and another. Every YAML tag (`!degrees`, `!!str`) is a problem: none is read.
+/// Reads the file (none if `yaml_path` is empty), then lays the overlays over it, the last one on top. Unreadable and
+/// malformed YAML, duplicate keys and blocks that are no maps become problems. An overlay that is a map replaces only
+/// the keys that it names. In the same way the file is laid over that of `base_path`, if that is another file and
+/// exists. Every YAML tag (`!degrees`, `!!str`) is a problem, because tags have no effect.
 ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems,
                         const std::string& base_path = "");
 
-/// Lays a request over the tree: the text of a YAML map of keys of `block`, of at most kMaxRequest bytes. Anything
-/// else is one problem.
+/// Lays a request over the tree. The request is the text of a YAML map of keys of `block`, with at most kMaxRequest
+/// bytes. Any other text is one problem.
 void lay_request_over(const std::string& block, const std::string& text, ParameterTree& tree, ProblemList& problems);
 
-/// Bytes; every key of a block with a value needs a quarter of it.
+/// A request has at most this many bytes. All keys of a block with values need a quarter of it.
 inline constexpr std::size_t kMaxRequest = 4096;
 
 }  // namespace robot_control

@@ -33,7 +33,8 @@ class TreeReader {
   }
 
  private:
-  // Where a higher layer says wheel_separation, it means the lower one's wheel_base, and the other way round.
+  // wheel_separation and wheel_base name one value: if a higher layer sets one name, the other name is removed from the
+  // lower layers.
   void higher_layers_replace_other_names() {
     for (const Block& block : schema()) {
       for (const Key& key : block.keys) {
@@ -46,7 +47,7 @@ class TreeReader {
     }
   }
 
-  /// 0: not given, 1: by the base, 2: by the file, 3: by an overlay.
+  /// Returns the layer that gives the value: 0 none, 1 the base file, 2 the file, 3 an overlay.
   int layer_of(const std::string& path) const {
     const auto entry = tree_.entries.find(path);
     if (entry == tree_.entries.end()) return 0;
@@ -60,8 +61,8 @@ class TreeReader {
       blocks.emplace(block.name);
       for (const Key& key : block.keys) paths.insert(path_of(block, key));
     }
-    // Keys inside an unexpected or unknown map are reported with that map. Those that a server holds below a key whose
-    // value the file gives are in no map.
+    // Keys inside an unexpected or unknown map are reported with that map. A server can hold keys below a key whose
+    // value in the file is no map; these are reported themselves.
     const auto reported_with_its_map = [&](const std::string& path) {
       const std::string map = path.substr(0, path.rfind('.'));
       const auto entry = tree_.entries.find(map);
@@ -101,7 +102,7 @@ class TreeReader {
     }
   }
 
-  // All that stands in it is optional.
+  // Returns whether all keys of the group are optional.
   static bool may_be_absent(const std::string& group) {
     for (const Block& block : schema()) {
       for (const Key& key : block.keys) {
@@ -111,7 +112,8 @@ class TreeReader {
     return true;
   }
 
-  // A map that is missing or no map is one problem, not one per key.
+  // Returns whether the map of the group exists. If it is missing or no map, this is one problem instead of one per
+  // key.
   bool group_is_there(const std::string& group) {
     const auto entry = tree_.entries.find(group);
     const bool map = entry != tree_.entries.end() && entry->second.kind == Entry::Kind::kMap;
@@ -130,7 +132,7 @@ class TreeReader {
     return false;
   }
 
-  // Each is right for itself, together they are not.
+  // Refuses values that contradict each other, although each is valid by itself.
   void check_contradictions() {
     const auto refuse = [&](const std::string& path, const std::string& rule) {
       const Entry& entry = tree_.entries.at(path);
@@ -161,7 +163,7 @@ class TreeReader {
         const Entry& entry = tree_.entries.at(reverse);
         refuse(emergency, "must not be below " + reverse + " = " + as_written(entry) + " [" + entry.origin + "]");
       }
-      // The jerk limit must let the brake of an emergency come.
+      // The jerk limit must allow the emergency deceleration to build up.
       constexpr double kBuildUp = 1.0;  // s
       if (!sound_.contains(block + "_jerk") || jerk.value_or(0) == 0) return;
       if (*jerk * kBuildUp >= axis_limits.emergency_deceleration) return;
@@ -174,7 +176,7 @@ class TreeReader {
     };
     check_axis("linear", limits.linear, drive.max_linear_deceleration.has_value(), drive.max_linear_jerk);
     check_axis("angular", limits.angular, drive.max_angular_deceleration.has_value(), drive.max_angular_jerk);
-    // The sensors of one cycle, the permit of the next, the torque of the one after.
+    // A stop takes the sensors of one cycle, the permit of the next and the torque of the one after.
     constexpr double kCyclesToStop = 3;
     const std::string delay = "safety_monitor.stop_delay";
     const double fastest = kCyclesToStop * parameters_.loop.period();
@@ -184,7 +186,7 @@ class TreeReader {
     }
   }
 
-  // Rules that need a second value; a value that was refused already is not judged again.
+  // Checks the rules that need a second value. A value that was already refused is not checked again.
   void check_against_others(const Block& block, const Key& key) {
     const std::string path = path_of(block, key);
     if (!sound_.contains(path)) return;
@@ -227,7 +229,7 @@ class TreeReader {
 
   ParameterTree tree_;
   std::span<const Block> blocks_;
-  std::string source_;  ///< of what is missing
+  std::string source_;  ///< origin in the message about a missing value
   ProblemList& problems_;
   Parameters parameters_;
   std::set<std::string, std::less<>> sound_;            ///< paths whose value was accepted
@@ -247,7 +249,8 @@ Parameters read_parameters(const std::string& yaml_path, const std::vector<Overl
   const std::string subject = "parameters refused (" + source + ")";
   ProblemList problems;
   ParameterTree tree = read_tree(yaml_path, overlays, problems, base_path);
-  if (tree.blocks.empty() && !yaml_path.empty()) problems.throw_if_any(subject);  // not a file to ask further
+  if (tree.blocks.empty() && !yaml_path.empty())
+    problems.throw_if_any(subject);  // without any block the file is no parameter file
   Parameters parameters = read_blocks(std::move(tree), schema(), source, {}, problems);
   problems.throw_if_any(subject);
   return parameters;

@@ -1,9 +1,9 @@
 #pragma once
-/// Everything a user sets, as structs. The YAML keys stand in schema.h alone.
+/// These structs hold everything that a user sets. Their YAML keys are in schema.cpp.
 ///
-/// A tree of values (YAML file first, then overlays: a parameter server, a Python dict) is read into
-/// `Parameters` at once. Missing, unknown, mistyped, NaN, infinite and out-of-range values are collected, and
-/// one ParameterError lists them all: path, value, rule, unit, origin.
+/// A tree of values (the YAML file, then overlays from a parameter server or a Python dict) is read into `Parameters`
+/// at once. Missing, unknown, mistyped, NaN, infinite and out-of-range values are collected. One ParameterError lists
+/// them all with path, value, rule, unit and origin.
 
 #include <array>
 #include <cmath>
@@ -31,34 +31,34 @@ class ParameterError : public std::runtime_error {
 
 enum class ClockMode { kWall, kLockstep };
 
-/// What all nodes must agree on (`robot:` block, beside the robot itself).
+/// Values on which all nodes must agree; they are in the block `robot:`, beside those of the robot itself.
 struct LoopParameters {
   double rate = 1000;  ///< Hz, 100 … 2000
   ClockMode clock = ClockMode::kWall;
   RealtimePolicy realtime = RealtimePolicy::kPreferred;
-  std::int64_t core = 0;  ///< the one core the chain is pinned to; -1 = not pinned
+  std::int64_t core = 0;  ///< core to which the real-time threads are pinned; -1: not pinned
   FailAction fail_action = FailAction::kBrake;
-  std::string bus;                  ///< empty: from master and namespace
+  std::string bus;                  ///< empty: derived from master and namespace
   std::string command_script;       ///< CSV path; empty: none
   bool wait_for_nodes = false;      ///< cycle 0 begins when all four nodes hold their channels; always in lockstep
-  bool wait_for_telemetry = false;  ///< … and telemetry is reading
+  bool wait_for_telemetry = false;  ///< … and when telemetry reads
 
   double period() const { return 1.0 / rate; }                           ///< s
   std::int64_t period_ns() const { return std::llround(1.0e9 / rate); }  ///< ns
 };
 
-/// Variances of x, y, z, in m² or m²/s², and about x, y, z, in rad² or rad²/s².
+/// Variances along x, y, z in m² or m²/s², and about x, y, z in rad² or rad²/s².
 using CovarianceDiagonal = std::array<double, 6>;
 
-/// Rates and names of what the nodes publish; nothing of it touches the loop.
+/// Rates and frame names of the published topics; they have no effect on the loop.
 struct ReportParameters {
   double joint_states_rate = 100;  ///< Hz
   double odom_rate = 50;           ///< Hz, odom and wheel_odom
   bool publish_tf = true;
   std::string odom_frame = "odom";
   std::string base_frame;  ///< empty: the robot's root link, so that no frame gets two parents (REP 105)
-  std::optional<CovarianceDiagonal> pose_covariance_diagonal;   ///< of odom; none: as estimated
-  std::optional<CovarianceDiagonal> twist_covariance_diagonal;  ///< likewise
+  std::optional<CovarianceDiagonal> pose_covariance_diagonal;   ///< for odom; none: as estimated
+  std::optional<CovarianceDiagonal> twist_covariance_diagonal;  ///< for odom; none: as estimated
   double command_rate = 50;    ///< Hz, joint_commands, joint_targets, cmd_vel_out and drive_state
   double imu_rate = 100;       ///< Hz, imu/data_raw
   double imu_data_rate = 100;  ///< Hz, imu/data
@@ -66,7 +66,7 @@ struct ReportParameters {
 };
 
 struct Parameters {
-  std::string urdf;  ///< path; relative to the file it stands in
+  std::string urdf;  ///< path, relative to the folder of the file that names it
   RobotParameters robot;
   LoopParameters loop;
   MujocoPlantParameters plant;
@@ -78,12 +78,13 @@ struct Parameters {
   std::string latch_file;  ///< path, see runtime/latch_file.h; empty: none
   ReportParameters report;
   TelemetryParameters telemetry;
-  std::optional<double> no_effect;    ///< of a key of an earlier version
-  std::vector<std::string> warnings;  ///< values that were accepted although they are written in an old way
+  std::optional<double> no_effect;    ///< value of a key of an earlier version
+  std::vector<std::string> warnings;  ///< about accepted values in an old form
 };
 
-/// One value laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate". A condition of the safety
-/// monitor is a map: path "safety_monitor.tilt.limit" sets one value in it, "safety_monitor.tilt" those it names.
+/// One value that is laid over the file: path "robot.rate", YAML text "500", origin "/robot/rate". A condition of the
+/// safety monitor is a map. The path "safety_monitor.tilt.limit" sets one value of it, "safety_monitor.tilt" all values
+/// that the text names.
 struct Overlay {
   std::string path;
   std::string text;  ///< a scalar, or a list or a map in brackets; an empty text is the empty string
@@ -91,17 +92,17 @@ struct Overlay {
 };
 
 /// Throws ParameterError. The file consists of the blocks `robot`, `mujoco_plant`, `state_estimator`,
-/// `diff_drive_controller`, `safety_monitor`, `telemetry`; every key must be there, in the file or in an overlay,
-/// except what the URDF gives (`robot.wheel_base`, …) or what is derived from it (`pid_kp`, …): those that are
-/// kOptional in the schema. With an empty `yaml_path` the overlays are everything there is.
+/// `diff_drive_controller`, `safety_monitor`, `telemetry`. Every key must be in the file or in an overlay, unless it is
+/// kOptional in the schema. Optional values come from the URDF (`robot.wheel_base`, …) or are derived from it
+/// (`pid_kp`, …). With an empty `yaml_path` only the overlays are read.
 ///
-/// `base_path`: a complete file over which that of `yaml_path` is laid key by key, so that it may hold only the keys
-/// that it changes; empty, not there or the same file: none.
+/// `base_path` names a complete file over which that of `yaml_path` is laid key by key. The latter may therefore hold
+/// only the keys that it changes. It has no effect if it is empty, does not exist or names the same file.
 ///
 /// A file that is a configuration of ros_controllers' or ros2_controllers' diff_drive_controller is one problem.
 ///
-/// Relative paths of input files (`urdf`, `scene`, `command_script`) count from the folder of the YAML file, in
-/// an overlay from the current folder; they come out absolute.
+/// Relative paths of input files (`urdf`, `scene`, `command_script`) refer to the folder of the YAML file, in an
+/// overlay to the current folder. The returned paths are absolute.
 Parameters read_parameters(const std::string& yaml_path, const std::vector<Overlay>& overlays = {},
                            const std::string& base_path = "");
 

@@ -10,7 +10,7 @@
 namespace robot_control {
 namespace {
 
-/// The value as YAML has it; empty: there is none.
+/// Returns the value in YAML; empty if there is none.
 class ValueText {
  public:
   explicit ValueText(const Field& field) : field_(field) {}
@@ -40,7 +40,7 @@ class ValueText {
   std::string operator()(const Enum* value) const {
     const auto words = words_of(field_);
     const auto word = std::find_if(words.begin(), words.end(),
-                                   [&](const Word& word) { return word.value == static_cast<int>(*value); });
+                                   [&](const Word& each) { return each.value == static_cast<int>(*value); });
     return std::string(word->text);
   }
 

@@ -13,7 +13,7 @@ namespace {
 
 struct PeerKey {
   std::string_view peer_name;
-  std::string_view own_path;  ///< empty: nothing is to be set
+  std::string_view own_path;  ///< empty: this package needs no such key
 };
 
 constexpr auto kPeerKeys = std::to_array<PeerKey>({
@@ -82,9 +82,9 @@ bool is_ours(std::string_view block) {
   return std::ranges::any_of(schema(), [&](const Block& own) { return own.name == block; });
 }
 
-/// The signs that no file of ours has.
+/// Returns the evidence that no file of this package has.
 std::string sign_in(const YAML::Node& node, bool foreign, int depth) {
-  constexpr int kMaxDepth = 6;  // an alias may nest a map in itself
+  constexpr int kMaxDepth = 6;  // bounds a map that contains itself by an alias
   if (!node.IsMap() || depth > kMaxDepth) return "";
   for (const auto& pair : node) {
     if (!pair.first.IsScalar()) continue;

@@ -1,5 +1,5 @@
 #pragma once
-/// Collects all problems of an input, so that one error reports all of them.
+/// A ProblemList collects all problems of an input, so that one error reports all of them.
 
 #include <string>
 #include <string_view>
@@ -9,13 +9,13 @@
 
 namespace robot_control {
 
-/// Printed as one line: `path = value: rule [origin]; remedy`. Empty parts are left out.
+/// A problem is printed as one line: `path = value: rule [origin]; remedy`. Empty parts are left out.
 struct Problem {
   std::string path;    ///< "robot.rate"
-  std::string value;   ///< as it was written
-  std::string rule;    ///< what would have been right, with unit
-  std::string origin;  ///< file:line, or where an overlay came from
-  std::string remedy;  ///< what to do about it
+  std::string value;   ///< as in the input
+  std::string rule;    ///< allowed values, with unit
+  std::string origin;  ///< file:line, or origin of the overlay
+  std::string remedy;  ///< action that solves the problem
 };
 
 class ProblemList {
@@ -23,23 +23,23 @@ class ProblemList {
   void add(Problem problem) { problems_.push_back(std::move(problem)); }
   bool empty() const { return problems_.empty(); }
 
-  /// The line of each problem.
+  /// Returns one line per problem.
   std::vector<std::string> lines() const;
 
-  /// Throws ParameterError with every problem on a line of its own below `subject`; returns if there is none.
+  /// Throws ParameterError with `subject` and one line per problem; returns if there is none.
   void throw_if_any(std::string_view subject) const;
 
  private:
   std::vector<Problem> problems_;
 };
 
-/// Characters of a listing: what a terminal shows, and ROS carries in one message.
+/// A listing has at most this many characters, so that a terminal shows it and ROS sends it in one message.
 inline constexpr std::size_t kMaxListing = 1900;
 
-/// "`subject`: 2 problems", and each of them on a line of its own below; beyond kMaxListing "… and 7 more".
+/// Returns "`subject`: 2 problems" and one line per problem; beyond kMaxListing it ends with "… and 7 more".
 std::string listing(std::string_view subject, const std::vector<std::string>& lines);
 
-/// Shortest text that reads back as the same number.
+/// Returns the shortest text that is read back as the same number.
 std::string shortest(double value);
 
 }  // namespace robot_control

@@ -10,7 +10,7 @@
 namespace robot_control {
 namespace {
 
-// Two slips, or a third of a long word; more is another word.
+// Returns the largest edit distance of a suggestion: two letters, or a third of a long word.
 std::size_t farthest(std::string_view word) {
   return std::max<std::size_t>(2, word.size() / 3);
 }

@@ -1,19 +1,19 @@
 #pragma once
-/// "did you mean …?"
+/// These functions suggest known names for a misspelt one: "did you mean …?"
 
 #include <string>
 #include <string_view>
 
 namespace robot_control {
 
-/// Number of letters to insert, delete or replace to get from `a` to `b` (Levenshtein).
+/// Returns how many letters must be inserted, deleted or replaced to change `a` into `b` (Levenshtein).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The known path nearest to "block.key" or "block.group.key", as a remedy; empty when nothing is near. A key of the
-/// same block is named without it, one of another block with its block.
+/// Returns the known path nearest to "block.key" or "block.group.key" as a remedy; "" if none is near. A key of the
+/// same block is named without the block, one of another block with it.
 std::string suggest_key(std::string_view path);
 
-/// The same for the name of a block.
+/// Returns the nearest name of a block as a remedy; "" if none is near.
 std::string suggest_block(std::string_view name);
 
 }  // namespace robot_control

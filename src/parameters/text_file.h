@@ -1,5 +1,5 @@
 #pragma once
-/// A whole file as text.
+/// This function reads a whole file as text.
 
 #include <optional>
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace robot_control {
 
-/// Nothing, and a problem with `remedy`, when it cannot be read or is larger than `most` bytes (files/input_file.h).
+/// Returns nothing and adds a problem with `remedy` if the file cannot be read or is larger than `max_bytes`
+/// (files/input_file.h).
 std::optional<std::string> read_text_file(const std::string& path, std::size_t max_bytes, const std::string& remedy,
                                           ProblemList& problems);
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The values as they were written → structs: every rule of the schema, every contradiction.
+/// read_blocks converts a tree of texts into structs; it applies every rule of the schema and finds every
+/// contradiction.
 
 #include <span>
 #include <string>
@@ -11,9 +12,9 @@
 
 namespace robot_control {
 
-/// `base` with what `blocks` have in `tree`; what is refused or missing stays as in `base` and becomes a problem,
-/// reported with the name `source` if it stands in no file. A loop rate that the tree does not contain is that of
-/// `base`.
+/// Returns `base` with the values of `blocks` in `tree`. A value that is refused or missing stays as in `base` and
+/// becomes a problem. A value in no file is reported with the name `source`. If the tree has no loop rate, that of
+/// `base` is used.
 Parameters read_blocks(ParameterTree tree, std::span<const Block> blocks, const std::string& source,
                        const Parameters& base, ProblemList& problems);
 

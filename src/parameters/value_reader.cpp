@@ -14,7 +14,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// YAML's own spellings beside those of from_chars.
+// Reads YAML's spellings of numbers that are not finite, which from_chars does not know.
 std::optional<double> not_finite(const std::string& text) {
   const std::string word = lower(text);
   const std::string bare = word.starts_with('+') || word.starts_with('-') ? word.substr(1) : word;
@@ -32,7 +32,8 @@ std::errc parse(std::string_view text, Number& number) {
   return error;
 }
 
-// YAML 1.1 (PyYAML, the parameter server) turns a plain `off` into a boolean. Old words are those of a boolean.
+// Finds the allowed word. YAML 1.1 (PyYAML, the parameter server) turns a plain `off` into a boolean, `false`. Some old
+// words are booleans.
 const Word* find_word(const Entry& entry, const Field& field) {
   const std::string small = lower(entry.text);
   const std::string text = small == "false" ? "off" : entry.text;

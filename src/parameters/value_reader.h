@@ -1,5 +1,5 @@
 #pragma once
-/// One written value → one field, or one problem.
+/// These functions convert one written value into one field, or one problem.
 
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
@@ -7,14 +7,14 @@
 
 namespace robot_control {
 
-/// Checks type, finiteness and range, then writes the field. False: refused, the problem was added.
-/// Numbers are plain YAML numbers: a quoted "500" is a text.
+/// Checks type, finiteness and range, then writes the field. Returns false and adds a problem if the value is refused.
+/// Numbers are plain YAML numbers; a quoted "500" is a text.
 bool read_value(const Entry& entry, const std::string& path, const Key& key, const Field& field, ProblemList& problems);
 
-/// The word that replaced the old one that is written there; empty: it is none.
+/// Returns the present word if an old one is written, else "".
 std::string_view word_now(const Entry& entry, const Field& field);
 
-/// For messages: "500", "[a, b]", "(a block)".
+/// Returns the value for messages: "500", "[a, b]", "(a block)".
 std::string as_written(const Entry& entry);
 
 }  // namespace robot_control

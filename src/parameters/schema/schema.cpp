@@ -39,11 +39,11 @@ constexpr auto rows(const std::array<Key, Sizes>&... parts) {
   return all;
 }
 
-// Conditions that are true or false: lost, stuck.
+// Keys of a condition that is true or false, such as lost or stuck.
 template <auto Condition>
 constexpr std::array<Key, 2> condition_without_limit(std::string_view group) {
   using C = robot_control::Condition;
-  // A minute: what lasts longer is no condition to stop for.
+  // The persistence is at most a minute; a longer one would not stop the robot in time.
   return {{{"persistence", in_condition<Condition, &C::persistence>, "s", 0, 60, 0, {}, group},
            {"reaction", in_condition<Condition, &C::reaction>, {}, 0, 0, 0, {}, group}}};
 }
@@ -56,7 +56,7 @@ constexpr std::array<Key, 3> condition(std::string_view group, std::string_view 
               condition_without_limit<Condition>(group));
 }
 
-// seed and cycles: any value that a YAML integer, a Python int and a ROS parameter can all carry.
+// The bound of seed and cycles: a YAML integer, a Python int and a ROS parameter all represent every value below it.
 constexpr double kAnyCount = 9007199254740992.0;  // 2^53
 
 using Robot = RobotParameters;
@@ -86,7 +86,8 @@ constexpr auto kRobot = std::to_array<Key>({
     {"centre_of_gravity", in<&P::robot, &Robot::centre_of_gravity>, "m", -10, 10, kOptional},
     {"imu_link", in<&P::robot, &Robot::imu_link>, {}, 0, 0, kMayBeEmpty},
     {"imu_position", in<&P::robot, &Robot::imu_position>, "m", -10, 10, kOptional},
-    {"imu_orientation", in<&P::robot, &Robot::imu_orientation>, "rad", -6.3, 6.3, kOptional},  // two turns hold all
+    {"imu_orientation", in<&P::robot, &Robot::imu_orientation>, "rad", -6.3, 6.3,
+     kOptional},  // one full turn in each direction
     {"fail_action", in<&P::loop, &LoopParameters::fail_action>},
     {"rate", in<&P::loop, &LoopParameters::rate>, "Hz", 100, 2000},
     {"clock", in<&P::loop, &LoopParameters::clock>},
@@ -144,7 +145,7 @@ constexpr auto kMujocoPlant = std::to_array<Key>({
     {"accelerometer_bias_walk", in<&P::plant, &Plant::accelerometer_bias_walk>, "m/s²/√s", 0, 10},
     {"sensor_delay", in<&P::plant, &Plant::sensor_delay>, "cycles", 0, 100},
     {"contact_sensors", in<&P::plant, &Plant::contact_sensors>},
-    // At most half a volt is lost at the idle current (battery.h): the voltage stays positive.
+    // At the idle current at most half a volt is lost (battery.h), so the voltage stays positive.
     {"battery_voltage", in<&P::plant, &Plant::battery_voltage>, "V", 1, 1000, kZeroIsOff},
     {"battery_resistance", in<&P::plant, &Plant::battery_resistance>, "Ω", 0, 1},
     {"push_x", in<&P::plant, &Plant::push_x>, "N", -100000, 100000},
@@ -238,11 +239,12 @@ constexpr auto kDiffDriveController = std::to_array<Key>({
 });
 
 constexpr auto kSafetyLimits = std::to_array<Key>({
-    // More than the four cycles that a command lives at the gate: a held command is not yet a lost node.
+    // The limit is above the four cycles for which the gate uses a command: a held command does not mean a lost node.
     {"loss_cycles", in<&P::safety, &Safety::loss_cycles>, "cycles", 5, 10000},
     {"heartbeat_timeout", in<&P::safety, &Safety::heartbeat_timeout>, "s", 0, 60, kTimeout | kZeroIsOff},
     {"ramp_time", in<&P::safety, &Safety::ramp_time>, "s", 0.01, 60},
-    {"standstill_speed", in<&P::safety, &Safety::standstill_speed>, "rad/s", 1.0e-6, 0.5},  // a reset is no start
+    {"standstill_speed", in<&P::safety, &Safety::standstill_speed>, "rad/s", 1.0e-6,
+     0.5},  // a reset must not release a moving robot
     {"slow_speed", in<&P::safety, &Safety::slow_speed>, "m/s", 0, 50},
     {"clearance", in<&P::safety, &Safety::clearance>, "m", 0, 10000, kZeroIsOff},
     {"stop_delay", in<&P::safety, &Safety::stop_delay>, "s", 0, 10},

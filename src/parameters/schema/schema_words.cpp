@@ -21,7 +21,7 @@ constexpr auto kTyreWords = std::to_array<Word>({
     {"native", static_cast<int>(TyreModel::kNative)},
 });
 
-// true and false of the versions before there were levels.
+// true and false are the words of versions without levels.
 constexpr auto kErrorLevelWords = std::to_array<Word>({
     {"ideal", static_cast<int>(ErrorLevel::kIdeal)},
     {"data_sheet", static_cast<int>(ErrorLevel::kDataSheet)},
