@@ -1,7 +1,7 @@
 #pragma once
-/// What was put in `delay` steps ago: out(k) = in(k − delay), before that the value it was filled with.
+/// A DelayLine delays values by `delay` steps: out(k) = in(k − delay); before that, the value that it was filled with.
 ///
-/// Holds all its values itself: no allocation after construction, a step costs two copies.
+/// It holds all its values itself: there is no allocation after construction, and a step costs two copies.
 
 #include <array>
 #include <cstddef>
@@ -13,20 +13,20 @@ namespace robot_control {
 template <class Value, std::size_t Longest>
 class DelayLine {
  public:
-  /// Throws std::invalid_argument: longer than Longest.
+  /// Throws std::invalid_argument if `delay` > Longest.
   explicit DelayLine(std::size_t delay) : delay_(delay) {
     if (delay > Longest) {
       throw std::invalid_argument("delay of " + std::to_string(delay) + " steps, at most " + std::to_string(Longest));
     }
   }
 
-  /// What comes out of the next `delay` steps.
+  /// Makes `value` the output of the next `delay` steps.
   void fill(const Value& value) noexcept {
     for (std::size_t i = 0; i < delay_; ++i) values_[i] = value;
     next_ = 0;
   }
 
-  /// In goes the value of this step, out comes that of `delay` steps ago, in its place.
+  /// Replaces the value of this step by that of `delay` steps ago.
   void step(Value& value) noexcept {
     if (delay_ == 0) return;
     const Value late = values_[next_];

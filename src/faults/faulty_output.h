@@ -1,19 +1,21 @@
 #pragma once
-/// An output into which a fault can be injected (signals/injected_fault.h): the samples of a sensor, the frames of a
-/// node.
+/// A FaultyOutput is an output with an injected fault (signals/injected_fault.h): the samples of a sensor or the frames
+/// of a node.
 ///
 ///   kOk            the healthy value
-///   kOff           nothing
+///   kOff           no output
 ///   kStuck         the value of the cycle in which the fault began, as long as the fault lasts
-///   kGarbage       what `distort` makes of it, from random numbers
-///   kWrong         what `distort` makes of it
-///   kSlow          a new value when the fault begins and every kFaultCycles cycles after; in between none
-///   kDelayed       the value of kFaultCycles cycles ago; until there is one, that of the fault's beginning
-///   kIntermittent  on at first, then changes between nothing and the healthy value with kChangeProbability in
+///   kGarbage       the healthy value, changed by `distort` with random numbers
+///   kWrong         the healthy value, changed by `distort`
+///   kSlow          a new value when the fault begins and every kFaultCycles cycles after; in between no output
+///   kDelayed       the value of kFaultCycles cycles ago; in the first kFaultCycles cycles that of the fault's
+///   beginning kIntermittent  on at first, then changes between no output and the healthy value with kChangeProbability
+///   in
 ///                  each cycle: both last 1 / kChangeProbability cycles on average, from one to a hundred
 ///
-/// A healthy output costs one comparison. Random numbers come from the seed and the cycle in which the fault began
-/// alone: the same fault in the same cycle gives the same bits, in whichever process. Real-time safe: no allocation.
+/// A healthy output costs one comparison. Random numbers depend only on the seed and the cycle in which the fault
+/// began. So the same fault in the same cycle gives the same bits in every process. The class is real-time safe: it
+/// does not allocate.
 
 #include <cstdint>
 #include <random>
@@ -26,20 +28,20 @@ namespace robot_control {
 inline constexpr std::uint64_t kFaultCycles = 10;
 inline constexpr double kChangeProbability = 0.1;
 
-/// One seed for each component of a machine.
+/// Returns a different seed for each component of a machine.
 constexpr std::uint64_t fault_seed(std::uint64_t seed, FaultComponent component) noexcept {
   return seed * kFaultComponents + static_cast<std::uint64_t>(component);
 }
 
-/// Random numbers of a fault.
+/// The source of random numbers of a fault.
 class FaultRandom {
  public:
   void seed(std::uint64_t seed) noexcept { engine_.seed(seed); }
 
-  /// 0 ≤ x < 1
+  /// Returns a number x with 0 ≤ x < 1.
   double unit() noexcept { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
-  /// −bound ≤ x < bound
+  /// Returns a number x with −bound ≤ x < bound.
   double within(double bound) noexcept { return (2 * unit() - 1) * bound; }
 
  private:
@@ -47,21 +49,21 @@ class FaultRandom {
 };
 
 enum class Emission {
-  kValue,    ///< this value comes out
-  kNothing,  ///< no new value; of a slow output `value` holds the last one, for a reader that samples a register
+  kValue,    ///< the component outputs this value
+  kNothing,  ///< no new output; with kSlow `value` is the last output, for a reader that samples a register
 };
 
 template <class Value>
 class FaultyOutput {
  public:
-  /// `seed`: another one for each component, or they all fail in step.
+  /// `seed` must differ between components, otherwise their faults have the same random numbers.
   explicit FaultyOutput(std::uint64_t seed) noexcept : seed_(seed) {}
 
-  /// Healthy, as new.
+  /// Makes the output healthy, as after construction.
   void reset() noexcept { kind_ = FaultKind::kOk; }
 
-  /// Once per cycle. `value`: the healthy one goes in, what comes out of the component takes its place.
-  /// `distort(kind, value, random)` makes a value garbage or wrong. An unknown kind is kOff.
+  /// Is called once per cycle and replaces the healthy `value` by the component's output. `distort(kind, value,
+  /// random)` makes a value garbage or wrong. An unknown kind counts as kOff.
   template <class Distort>
   Emission step(FaultKind kind, std::uint64_t cycle, Value& value, Distort distort) noexcept {
     if (kind != kind_) begin(kind, cycle, value);
@@ -89,7 +91,7 @@ class FaultyOutput {
     return Emission::kNothing;
   }
 
-  /// The value of the cycle in which the fault began.
+  /// Returns the value of the cycle in which the fault began.
   const Value& held() const noexcept { return held_; }
 
  private:
@@ -98,7 +100,9 @@ class FaultyOutput {
     if (kind == FaultKind::kOk) return;
     held_ = value;
     if (kind == FaultKind::kDelayed) delay_.fill(value);
-    random_.seed(seed_ ^ (cycle * 0x9E3779B97F4A7C15ULL));  // 2^64 / golden ratio: neighbours share no bits
+    random_.seed(
+        seed_ ^
+        (cycle * 0x9E3779B97F4A7C15ULL));  // 2^64 / golden ratio: seeds of neighbouring cycles differ in many bits
     fresh_cycle_ = cycle;
     on_ = true;
   }
@@ -116,8 +120,8 @@ class FaultyOutput {
 
   std::uint64_t seed_;
   FaultKind kind_ = FaultKind::kOk;
-  std::uint64_t fresh_cycle_ = 0;  ///< of the last new value, kSlow
-  bool on_ = true;                 ///< kIntermittent
+  std::uint64_t fresh_cycle_ = 0;  ///< cycle of the last new value, for kSlow
+  bool on_ = true;                 ///< the output is on, for kIntermittent
   Value held_{};
   DelayLine<Value, kFaultCycles> delay_{kFaultCycles};
   FaultRandom random_;

@@ -13,7 +13,7 @@ double garbage(FaultRandom& random) noexcept {
   return random.within(kGarbage);
 }
 
-/// 0 … count − 1
+/// Returns a random number of 0 … count − 1.
 std::uint64_t pick(FaultRandom& random, double count) noexcept {
   return static_cast<std::uint64_t>(random.unit() * count);
 }

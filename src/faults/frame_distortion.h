@@ -2,13 +2,12 @@
 /// Corrupts the output frames of a node for the injected faults kGarbage and kWrong (signals/injected_fault.h).
 ///
 ///              kGarbage                                          kWrong
-///   state      every number of pose, twist and bias              the motion mirrored: x, y, speeds, with their sign
-///   command    every number of every joint, and its mode         every effort, speed and angle with the other sign
-///   permit     an action, a state and causes at random           drives where it should brake, brakes where it
-///                                                                should drive
+///   state      every number of pose, twist and bias              x, y and speeds with the opposite sign
+///   command    every number and the mode of every joint          every effort, speed and angle with the opposite sign
+///   permit     a random action, state and causes                 drives instead of braking, brakes instead of driving
 ///
-/// A garbage number is uniform within ±kGarbage, one in eight NaN, one in eight infinite. What is wrong is finite and
-/// plausible, and its flags say that all is well. Heads are the caller's.
+/// A garbage number is uniform within ±kGarbage; one in eight is NaN, one in eight infinite. A wrong frame is finite
+/// and plausible, and its flags are those of a healthy one. The caller fills in the heads.
 
 #include "faults/faulty_output.h"
 #include "signals/command_frame.h"

@@ -1,15 +1,15 @@
 #pragma once
-/// The output of a node while a fault is injected into it (SensorFrame::injected): the frame that ClosedLoop leaves in
-/// the node's channel.
+/// NodeFaults replaces the output of a node while a fault is injected into it (SensorFrame::injected). ClosedLoop
+/// leaves the replacement in the node's channel.
 ///
-///   off, slow, intermittent   where there is no output, a token: cycle k has passed here, without a frame
-///   stuck, delayed            old content under the head of this cycle, so its own cycle numbers (a permit's expiry, a
-///                             command's state_cycle) are old, too
+///   off, slow, intermittent   a token in cycles without output: cycle k has passed here without a frame
+///   stuck, delayed            old content under the head of this cycle; its own cycle numbers (a permit's expiry, a
+///                             command's state_cycle) are also old
 ///   garbage                   frame_distortion.h; one frame in four with a wrong checksum
 ///   wrong                     frame_distortion.h
 ///
-/// Only the output fails: the node continues to compute. A new run begins without the memory of the last one: a fault
-/// that is there in its first cycle begins in that cycle.
+/// Only the output fails; the node continues to compute. A new run begins without the state of the last one: a fault
+/// that is present in its first cycle begins in that cycle.
 
 #include <cstdint>
 
@@ -22,15 +22,16 @@
 
 namespace robot_control {
 
-/// `Row` is the node's row of the trace, and `kFrame` its member that holds the published frame.
+/// `Row` is the node's row of the trace, `kFrame` the row's member with the published frame.
 template <class Frame, class Row, Frame Row::*kFrame>
 class NodeFaults {
  public:
   NodeFaults(FaultComponent component, FrameWriter<Frame> channel) noexcept
       : component_(component), channel_(channel), output_(fault_seed(0, component)) {}
 
-  /// Called after the node has published the frame in `row`, computed from `sensors`, and before another node reads it.
-  /// Replaces the frame in the channel where a fault demands it, and returns the row with what the channel now holds.
+  /// Is called after the node has published the frame in `row`, computed from `sensors`, and before another node reads
+  /// it. If there is a fault, it replaces the frame in the channel. It returns the row with the frame that the channel
+  /// now holds.
   const Row* replace(const SensorFrame& sensors, const Row& row) noexcept {
     const FrameHead& published = (row.*kFrame).head;
     const FrameHead head{.run = published.run, .cycle = published.cycle, .stamp_ns = published.stamp_ns};
@@ -65,7 +66,7 @@ class NodeFaults {
   FrameWriter<Frame> channel_;
   std::uint64_t run_ = 0;
   FaultyOutput<Frame> output_;
-  Row row_;  ///< of the last cycle with a fault
+  Row row_;  ///< row of the last cycle with a fault
 };
 
 using EstimatorFaults = NodeFaults<StateFrame, EstimatorTrace, &EstimatorTrace::state>;

@@ -23,7 +23,8 @@ bool futex_wait(const std::atomic<std::uint32_t>& word, std::uint32_t expected, 
   const std::int64_t deadline_ns = timeout_ns < 0 ? 0 : monotonic_ns() + timeout_ns;
   const timespec deadline = to_timespec(deadline_ns);
   do {
-    // The bitset form takes an absolute CLOCK_MONOTONIC time. Not private: the word lies in shared memory.
+    // FUTEX_WAIT_BITSET takes an absolute CLOCK_MONOTONIC time. The futex is not private, because the word is in shared
+    // memory.
     const long result = syscall(SYS_futex, reinterpret_cast<const std::uint32_t*>(&word), FUTEX_WAIT_BITSET, expected,
                                 timeout_ns < 0 ? nullptr : &deadline, nullptr, FUTEX_BITSET_MATCH_ANY);
     if (word.load(std::memory_order_acquire) != expected) return true;

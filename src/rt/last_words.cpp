@@ -31,7 +31,7 @@ constexpr Death kDeaths[] = {
     {SIGABRT, "SIGABRT", "it gave up, the message before says why", kBug},
 };
 
-/// What does not fit is cut off.
+/// A Text holds at most Size bytes; the rest is cut.
 template <std::size_t Size>
 class Text {
  public:
@@ -53,13 +53,13 @@ class Text {
   std::array<char, Size> memory_{};
 };
 
-// Complete before the handlers stand, and never changed afterwards.
+// These texts are complete before the handlers are installed, and never change afterwards.
 Text<kMaxName> node_name;
 Text<kMaxConsequence> consequence_of_death;
 
 std::atomic<bool> dying{false};
 
-/// A reader that has stopped must not keep a dead process alive.
+/// Writes the line if stderr accepts it at once: a reader that has stopped must not keep the process alive.
 void say(std::string_view line) noexcept {
   pollfd ready{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
   if (poll(&ready, 1, 0) != 1 || (ready.revents & POLLOUT) == 0) return;
@@ -87,7 +87,7 @@ void speak(const Death& death, const siginfo_t& info) noexcept {
   say(line.view());
 }
 
-/// The default action, with the same cause, as soon as the handler returns to where the fault was.
+/// Repeats the signal with the default action and the same cause; it is delivered when the handler returns.
 void die_of(int signal, siginfo_t& info) noexcept {
   struct sigaction action {};
   action.sa_handler = SIG_DFL;
@@ -96,7 +96,7 @@ void die_of(int signal, siginfo_t& info) noexcept {
 }
 
 extern "C" void handle_last_words(int signal, siginfo_t* info, void* /*context*/) {
-  // A second thread that dies meanwhile would cut the first one short.
+  // A second failing thread waits here: its end would interrupt the report of the first one.
   while (dying.exchange(true)) pause();
   for (const Death& death : kDeaths) {
     if (death.signal == signal) speak(death, *info);

@@ -1,21 +1,20 @@
 #pragma once
-/// The latest frames of one channel: one writer, any number of readers in any process.
+/// LatestFrames holds the latest frames of one channel, with one writer and any number of readers in any process.
 ///
-/// Eight slots; the frame of cycle c lies in slot c mod 8. The writer is wait-free, a reader copies and
-/// retries at most kReadTries times. Each slot is a sequence lock whose words are atomics: the writer
-/// stores an odd version, then every word with release, then the even version; a reader that loads one
-/// new word with acquire therefore sees the odd version afterwards and discards its copy. No fence is
-/// needed (H.-J. Boehm, "Can seqlocks get along with programming language memory models?", MSPC 2012,
-/// section 4), and on x86-64 every access is a plain move.
+/// There are eight slots; the frame of cycle c is in slot c mod 8. The writer is wait-free, a reader copies and retries
+/// at most kReadTries times. Each slot is a sequence lock whose words are atomics. The writer stores an odd version,
+/// then every word with release, then the even version. A reader that loads one new word with acquire therefore sees
+/// the odd version afterwards and discards its copy. No fence is needed (H.-J. Boehm, "Can seqlocks get along with
+/// programming language memory models?", MSPC 2012, section 4). On x86-64 every access is a plain move.
 ///
-/// What holds, on any machine that C++ runs on: a copy that passes is one publication, whole. `newest` never
-/// goes back. Versions are stored with release and loaded with acquire, so that a try that fails knows the
-/// publication that was in its way: where consecutive cycles are published, `newest` misses only if kReadTries
-/// publications overtook it. tests/rt/latest_frames_model_test.cpp visits every execution of a small model of
-/// this code that the memory model of C++ allows, and shows that no order and no check can be left out.
+/// The memory model of C++ guarantees: an accepted copy is one complete publication, and `newest` never returns an
+/// older frame than before. Versions are stored with release and loaded with acquire, so that after a failed try the
+/// next one sees the publication that disturbed it. With consecutive cycles `newest` therefore misses only if
+/// kReadTries publications overtook it. The test tests/rt/latest_frames_model_test.cpp visits every execution that C++
+/// allows of a small model of this code. It shows that no memory order and no check can be left out.
 ///
-/// `sequence` counts publications over all writers' lives and is the futex word that readers wait on.
-/// Readers need only read access to the memory. After Lookup::kMissing the content of `out` has no meaning.
+/// `sequence` counts the publications of all successive writers, and readers wait on it as futex word. Readers need
+/// only read access to the memory. After Lookup::kMissing the content of `out` has no meaning.
 
 #include <array>
 #include <atomic>
@@ -34,20 +33,20 @@ inline constexpr int kReadTries = 4;
 inline constexpr std::uint64_t kChannelMagic = 0x6c74635f746f6272ULL;  // "rbot_ctl"
 inline constexpr std::uint64_t kLayoutVersion = 4;
 
-/// First bytes of every shared object: of a LatestFrames as of a Ring. `magic` to `retired` keep their places
-/// in every layout version, so that a process can judge and retire an object that it cannot read.
+/// The first bytes of every shared object, LatestFrames or Ring. `magic` to `retired` have the same place in every
+/// layout version, so that a process can check and retire an object that it cannot read.
 struct ChannelHead {
   std::atomic<std::uint64_t> magic;                 ///< kChannelMagic, stored last when the object is made
   std::uint64_t layout_version;                     ///< kLayoutVersion
   std::uint64_t frame_bytes;                        ///< sizeof(Frame)
-  std::uint64_t slots;                              ///< number of frames that fit
-  std::atomic<std::uint64_t> retired;               ///< 1: the name now belongs to another object, map again
+  std::uint64_t slots;                              ///< number of slots for frames
+  std::atomic<std::uint64_t> retired;               ///< 1: the name belongs to another object now, which must be mapped
   std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
   std::atomic<std::uint64_t> robot_hash;            ///< RobotModel::hash of the writer's robot; sensors channel only
-  std::array<std::atomic<char>, 256> robot_source;  ///< where that robot was read, zero-terminated
+  std::array<std::atomic<char>, 256> robot_source;  ///< file of that robot, zero-terminated
 };
 
-/// Atomic and SlotCount differ from their defaults in the model of the tests alone.
+/// Atomic and SlotCount have other values than their defaults only in the tests' model.
 template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
 struct LatestFrames {
   struct Slot {
@@ -61,7 +60,7 @@ struct LatestFrames {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// Which waiting threads a publication wakes. A loop in one thread, on private memory, saves the system call.
+/// The waiting threads that a publication wakes. A loop in one thread on private memory avoids the system call.
 enum class Wake { kReaders, kNobody };
 
 template <class Frame, template <class> class Atomic = std::atomic, std::size_t SlotCount = kFrameSlots>
@@ -69,29 +68,29 @@ class FrameWriter {
  public:
   using Frames = LatestFrames<Frame, Atomic, SlotCount>;
 
-  /// `memory`: zeroed, or left by an earlier writer of the same layout. Not owned.
+  /// `memory` is zeroed or was left by an earlier writer of the same layout. It is not owned.
   explicit FrameWriter(Frames* memory = nullptr, Wake wake = Wake::kReaders) noexcept : memory_(memory), wake_(wake) {}
 
-  /// Seals the frame, stores it and wakes all readers. One futex call, nothing else.
+  /// Seals the frame, stores it and wakes all readers with one futex call.
   void publish(Frame& frame) noexcept {
     seal(frame);
     publish_sealed(frame);
   }
 
-  /// The same of a frame that is sealed already.
+  /// Publishes a frame that is already sealed.
   void publish_sealed(const Frame& frame) noexcept {
     store(frame);
     wake();
   }
 
-  /// Publishes that cycle k has passed here without a frame: a token with the run, cycle and stamp of `head`.
+  /// Publishes a token with run, cycle and stamp of `head`: this cycle has passed without a frame.
   void publish_token(const FrameHead& head) noexcept {
     Frame token{};
     token.head = {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns, .kind = FrameKind::kToken};
     publish(token);
   }
 
-  /// Stores without sealing or waking: for tests that plant a broken frame.
+  /// Stores a frame without sealing it or waking readers, for tests with a broken frame.
   void store(const Frame& frame) noexcept {
     const std::size_t index = frame.head.cycle % SlotCount;
     auto& slot = memory_->slots[index];
@@ -127,10 +126,10 @@ class FrameReader {
     return *this;
   }
 
-  /// Ordinary thread: the channel's object was replaced. The old mapping must stay valid.
+  /// Maps the object that replaced the channel's; an ordinary thread calls it. The old mapping must stay valid.
   void remap(const Frames* memory) noexcept { memory_.store(memory, std::memory_order_release); }
 
-  /// The frame published last.
+  /// Reads the last published frame.
   Lookup newest(Frame& out) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
@@ -138,16 +137,15 @@ class FrameReader {
       const std::uint64_t newest = memory->newest.load(std::memory_order_acquire);
       if (newest == 0 || newest > SlotCount) return Lookup::kMissing;
       if (!copy(memory->slots[newest - 1], out)) continue;
-      // A reader that slept in between holds the slot's next frame already: taking it, and then the one
-      // before it, would turn time back.
+      // A reader that slept meanwhile has copied the slot's next frame. A later call could then return the frame before
+      // it, and time would go backwards.
       if (memory->newest.load(std::memory_order_relaxed) == newest) return judge(out);
     }
     return Lookup::kMissing;
   }
 
-  /// What a writer that ended left behind: the frame of the latest stamp among all that are whole, whatever was
-  /// published or torn after it. kCorrupt: something was published, and nothing is whole. Not for the loop: reads every
-  /// slot.
+  /// Reads the complete frame with the latest stamp that an ended writer left, also if a torn frame follows it. Returns
+  /// kCorrupt if frames were published but none is complete. It reads every slot and is not meant for the loop.
   Lookup last_whole(Frame& out) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
@@ -165,7 +163,7 @@ class FrameReader {
     return written ? Lookup::kCorrupt : Lookup::kMissing;
   }
 
-  /// The frame of this run and cycle.
+  /// Reads the frame of this run and cycle.
   Lookup at(std::uint64_t run, std::uint64_t cycle, Frame& out) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);
     if (memory == nullptr) return Lookup::kMissing;
@@ -178,8 +176,8 @@ class FrameReader {
     return Lookup::kMissing;
   }
 
-  /// The newest frame of cycles first … last of this run (both included), searched downwards, no farther than
-  /// frames are kept. A corrupt frame ends the search. A token counts as missing.
+  /// Reads the newest frame of cycles first … last of this run (both included). It searches downwards as far as frames
+  /// are kept. A corrupt frame ends the search. A token counts as missing.
   Lookup newest_within(std::uint64_t run, std::uint64_t first, std::uint64_t last, Frame& out) const noexcept {
     std::uint64_t cycle = last;
     for (std::size_t looks = 0; looks < SlotCount && cycle >= first && cycle <= last; ++looks, --cycle) {
@@ -194,9 +192,9 @@ class FrameReader {
     return memory == nullptr ? 0 : memory->sequence.load(std::memory_order_acquire);
   }
 
-  /// Waits until `sequence()` differs from `seen`, or the timeout (negative: none) has passed. True if it
-  /// differs, or if the channel was mapped or mapped again meanwhile: noticed within kRemapNs, also by a
-  /// thread that waits without a timeout. Take `seen` before looking for a frame, not after.
+  /// Waits until `sequence()` differs from `seen`, or the timeout (negative: none) has passed. Returns true if it
+  /// differs, or if the channel was mapped meanwhile. A mapping is noticed within kRemapNs, also without a timeout. The
+  /// caller reads `seen` before it looks up a frame, not after.
   bool wait(std::uint32_t seen, std::int64_t timeout_ns) const noexcept {
     const auto* memory = memory_.load(std::memory_order_acquire);
     for (std::int64_t left_ns = timeout_ns; left_ns != 0;) {
@@ -217,7 +215,7 @@ class FrameReader {
   const Frames* memory() const noexcept { return memory_.load(std::memory_order_acquire); }
 
  private:
-  /// False: `out` is not whole.
+  /// Returns false if `out` is not one complete publication.
   static bool copy(const typename Frames::Slot& slot, Frame& out) noexcept {
     const std::uint64_t before = slot.version.load(std::memory_order_acquire);
     if (before % 2 != 0) return false;
@@ -230,7 +228,7 @@ class FrameReader {
   }
 
   static Lookup judge(const Frame& frame) noexcept {
-    if (frame.head.run == 0) return Lookup::kMissing;  // a slot never written
+    if (frame.head.run == 0) return Lookup::kMissing;  // the slot was never written
     if (!intact(frame)) return Lookup::kCorrupt;
     if (frame.head.kind == FrameKind::kToken) return Lookup::kToken;
     return frame.head.kind == FrameKind::kFrame ? Lookup::kFrame : Lookup::kCorrupt;

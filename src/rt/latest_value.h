@@ -1,9 +1,9 @@
 #pragma once
-/// A latest value between two threads of one process: the inbox of a real-time thread.
+/// A LatestValue passes the latest value between two threads of one process; it is the inbox of a real-time thread.
 ///
-/// Same sequence lock as LatestFrames, one slot (tests/rt/latest_value_model_test.cpp). `store` must be serialised
-/// by the caller when more than one thread writes. `load` is bounded: it returns false, and leaves `out`, when a
-/// writer was in the way kTries times; the reader then keeps its old value and asks again in the next cycle.
+/// It is the sequence lock of LatestFrames with one slot (tests/rt/latest_value_model_test.cpp). If several threads
+/// write, the caller serialises `store`. `load` is bounded: if a writer disturbed it kTries times, it returns false and
+/// does not change `out`. The reader then keeps its old value and tries again in the next cycle.
 
 #include <array>
 #include <atomic>
@@ -32,7 +32,7 @@ class LatestValue {
     version_.store(version + 2, std::memory_order_release);
   }
 
-  /// Another number after every store, so that a reader need not load a value that has not changed.
+  /// Returns a number that every store changes, so that a reader need not load an unchanged value.
   std::uint64_t version() const noexcept { return version_.load(std::memory_order_relaxed); }
 
   bool load(Value& out) const noexcept {

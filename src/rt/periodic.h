@@ -1,5 +1,5 @@
 #pragma once
-/// The advancing absolute deadline of a loop on the wall clock; arithmetic only, the clock is an argument.
+/// Periodic computes the absolute deadlines of a loop on the wall clock. It never reads a clock: time is an argument.
 ///
 ///   for (std::int64_t k = 0;; ++k) {
 ///     sleep_until(schedule.deadline_ns());
@@ -8,12 +8,13 @@
 ///     schedule.end(monotonic_ns());
 ///   }
 ///
-/// deadline(k) = start + k·period + slipped. A sleep relative to the wake-up would add every latency to the
-/// period; this grid does not. A wake-up less than one period late keeps the grid. One that is a whole period
-/// or more late cannot be made good, and is not made good by a burst of ticks:
+///   deadline(k) = start + k·period + slipped
+///
+/// A sleep relative to the wake-up would add every latency to the period; this grid does not. A wake-up that is late by
+/// less than one period keeps the grid. After a longer delay the missed ticks are not made up by a burst of ticks:
 ///   kSlip  a simulated plant: time slips. The tick runs now, k stays consecutive, the grid moves by the
 ///          lateness, which is counted: slipped = now − deadline.
-///   kSkip  hardware: time passed without us. The grid stays, k jumps over the periods missed:
+///   kSkip  hardware: time has passed. The grid stays, k jumps over the missed periods:
 ///          missed = ⌊(now − deadline) / period⌋.
 
 #include <cstdint>
@@ -28,10 +29,10 @@ class Periodic {
   Periodic(std::int64_t start_ns, std::int64_t period_ns, WhenLate when_late = WhenLate::kSlip) noexcept
       : deadline_ns_(start_ns), period_ns_(period_ns), when_late_(when_late) {}
 
-  /// Of the tick that comes next or, between `begin` and `end`, of the tick that runs.
+  /// Returns the deadline of the next tick; between `begin` and `end`, that of the running tick.
   std::int64_t deadline_ns() const noexcept { return deadline_ns_; }
 
-  /// The tick begins. Returns how many periods were missed before it: 0 whenever time slips.
+  /// Begins a tick at `now_ns`. Returns how many periods were missed before it; with kSlip always 0.
   std::int64_t begin(std::int64_t now_ns) noexcept {
     const std::int64_t late_ns = now_ns > deadline_ns_ ? now_ns - deadline_ns_ : 0;
     if (late_ns < period_ns_) return 0;
@@ -46,7 +47,7 @@ class Periodic {
     return periods;
   }
 
-  /// The tick ended; the deadline advances. False: that has passed already, an overrun.
+  /// Ends the tick at `now_ns` and advances the deadline. Returns false if that has passed already (overrun).
   bool end(std::int64_t now_ns) noexcept {
     deadline_ns_ += period_ns_;
     if (now_ns <= deadline_ns_) return true;
@@ -54,8 +55,8 @@ class Periodic {
     return false;
   }
 
-  std::int64_t slipped_ns() const noexcept { return slipped_ns_; }  ///< in all
-  std::int64_t missed() const noexcept { return missed_; }          ///< periods, in all
+  std::int64_t slipped_ns() const noexcept { return slipped_ns_; }  ///< total
+  std::int64_t missed() const noexcept { return missed_; }          ///< periods, total
   std::uint64_t overruns() const noexcept { return overruns_; }
 
  private:

@@ -24,7 +24,7 @@ namespace robot_control {
 namespace {
 
 constexpr std::size_t kOrdinaryStackBytes = 1024 * 1024;
-constexpr std::size_t kGuardBytes = 64 * 1024;  // an overflow ends in SIGSEGV, not in a neighbour's memory
+constexpr std::size_t kGuardBytes = 64 * 1024;  // an overflow causes SIGSEGV instead of overwriting other memory
 
 std::string user_name() {
   const passwd* entry = getpwuid(geteuid());
@@ -41,7 +41,7 @@ bool has_capability(int capability) {
   return false;
 }
 
-/// Raises the soft limit to what may be had without asking; returns it.
+/// Raises the soft limit as far as the hard limit permits, and returns it.
 rlim_t raise_limit(__rlimit_resource resource, rlim_t wanted) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0) return 0;
@@ -118,7 +118,7 @@ RealtimeReport prepare_process(RealtimePolicy policy) {
 }
 
 struct RealtimeThread::Thread {
-  /// Stack of the thread: guard below, pages populated.
+  /// The stack of the thread, with a guard below it and populated pages.
   class Stack {
    public:
     Stack() {
@@ -126,7 +126,7 @@ struct RealtimeThread::Thread {
       memory_ = mmap(nullptr, kGuardBytes + RealtimeThread::kStackBytes, PROT_READ | PROT_WRITE, flags, -1, 0);
       if (memory_ == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "mmap of the loop's stack");
       mprotect(memory_, kGuardBytes, PROT_NONE);
-      mlock(bottom(), RealtimeThread::kStackBytes);  // fits also where the whole process does not
+      mlock(bottom(), RealtimeThread::kStackBytes);  // succeeds also if the limit is too small for the whole process
     }
     Stack(const Stack&) = delete;
     Stack& operator=(const Stack&) = delete;

@@ -1,12 +1,12 @@
 #pragma once
-/// A ring of rows from one writer to one reader in another process, losses counted.
+/// A Ring passes rows from one writer to one reader in another process and counts lost rows.
 ///
-/// The ring belongs to the writer, the read position to the reader (RingPositions, an object of its own, so
-/// that neither needs write access to the other's memory). Each slot is a sequence lock as in LatestFrames, except
-/// that `written` alone publishes a row: its version shows whether the row is still there.
-/// tests/rt/ring_model_test.cpp visits every execution of a small model of this code.
-/// When the ring is full the writer either waits (lockstep, a reader present) or drops the new row and counts
-/// it; with no reader present it overwrites the oldest rows.
+/// The ring belongs to the writer, the read position to the reader. The positions are a separate object
+/// (RingPositions), so that neither process needs write access to the other's memory. Each slot is a sequence lock as
+/// in LatestFrames. However, only `written` publishes a row; the slot's version shows whether the row has been
+/// overwritten. The test tests/rt/ring_model_test.cpp visits every execution of a small model of this code. In a full
+/// ring with a reader the writer waits (lockstep) or drops the new row and counts it. Without a reader it overwrites
+/// the oldest rows.
 
 #include <array>
 #include <atomic>
@@ -26,13 +26,13 @@ inline constexpr std::size_t kTraceRings = 4;
 /// Index into RingPositions::read.
 enum class TraceRing : std::size_t { kDriver = 0, kEstimator = 1, kController = 2, kMonitor = 3 };
 
-/// Rows consumed so far, per ring; written by the reader (telemetry).
+/// The number of rows read so far from each ring; written by the reader (telemetry).
 struct RingPositions {
   ChannelHead head;
   alignas(64) std::array<std::atomic<std::uint64_t>, kTraceRings> read;
 };
 
-/// Atomic and SlotCount differ from their defaults in the model of the tests alone.
+/// Atomic and SlotCount have other values than their defaults only in the tests' model.
 template <class Row, template <class> class Atomic = std::atomic, std::size_t SlotCount = kRingRows>
 struct Ring {
   static_assert(std::is_trivially_copyable_v<Row> && sizeof(Row) % 8 == 0);
@@ -42,9 +42,9 @@ struct Ring {
     std::array<Atomic<std::uint64_t>, kWords> words;
   };
   ChannelHead head;
-  alignas(64) Atomic<std::uint64_t> written;  ///< rows ever appended
-  Atomic<std::uint64_t> dropped;              ///< rows ever dropped by the writer
-  Atomic<std::uint64_t> began;                ///< rows appended before its present writer
+  alignas(64) Atomic<std::uint64_t> written;  ///< rows appended by all writers
+  Atomic<std::uint64_t> dropped;              ///< rows dropped by all writers
+  Atomic<std::uint64_t> began;                ///< rows appended before the present writer began
   alignas(64) std::array<Slot, SlotCount> slots;
 };
 
@@ -55,12 +55,13 @@ class RingWriter {
 
   explicit RingWriter(Rows* memory = nullptr) noexcept : memory_(memory) {}
 
-  /// What is there is of an earlier writer.
+  /// Marks all rows in the ring as those of an earlier writer.
   void begin() noexcept {
     memory_->began.store(memory_->written.load(std::memory_order_relaxed), std::memory_order_release);
   }
 
-  /// `read`: the reader's position, null when no reader is present. False: dropped and counted.
+  /// Appends a row. `read` is the reader's position, or null if there is no reader. Returns false if the row was
+  /// dropped and counted.
   bool append(const Row& row, const Atomic<std::uint64_t>* read) noexcept {
     const std::uint64_t position = memory_->written.load(std::memory_order_relaxed);
     if (full_at(position, read)) {
@@ -76,7 +77,7 @@ class RingWriter {
     return true;
   }
 
-  /// True when `append` would drop.
+  /// Returns whether `append` would drop the row.
   bool full(const Atomic<std::uint64_t>* read) const noexcept {
     return full_at(memory_->written.load(std::memory_order_relaxed), read);
   }
@@ -100,16 +101,16 @@ class RingReader {
   explicit RingReader(const Rows* memory) noexcept
       : memory_(memory), position_(memory->written.load(std::memory_order_acquire)) {}
 
-  /// Starts at `position`: 0 for every row that is still there, or where an earlier reader ended.
+  /// Starts at `position`: 0 for every row that is still in the ring, or the position at which an earlier reader ended.
   RingReader(const Rows* memory, std::uint64_t position) noexcept : memory_(memory), position_(position) {}
 
-  /// Takes the next row; false when there is none yet, or when the writer was in the way kReadTries times: ask
-  /// again later. Rows overwritten meanwhile are skipped and counted.
+  /// Reads the next row. Returns false if there is none yet, or if the writer disturbed it kReadTries times; the caller
+  /// tries again later. Rows that were overwritten meanwhile are skipped and counted.
   bool take(Row& row) noexcept {
     for (int tries = 0; tries < kReadTries; ++tries) {
       const std::uint64_t written = memory_->written.load(std::memory_order_acquire);
       if (position_ >= written) {
-        position_ = written;  // an earlier reader's position in an object that was created again since
+        position_ = written;  // the position is that of an earlier reader, and the ring was created again since
         return false;
       }
       if (written - position_ > SlotCount) {
@@ -138,7 +139,8 @@ class RingReader {
   std::uint64_t overwritten() const noexcept { return overwritten_; }
   std::uint64_t dropped() const noexcept { return memory_->dropped.load(std::memory_order_relaxed); }
 
-  /// Position of the first row of the present writer, once that has appended one; before, that of its predecessor.
+  /// Returns the position of the present writer's first row. Before it has appended a row, this is the position of its
+  /// predecessor.
   std::uint64_t began() const noexcept { return memory_->began.load(std::memory_order_acquire); }
 
  private:

@@ -26,7 +26,7 @@ struct flock whole_object(short type) noexcept {
   struct flock range {};
   range.l_type = type;
   range.l_whence = SEEK_SET;
-  return range;  // start 0, length 0: up to the end, wherever that will be
+  return range;  // start 0 and length 0 mean the whole object, also after it grows
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ SharedMemory::~SharedMemory() {
 std::optional<SharedMemory> SharedMemory::open(const std::string& name, Access access) {
   const int mode = access == Access::kReadOnly ? O_RDONLY : O_RDWR;
   const int descriptor =
-      shm_open(name.c_str(), mode | O_NONBLOCK, 0);  // opening a pipe of this name would block without end
+      shm_open(name.c_str(), mode | O_NONBLOCK, 0);  // otherwise opening a pipe of this name would block for ever
   if (descriptor >= 0) return SharedMemory(name, descriptor, access);
   if (errno != ENOENT) fail(errno, "shm_open", name);
   return std::nullopt;
@@ -77,7 +77,7 @@ std::optional<SharedMemory> SharedMemory::create(const std::string& name) {
     return std::nullopt;
   }
   SharedMemory made(name, descriptor, Access::kReadWrite);
-  if (fchmod(descriptor, S_IRUSR | S_IWUSR) != 0) fail(errno, "fchmod", name);  // a strict umask took bits away
+  if (fchmod(descriptor, S_IRUSR | S_IWUSR) != 0) fail(errno, "fchmod", name);  // a strict umask may have removed bits
   return made;
 }
 
@@ -118,7 +118,7 @@ bool SharedMemory::lock() noexcept {
 }
 
 bool SharedMemory::locked_elsewhere() const noexcept {
-  struct flock range = whole_object(F_RDLCK);  // in conflict with a write lock, and with nothing else
+  struct flock range = whole_object(F_RDLCK);  // conflicts only with a write lock
   return fcntl(descriptor_, F_OFD_GETLK, &range) == 0 && range.l_type != F_UNLCK;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
-/// POSIX shared memory: the object behind a name, its lock, and a mapping of it.
+/// SharedMemory is a POSIX shared-memory object with its name and its lock; MemoryMapping is a mapping of it.
 ///
-/// A name can be unlinked and given to a new object while the old one is still open: after locking an object,
-/// call `still_named()`, and start over if it returns false.
-/// Failures of the system calls are thrown as std::system_error that names the object.
+/// A name can be unlinked and given to a new object while the old one is still open. After locking an object the caller
+/// therefore checks `still_named()` and starts over if it returns false. Failures of system calls are thrown as
+/// std::system_error, which names the object.
 
 #include <cstddef>
 #include <optional>
@@ -13,7 +13,7 @@ namespace robot_control {
 
 enum class Access { kReadOnly, kReadWrite };
 
-/// Memory that stays mapped, and valid, for the life of this value, whatever becomes of the object's name.
+/// Memory that stays mapped and valid while this value lives, also after the object's name is removed.
 class MemoryMapping {
  public:
   MemoryMapping() noexcept = default;
@@ -31,41 +31,43 @@ class MemoryMapping {
 
 class SharedMemory {
  public:
-  /// The object of this name ("/…"); empty where there is none. Does not follow symbolic links and does not block.
+  /// Opens the object of this name ("/…"); returns nothing if there is none. It does not follow symbolic links and does
+  /// not block.
   static std::optional<SharedMemory> open(const std::string& name, Access access);
 
-  /// A new object of no size and mode 0600; empty where the name is taken.
+  /// Creates an object of size 0 and mode 0600; returns nothing if the name is in use.
   static std::optional<SharedMemory> create(const std::string& name);
 
   SharedMemory(SharedMemory&& other) noexcept;
   SharedMemory& operator=(SharedMemory&& other) noexcept;
   ~SharedMemory();
 
-  /// A plain object that belongs to this process's effective user, and is accessible to that user only (an access list
-  /// that lets in others shows in the mode's group bits).
+  /// Returns whether the object is a regular one that belongs to this process's effective user, and only that user has
+  /// access. An access list for other users would appear in the mode's group bits.
   bool is_private() const;
 
   std::size_t bytes() const;
 
-  /// Sizes the object and reserves its pages: a later write cannot fail for want of memory.
+  /// Sets the size of the object and reserves its pages, so that no later write fails because memory ran out.
   void reserve(std::size_t bytes);
 
-  /// Maps the first `bytes`, page tables filled. Refused (std::system_error, EINVAL) where the object is
-  /// shorter: a touch behind its end would be a SIGBUS.
+  /// Maps the first `bytes` and fills the page tables. Throws std::system_error (EINVAL) if the object is shorter,
+  /// because an access behind its end would cause SIGBUS.
   MemoryMapping map(std::size_t bytes) const;
 
-  /// Copies out of and into the object without mapping it; false where the object ends before.
+  /// Copy from and to the object without mapping it. Return false if the object ends before.
   bool read_at(std::size_t offset, void* to, std::size_t bytes) const noexcept;
   bool write_at(std::size_t offset, const void* from, std::size_t bytes) const noexcept;
 
-  /// The open-file-description write lock on the whole object: held until this value and every copy of the
-  /// descriptor in forked children are gone, so it ends with the process however that ends. False: taken.
+  /// Takes the open-file-description write lock on the whole object. The lock is held until this value and all copies
+  /// of the descriptor in forked children are closed. The end of the process always releases it. Returns false if
+  /// another one holds the lock.
   bool lock() noexcept;
 
-  /// True while another open file description holds it. A read-only descriptor may ask.
+  /// Returns whether another open file description holds the lock. A read-only descriptor suffices.
   bool locked_elsewhere() const noexcept;
 
-  /// The name still belongs to this object.
+  /// Returns whether the name still belongs to this object.
   bool still_named() const;
   bool same_object(const SharedMemory& other) const;
 

@@ -1,11 +1,11 @@
 #pragma once
-/// For an ordinary thread that shall not wait for other programs, but has no part in the loop.
+/// This function is for an ordinary thread that must not wait for other programs, but is no part of the loop.
 
 namespace robot_control {
 
-/// The calling thread comes before all ordinary threads of the machine and after every RealtimeThread: SCHED_FIFO at
-/// its lowest priority. Threads that it makes are ordinary. False: that is not granted (docs/troubleshooting.md), it
-/// stays as it was.
+/// Gives the calling thread the lowest priority of SCHED_FIFO: before all ordinary threads of the machine, after every
+/// RealtimeThread. Threads that it starts are ordinary. Returns false and changes nothing if that is not granted
+/// (docs/troubleshooting.md).
 bool precede_ordinary_threads() noexcept;
 
 }  // namespace robot_control

@@ -20,9 +20,10 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kDriverInstance = 1;  // any number but 0, as for a run: no other process uses these channels
+constexpr std::uint64_t kDriverInstance =
+    1;  // any number except 0; the same holds for a run: no other process uses these channels
 
-/// ClosedLoop is the only sender of commands: each run begins with a zero request.
+/// Reads the command script. ClosedLoop is the only sender of commands, so each run begins with a zero request.
 CommandScript script_of(const Parameters& parameters) {
   CommandScript script = load_script(parameters.loop.command_script);
   script.begin_with_zero();
@@ -38,7 +39,7 @@ RobotModel load_robot(const Parameters& parameters) {
 }  // namespace
 
 struct ClosedLoop::Parts {
-  /// A channel in private memory, with its two ends.
+  /// A channel in private memory with its writer and its reader.
   template <class Frame>
   struct Channel {
     std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
@@ -113,7 +114,7 @@ void ClosedLoop::heartbeat() noexcept {
 
 void ClosedLoop::step() noexcept {
   Parts& parts = *parts_;
-  if (cycle() > 0) parts.hand_over();  // what arrives before a run begins is dropped by every node
+  if (cycle() > 0) parts.hand_over();  // every node drops inputs that arrive before a run begins
   parts.driver.step();
   const SensorFrame& sensors = parts.driver.trace().sensors;
   JoinedRow::Laws laws;

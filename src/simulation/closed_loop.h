@@ -1,9 +1,9 @@
 #pragma once
-/// The closed loop in one process, in virtual time: the very same cycles as the four nodes run, on channels
-/// in private memory. For tests, Python and campaigns.
+/// A ClosedLoop runs the loop in one process and in virtual time, for tests, Python and campaigns. It runs the same
+/// cycles as the four nodes, on channels in private memory.
 ///
-/// One `step` is: driver tick k, estimator k, controller k, monitor k. Same parameters, seed and inputs give
-/// the same bits, and the same bits as the four nodes in lockstep.
+/// One `step` is driver tick k, estimator k, controller k, monitor k. The same parameters, seed and inputs give the
+/// same bits; these are also those of the four nodes in lockstep.
 
 #include <array>
 #include <cstdint>
@@ -21,54 +21,54 @@ namespace robot_control {
 
 class ClosedLoop {
  public:
-  /// Reads the robot named by the parameters and sets a MuJoCo plant down in the scene. Throws RobotError,
-  /// DriverError, ParameterError. Telemetry, clock and real-time parameters have no effect.
+  /// Reads the robot that the parameters name and places a MuJoCo plant in the scene. Throws RobotError, DriverError,
+  /// ParameterError. Telemetry, clock and real-time parameters have no effect.
   explicit ClosedLoop(const Parameters& parameters);
   ~ClosedLoop();
   ClosedLoop(ClosedLoop&&) noexcept;
   ClosedLoop& operator=(ClosedLoop&&) noexcept;
 
-  /// As if just received on cmd_vel: takes effect in the next step, in cycle 1 at the earliest (in cycle 0 the
-  /// nodes enter the run), and times out like cmd_vel.
+  /// Acts like a message received now on cmd_vel: it takes effect in the next step and times out like cmd_vel. The
+  /// earliest cycle is 1, because the nodes enter the run in cycle 0.
   void command(const Twist& twist) noexcept;
 
-  /// As if e_stop_trigger, e_stop_reset had been called, as if a heartbeat had arrived.
+  /// These act like calls of e_stop_trigger and e_stop_reset, and like a message on heartbeat.
   void e_stop() noexcept;
   void e_stop_reset() noexcept;
   void heartbeat() noexcept;
 
-  /// One cycle. Time stands still between two steps: that is this loop's pause.
+  /// Runs one cycle. Time does not pass between two steps.
   void step() noexcept;
 
-  /// As `~reset` of mujoco_plant: the robot returns to its initial pose, without injected faults, and a new run begins
-  /// at cycle 0. Estimator, controller and counters restart, commands received before are dropped, latched stops
-  /// stay. Apart from `run` and from such a stop its rows are those of a new ClosedLoop, bit for bit. Throws
-  /// DriverError.
+  /// Acts like `~reset` of mujoco_plant: the robot returns to its initial pose without injected faults, and a new run
+  /// begins at cycle 0. Estimator, controller and counters restart, earlier commands are dropped, latched stops stay.
+  /// Except for `run` and such a stop, its rows equal those of a new ClosedLoop bit for bit. Throws DriverError.
   void reset();
 
-  /// As `~set_parameter_map` of diff_drive_controller: a YAML map of its limits and gains, from the next step on, and
-  /// beyond `reset`. Throws ParameterError with every reason; then nothing has changed.
+  /// Acts like `~set_parameter_map` of diff_drive_controller: a YAML map of its limits and gains is in force from the
+  /// next step on, also after `reset`. Throws ParameterError with every problem and then changes nothing.
   void set_parameters(const std::string& request);
 
-  /// The machine, as by `~inject_fault`, or a node (faults/node_faults.h) fails so from the next step on; words of
-  /// names.h. Throws std::invalid_argument with the list where it does not know one.
+  /// Injects a fault from the next step on, into the machine as by `~inject_fault`, or into a node
+  /// (faults/node_faults.h). The file names.h has the words. Throws std::invalid_argument with the list of words if one
+  /// is unknown.
   void inject_fault(const std::string& component, const std::string& kind);
 
-  /// Cycle and time [s] of the sample that the next step takes.
+  /// Return cycle and time [s] of the sample in the next step.
   std::uint64_t cycle() const noexcept;
   double time() const noexcept;
 
-  /// What the four nodes published in the last step.
+  /// Returns the rows that the four nodes published in the last step.
   const JoinedRow& row() const noexcept;
 
-  /// The states of the laws before the last step, where they were copied; null otherwise. In the order of LawName.
+  /// Returns the states of the laws before the last step in the order of LawName; null for those that were not copied.
   std::array<const LawSnapshot*, kLaws> snapshots() const noexcept;
 
-  /// From the next step on, every row and snapshot goes there, too; null: nowhere. The one before is returned, not
-  /// closed.
+  /// Writes every row and snapshot to `log` from the next step on; to no log if it is null. Returns the previous log,
+  /// which is not closed.
   std::unique_ptr<RowLog> set_log(std::unique_ptr<RowLog> log);
 
-  /// Why the log has ended; empty: it has not.
+  /// Returns the reason why the log has ended; "" if it has not.
   const std::string& log_problem() const noexcept;
 
   const RobotModel& robot() const noexcept;
