@@ -25,12 +25,14 @@ py::dict connections(const BagReader& bag) {
   return all;
 }
 
-/// (connection, time of reception in ns, data) of the messages of chunk `number` that are of these connections.
+/// Returns (connection, time of reception in ns, data) for each message of chunk `number` on these connections.
 py::list messages(BagReader& bag, std::size_t number, const std::set<std::uint32_t>& wanted) {
   const BagChunk& chunk = bag.chunks().at(number);
   py::list all;
-  const auto there = [&](std::uint32_t connection) { return (chunk.connections >> (connection % 64U) & 1U) != 0; };
-  if (std::none_of(wanted.begin(), wanted.end(), there)) return all;
+  const auto holds_any_of = [&](std::uint32_t connection) {
+    return (chunk.connections >> (connection % 64U) & 1U) != 0;
+  };
+  if (std::none_of(wanted.begin(), wanted.end(), holds_any_of)) return all;
   bag.read(chunk, [&](const BagMessage& message) {
     if (wanted.contains(message.connection)) {
       all.append(py::make_tuple(message.connection, message.time_ns, py::bytes(message.data)));

@@ -1,5 +1,5 @@
 #pragma once
-/// BagReader for Python.
+/// This binds BagReader to Python.
 
 #include <pybind11/pybind11.h>
 

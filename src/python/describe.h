@@ -1,5 +1,5 @@
 #pragma once
-/// A RobotModel as plain Python values, for reports and pictures.
+/// describe returns a RobotModel as plain Python values, for reports and pictures.
 
 #include <pybind11/pybind11.h>
 
@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-/// SI units, base axes unless said otherwise:
+/// The values are in SI units and base axes unless another is named:
 ///   name source base_link mass yaw_inertia centre_of_gravity [x y z]
 ///   wheel_base wheel_base_multiplier effective_wheel_base
 ///   imu       {link, position, orientation [x y z w]}

@@ -1,5 +1,5 @@
 #pragma once
-/// The parameter file of the installed package, over which one of the user's is laid.
+/// This returns the path of the installed parameter file, over which the user's file is laid.
 
 #include <pybind11/pybind11.h>
 

@@ -21,10 +21,10 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-/// Path of a file, and what is laid over it.
+/// The path of a parameter file and the values that are laid over it.
 using Layers = std::pair<std::string, std::vector<std::pair<std::string, std::string>>>;
 
-/// Over those of the file `base`.
+/// Reads the parameters of `layers`, laid over those of the file `base`.
 Parameters parameters_in(const Layers& layers, const std::string& base) {
   std::vector<Overlay> overlays;
   for (const auto& [key, text] : layers.second) overlays.push_back({.path = key, .text = text, .origin = "replay"});
@@ -35,7 +35,7 @@ RobotModel robot_in(const Parameters& parameters) {
   return read_robot(load_description(parameters.urdf), parameters.robot);
 }
 
-/// What the laws gave, and what they would have given with other parameters: by column of run.csv.
+/// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of run.csv.
 class VariedColumns {
  public:
   explicit VariedColumns(const RobotModel& robot) {
@@ -65,7 +65,7 @@ class VariedColumns {
     }
   }
 
-  /// Name → (logged, varied), one value per row of that law.
+  /// Returns {name: (logged, varied)}, with one value per row of that law.
   py::dict arrays() const {
     py::dict result;
     for (const auto& [name, column] : columns_) {
@@ -87,7 +87,7 @@ class VariedColumns {
   std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> columns_;
 };
 
-/// What makes equal programs compute other bits.
+/// Returns the differences of processor and C library, which can change the computed bits of equal programs.
 std::vector<std::string> doubts(const LogHeader& logged, const LogHeader& here) {
   std::vector<std::string> found;
   const auto compare = [&](const char* what, const std::string& was, const std::string& is) {
@@ -98,7 +98,8 @@ std::vector<std::string> doubts(const LogHeader& logged, const LogHeader& here) 
   return found;
 }
 
-/// Sentences on what a header says other than its own parameters and URDF, or than when it was written.
+/// Returns one sentence per field of the header that contradicts its own parameters and URDF, or was changed after it
+/// was written.
 std::vector<std::string> header_differences(const LogHeader& logged, const LogHeader& computed) {
   std::vector<std::string> found;
   if (!intact(logged)) found.emplace_back("header: one of its fields was changed: its checksum is that of others");
@@ -113,13 +114,13 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
   return found;
 }
 
-/// `logged`: the parameters of the log; `varied`: others, or None.
+/// `logged` are the parameters of the log, `varied` are other parameters or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
   const Parameters parameters = parameters_in(logged, logged.first);
   const RobotModel robot = robot_in(parameters);
   Replay replay(parameters, robot);
   VariedColumns columns(robot);
-  std::vector<std::string> live;  // what was left out of the log, but is set now, counts
+  std::vector<std::string> live;  // values that the log leaves out but `varied` sets are included
   if (varied) {
     const Parameters others = parameters_in(*varied, logged.first);
     if (others.loop.rate != parameters.loop.rate) {
@@ -135,7 +136,8 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
   std::string cut;
   {
     const py::gil_scoped_release release;
-    // All snapshots first: a telemetry that finds a node's rows before its snapshots writes the first of these late.
+    // All snapshots are read first: telemetry may have found a node's rows before its first snapshot and written the
+    // latter late.
     TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
     if (!reader.of_this_version()) {
       throw ReplayError(

@@ -1,5 +1,5 @@
 #pragma once
-/// Replay of a log in Python: robot_control._robot_control.replay_log, for replay.py.
+/// This binds the replay of a log to Python: robot_control._robot_control.replay_log, for replay.py.
 
 #include <pybind11/pybind11.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Replay of a closed loop while it runs: robot_control._robot_control.LoopReplay, for campaigns.
+/// A LoopReplay replays a closed loop while it runs: robot_control._robot_control.LoopReplay, for campaigns.
 
 #include <pybind11/pybind11.h>
 
@@ -14,29 +14,29 @@ namespace robot_control {
 
 class LoopReplay {
  public:
-  /// Before the first step of `loop`.
+  /// Is constructed before the first step of `loop`.
   explicit LoopReplay(const ClosedLoop& loop)
       : replay_(loop.parameters(), loop.robot()), joints_(loop.robot().joints.size()) {}
 
-  /// After a step.
+  /// Stores the rows of the last step; is called after each step.
   void note(const ClosedLoop& loop);
 
-  /// Runs the laws again over what was noted since the last call.
+  /// Runs the laws again over the rows that were stored since the last call.
   void check();
 
-  /// What was found, after the last row.
+  /// Returns the differences that were found; is called after the last row.
   pybind11::dict report();
 
  private:
   Replay replay_;
   std::size_t joints_;
   TraceDecoder decoder_{trace_definition()};
-  std::vector<std::string> messages_;  ///< of the rows that were noted, as a log has them
+  std::vector<std::string> messages_;  ///< messages of the stored rows, as in a log
 };
 
 void bind_loop_replay(pybind11::module_& module);
 
-/// A report as Python has it: exact, laws {name: {compared, different, not_compared, missing}}, rows, different_rows,
+/// Returns a report as a dict: exact, laws {name: {compared, different, not_compared, missing}}, rows, different_rows,
 /// damaged_snapshots, differences, gaps.
 pybind11::dict described(const ReplayReport& report);
 

@@ -1,5 +1,5 @@
-/// The extension module behind robot_control.ClosedLoop: numbers in, arrays out. Shapes, units and defaults are
-/// documented in the Python package.
+/// This is the extension module behind robot_control.ClosedLoop. The Python package documents shapes, units and
+/// defaults.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -49,7 +49,7 @@ std::vector<Column> columns_of(const ClosedLoop& loop) {
   return log_columns(names, false);
 }
 
-/// What a command function gave, as if just received.
+/// Passes the result of a command function to the loop as a command that arrives now.
 void receive(ClosedLoop& loop, const py::object& given) {
   try {
     const auto [linear, angular] = given.cast<std::pair<double, double>>();
@@ -60,10 +60,10 @@ void receive(ClosedLoop& loop, const py::object& given) {
   }
 }
 
-/// Runs `cycles` cycles; `command(t)` gives (linear, angular), or is None. Other Python threads run meanwhile,
-/// where no command function needs the interpreter. `replay` notes them, or is None.
+/// Runs `cycles` cycles. `command(t)` returns (linear, angular), or is None. Other Python threads run meanwhile if no
+/// command function needs the interpreter. `replay` stores the cycles, or is None.
 py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay) {
-  constexpr std::int64_t kBlock = 1000;  // cycles between two looks for Ctrl-C
+  constexpr std::int64_t kBlock = 1000;  // cycles between two checks for Ctrl-C
   if (cycles < 0) throw py::value_error("cycles must not be negative");
   const std::vector<Column> columns = columns_of(loop);
   std::vector<py::array_t<double>> arrays;
@@ -100,14 +100,14 @@ RobotModel robot_of(const Parameters& parameters) {
   return read_robot(load_description(parameters.urdf), parameters.robot);
 }
 
-/// The machine as it is described: without the load off its centre of gravity that the errors of the field add.
+/// Returns the machine as described: without the errors of the field, which add a load beside its centre of gravity.
 MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
   parameters.sensor_errors = ErrorLevel::kIdeal;
   return parameters;
 }
 
-/// The robot set down in the scene and at rest: how far it leans, rad, and which part of its weight the drive wheels
-/// carry; `unloaded` names those that carry nothing, and what stands on the ground instead.
+/// Places the robot in the scene and waits for rest. Returns how far it leans in rad and the share of its weight on the
+/// drive wheels. `unloaded` names the drive wheels that carry nothing, and the bodies that touch the ground instead.
 py::dict stand(const Parameters& parameters) {
   const RobotModel robot = robot_of(parameters);
   MujocoPlant plant(robot, without_errors(parameters.plant), parameters.loop.period());
@@ -156,7 +156,7 @@ py::list derived_wheel_loops(Parameters parameters) {
   return wheel_loops(parameters, robot_of(parameters));
 }
 
-/// m, of a ramp from `speed` and the cycle before it begins.
+/// Returns the distance in m of a ramp from `speed`, including the cycle before it begins.
 double distance_to_stop(const ClosedLoop& loop, double speed, bool emergency) {
   const Parameters& parameters = loop.parameters();
   const MotionLimits limits = speed_limits(parameters.controller).linear;
@@ -176,7 +176,7 @@ std::vector<std::pair<std::string, std::string>> column_units(const ClosedLoop& 
   return names;
 }
 
-/// Functions of a parameter file and the values laid over it.
+/// Binds the functions that take a parameter file and values laid over it.
 void bind_parameters(py::module_& module) {
   const auto define = [&](const char* name, auto function) {
     module.def(
@@ -239,7 +239,7 @@ PYBIND11_MODULE(_robot_control, module) {
   py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
   module.attr("signal_names") = signal_names();
   module.def("slip_detection", &slip_detection, py::arg("residual_level"));
-  module.attr("project_folder") = ROBOT_CONTROL_PROJECT;  // of the checkout, where PyPI's packages are installed
+  module.attr("project_folder") = ROBOT_CONTROL_PROJECT;  // folder of the checkout, where PyPI's packages are installed
   bind_parameters(module);
   bind_spectral_radius(module);
   bind_offline_estimator(module);

@@ -29,7 +29,7 @@ Parameters parameters_of(const std::string& path, const OfflineEstimator::Values
   return read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
 }
 
-/// Two wheels on one axle, whose middle is base_link.
+/// Returns a robot with two wheels on one axle, whose middle is base_link.
 RobotModel two_wheels(const RobotParameters& given) {
   RobotModel robot;
   robot.name = robot.source = "wheel_radius and wheel_base";
@@ -67,7 +67,7 @@ void copy(const Values& values, std::size_t count, Cell* to) noexcept {
   for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<Cell>(values[i]);
 }
 
-/// An array that fills row by row; `shape`: of one row.
+/// An array that is filled row by row; `shape` is that of one row.
 template <class Cell>
 class Output {
  public:
@@ -154,7 +154,7 @@ void add_counts(Counts& to, py::ssize_t rows) {
   add("degraded", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.degraded); });
 }
 
-/// True while in scope.
+/// A Mark keeps its flag true while it lives.
 class Mark {
  public:
   explicit Mark(bool& flag) noexcept : flag_(flag) { flag_ = true; }
@@ -252,7 +252,7 @@ double OfflineEstimator::since_last(double time, double rounding) const noexcept
 py::dict OfflineEstimator::process(const Array& time, const Array& left, const Array& right, const Array& gyro,
                                    const Array& accel, double rounding, py::ssize_t every, bool covariance,
                                    const std::optional<Vector3>& pose) {
-  constexpr py::ssize_t kBlock = 100000;  // rows between two looks for Ctrl-C
+  constexpr py::ssize_t kBlock = 100000;  // rows between two checks for Ctrl-C
   if (busy_) throw std::runtime_error("another thread is inside process() of this Estimator");
   const Mark mark(busy_);
   if (pose) estimator_->set_pose(*pose);

@@ -1,14 +1,14 @@
 #pragma once
-/// robot_control.Estimator: the node's law (estimation/estimator.h) over recorded samples, one row after the other.
+/// robot_control.Estimator runs the node's law (estimation/estimator.h) over recorded samples, row by row.
 ///
-/// A row is a time and the samples taken at it. Absent is
-///   a wheel              whose angle is NaN; a row without any angle has kValidJoints off
-///   gyro, accelerometer  where all three axes are NaN, or which is not given at all: its validity bit is off
-/// What is partly NaN, or infinite, is offered to the law as it stands, which refuses it as a bad sample.
+/// A row is a time and the samples taken at that time. These samples are absent:
+///   a wheel              if its angle is NaN; a row without any angle has kValidJoints off
+///   gyro, accelerometer  if all three axes are NaN, or if it is not given at all: its validity bit is off
+/// A sample that is partly NaN, or infinite, is passed to the law unchanged, which refuses it as a bad sample.
 ///
-/// dt of a row is the time since the row before; of the very first one, the period. Where it is a whole number n of
-/// periods but for the rounding of its stamps, it is n · period exactly: so the samples of a node's log give the node's
-/// bits. Joint speeds and efforts are not given: NaN.
+/// dt of a row is the time since the row before; for the first row it is the period. If dt differs from n periods only
+/// by the rounding of its stamps, it is set to n · period exactly. The samples of a node's log therefore give the
+/// node's bits. Joint speeds and efforts are not known and set to NaN.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -30,39 +30,40 @@ class OfflineEstimator {
   using Values = std::vector<std::pair<std::string, std::string>>;
   using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-  /// Reads parameters as ClosedLoop does, and their calibration_file as the node does. `two_wheels`: no URDF, the robot
-  /// is robot.wheel_radius, wheel_base, imu_position, imu_orientation, base_link in the middle of the axle. Throws
-  /// ParameterError, RobotError, std::invalid_argument.
+  /// Reads parameters as ClosedLoop does, and their calibration_file as the node does. With `two_wheels` no URDF is
+  /// read: the robot consists of robot.wheel_radius, wheel_base, imu_position and imu_orientation, with base_link in
+  /// the middle of the axle. Throws ParameterError, RobotError, std::invalid_argument.
   OfflineEstimator(const std::string& path, const Values& values, bool two_wheels);
 
-  /// A new run with this period [s]. Throws std::invalid_argument.
+  /// Begins a new run with this period [s]. Throws std::invalid_argument.
   void begin(double period);
 
-  /// time (N,) strictly increasing, left and right (N, 1) or (N, wheels of the side), gyro and accel (N, 3), or (0, 3)
-  /// where there is none. `rounding`: s, by which the difference of two stamps may be wrong. Every `every`-th row comes
-  /// out, from the first one on, and the last. `pose`: x [m], y [m], yaw [rad] of the first row, as set_odometry sets
-  /// it. The caller has checked all of it. Other Python threads run meanwhile.
+  /// Runs the law over rows. `time` (N,) is strictly increasing. `left` and `right` have the shape (N, 1) or (N, wheels
+  /// of the side). `gyro` and `accel` have the shape (N, 3), or (0, 3) if there is none. `rounding` is the possible
+  /// error of the difference of two stamps in s. Every `every`-th row is returned, beginning with the first, and the
+  /// last row. `pose` is x [m], y [m], yaw [rad] of the first row, as in set_odometry. The caller has checked all
+  /// arguments. Other Python threads run meanwhile.
   pybind11::dict process(const Array& time, const Array& left, const Array& right, const Array& gyro,
                          const Array& accel, double rounding, pybind11::ssize_t every, bool covariance,
                          const std::optional<Vector3>& pose);
 
-  /// What was learned so far, as the node keeps it (parameters/calibration_file.h). Throws std::runtime_error: nothing
-  /// was, or beyond its bounds; std::system_error.
+  /// Writes the learned calibration as the node does (parameters/calibration_file.h). Throws std::runtime_error if
+  /// nothing was learned or it is beyond its bounds; throws std::system_error if the file cannot be written.
   void save_calibration(const std::string& path) const;
 
   double period() const noexcept { return period_; }            ///< s
   double loop_period() const noexcept { return loop_period_; }  ///< s, of robot.rate
-  /// s, of the last row since `begin`
+  /// Returns the time of the last row since `begin`, s.
   std::optional<double> last_time() const noexcept { return began_ ? std::optional(last_time_) : std::nullopt; }
-  pybind11::dict describe() const;  ///< the robot, as the Python class documents it
+  pybind11::dict describe() const;  ///< returns the robot, as documented by the Python class
 
  private:
   struct Rows;
   void sense(const Rows& rows, pybind11::ssize_t row) noexcept;
   double since_last(double time, double rounding) const noexcept;  ///< s
 
-  EstimatorParameters given_;       ///< before anything was read from the file
-  EstimatorParameters parameters_;  ///< the run begins with
+  EstimatorParameters given_;       ///< the parameters without the calibration of the file
+  EstimatorParameters parameters_;  ///< the parameters with which the run begins
   RobotModel robot_;
   double loop_period_ = 0;
   double period_ = 0;

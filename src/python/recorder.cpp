@@ -13,10 +13,10 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-/// Reads one number of a row; `index`: of the wheel or the axis.
+/// Reads one number of a row; `index` is that of the wheel or the axis.
 using Cell = double (*)(const DriverTrace& row, std::size_t index);
 
-/// An array that fills row by row.
+/// An array that is filled row by row.
 class Recorded {
  public:
   Recorded(const char* name, py::ssize_t cycles, std::size_t width, Cell cell)
@@ -63,7 +63,7 @@ py::dict record(ClosedLoop& loop, const py::array_t<double>& commands) {
   if (commands.ndim() != 2 || commands.shape(1) != 2) {
     throw std::invalid_argument("commands must have the shape (cycles, 2): linear m/s, angular rad/s of every cycle");
   }
-  constexpr py::ssize_t kBlock = 10000;  // cycles between two looks for Ctrl-C
+  constexpr py::ssize_t kBlock = 10000;  // cycles between two checks for Ctrl-C
   const py::ssize_t cycles = commands.shape(0);
   const auto command = commands.unchecked<2>();
   std::vector<Recorded> recorded = all_recorded(cycles, loop.robot().wheels.size());

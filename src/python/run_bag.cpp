@@ -24,7 +24,8 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-/// Bytes that are not UTF-8 become U+FFFD: a scene or a calibration file may hold some.
+/// Converts to a Python text. Bytes that are not UTF-8 become U+FFFD, because a scene or a calibration file may contain
+/// some.
 py::str text_of(const std::string& bytes) {
   PyObject* const text = PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "replace");
   if (text == nullptr) throw py::error_already_set();
@@ -45,16 +46,16 @@ py::dict header_of(const LogHeader& header) {
                   "missing"_a = text_of(header.missing));
 }
 
-/// A column of the table that grows with the rows.
+/// A column of the table, which grows with the rows.
 struct FilledColumn {
   Column column;
   std::vector<double> values;
 };
 
-/// The rows of the last run, and how many runs there were.
+/// A Table holds the rows of the last run and counts the runs.
 class Table {
  public:
-  /// `names`: those that are wanted; empty: all.
+  /// `names` selects columns; if it is empty, the table has all columns.
   Table(const LogHeader& header, const std::vector<std::string>& names) : period_(header.period) {
     for (Column& column : log_columns(header.joints, header.clock == "wall")) {
       if (!names.empty() && std::find(names.begin(), names.end(), column.name) == names.end()) continue;
@@ -77,7 +78,7 @@ class Table {
     times_.push_back(static_cast<double>(time_ns) * 1e-9);
   }
 
-  /// `share` of the file is read.
+  /// Estimates the number of all rows; `share` of the file has been read.
   void expect(double share) { expected_ = static_cast<double>(times_.size()) / share; }
 
   py::dict columns() {
@@ -89,8 +90,8 @@ class Table {
   std::uint64_t runs() const noexcept { return runs_; }
 
  private:
-  /// To what the file seems to hold and some more, since growing again copies everything; not at once to what a file
-  /// may pretend.
+  /// Reserves room for the estimated number of rows and some more, because each further growth copies everything. The
+  /// growth is bounded, because the file may announce too many rows.
   void grow() {
     constexpr double kMore = 1.1;
     constexpr std::size_t kMinGrowth = 1 << 10, kMaxGrowth = 1 << 20;  // rows at once; 2²⁰ are 1.3 GB of address space
@@ -101,7 +102,7 @@ class Table {
     times_.reserve(rows);
   }
 
-  /// Without a copy: the array owns the vector.
+  /// Returns an array that owns the vector, without a copy.
   static py::array_t<double> array_of(std::vector<double>&& values) {
     auto* const owned = new std::vector<double>(std::move(values));
     const py::capsule owner(owned, [](void* vector) { delete static_cast<std::vector<double>*>(vector); });
@@ -109,7 +110,7 @@ class Table {
   }
 
   double period_;
-  double expected_ = 0;  ///< rows in the file, as far as one can tell
+  double expected_ = 0;  ///< estimated rows in the file
   std::vector<FilledColumn> columns_;
   std::vector<double> times_;
   std::int64_t run_ = -1;
@@ -118,7 +119,7 @@ class Table {
 
 py::dict read_run_bag(const std::string& path, const std::vector<std::string>& names) {
   using namespace py::literals;
-  constexpr std::uint64_t kLook = 1 << 16;  // rows between two looks for Ctrl-C
+  constexpr std::uint64_t kLook = 1 << 16;  // rows between two checks for Ctrl-C
   std::optional<Table> table;
   std::uint64_t rows = 0;
   std::uint64_t lost = 0;
@@ -134,7 +135,7 @@ py::dict read_run_bag(const std::string& path, const std::vector<std::string>& n
                   "ros_time"_a = table->times(), "runs"_a = table->runs(), "lost"_a = lost, "cut"_a = reader.cut());
 }
 
-/// All runs of a log as the table that telemetry writes.
+/// Writes all runs of a log as the table that telemetry writes.
 void write_run_csv(const std::string& path, const std::string& to) {
   TraceReader reader(path);
   const LogHeader& header = reader.header();
@@ -145,7 +146,7 @@ void write_run_csv(const std::string& path, const std::string& to) {
   csv.close();
 }
 
-/// A bag with the folder in which it counts.
+/// A FolderLog is a bag together with the folder that contains it.
 class FolderLog final : public RowLog {
  public:
   FolderLog(const std::string& directory, const ClosedLoop& loop)

@@ -1,13 +1,12 @@
 #pragma once
-/// The names of signals/names.h for Python.
+/// signal_names returns the names of signals/names.h for Python.
 
 #include <pybind11/pybind11.h>
 
 namespace robot_control {
 
-/// By the word that stands as the unit of a log's column: of bits a list of (name, sentence, remedy, unit of its
-/// evidence), lowest first; of states a
-/// list of names in the order of their numbers.
+/// The keys are the words that logs use as the unit of a column. For bits the value is a list of (name, sentence,
+/// remedy, unit of the evidence), lowest bit first. For states it is a list of names in the order of their numbers.
 pybind11::dict signal_names();
 
 }  // namespace robot_control

@@ -1,5 +1,6 @@
 #pragma once
-/// The wheel loops that a set of parameters gives, as plain Python values: what identify.py judges its proposals with.
+/// wheel_loops returns the wheel loops of a set of parameters as plain Python values, with which identify.py checks its
+/// proposals.
 
 #include <pybind11/pybind11.h>
 
@@ -8,9 +9,9 @@
 
 namespace robot_control {
 
-/// One dict per drive wheel, in the order of the robot's wheels:
-///   joint  side "left" | "right"  sign  radius m  wheels_beside (h of feed_forward.h)  effort_limit N·m velocity_limit
-///   rad/s, 0: none
+/// Returns one dict per drive wheel, in the order of the robot's wheels:
+///   joint  side "left" | "right"  sign  radius m  wheels_beside (h of feed_forward.h)
+///   effort_limit N·m  velocity_limit rad/s, 0: none
 ///   damping N·m·s/rad  friction N·m  lifted turning straight kg·m²      as the controller assumes them
 ///   kp ki kd model_inertia  bandwidth Hz  period s                      of its loop
 pybind11::list wheel_loops(const Parameters& parameters, const RobotModel& robot);

@@ -1,6 +1,6 @@
 #pragma once
-/// Stop causes in words: the condition, its remedy, and the person who can apply it. What latched needs e_stop_reset
-/// after its remedy; an empty remedy: nothing else.
+/// Stop causes in words: the condition, its remedy, and the role that can apply it. A latched cause needs e_stop_reset
+/// after its remedy. If the remedy is empty, it needs only e_stop_reset.
 ///
 ///   operator     drives the robot
 ///   integrator   sets the robot up: nodes, parameters, URDF, network

@@ -1,6 +1,6 @@
 #pragma once
-/// The checksum of whatever is no frame of the bus: messages of a log, records, files, a robot, the gate's output. It
-/// shows that something was changed; it is no protection against an author who computes it again.
+/// This is the checksum of all data except frames on the bus: messages of a log, records, files, a robot, the gate's
+/// output. It detects changes, but does not protect against an author who computes it again.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace robot_control {
 
-/// Sum of words; each mixes into all bits.
+/// A sum of words, in which each word changes all bits.
 class Checksum {
  public:
   void mix(std::uint64_t word) noexcept {
@@ -17,7 +17,7 @@ class Checksum {
     sum_ ^= sum_ >> 29U;
   }
 
-  /// The last word of `data` is filled up with zeros, and the length is not mixed in.
+  /// Mixes in `data`. The last word is filled up with zeros, and the length is not mixed in.
   void mix(std::string_view data) noexcept {
     std::uint64_t word = 0;
     for (; data.size() >= sizeof word; data.remove_prefix(sizeof word)) {

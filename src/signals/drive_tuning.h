@@ -1,7 +1,7 @@
 #pragma once
-/// The limits and gains with which a drive controller runs, as numbers: what the user left out is derived. Handed to it
-/// between two cycles (~set_parameter_map), and in every row of its trace, so that a log shows which values were in
-/// force when.
+/// A DriveTuning holds the limits and gains in force in a drive controller; values that the user left out are derived.
+/// The controller receives it between two cycles (~set_parameter_map). Every row of its trace contains it, so that a
+/// log shows the values in force.
 
 #include <array>
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kTunedWheels = 8;  ///< kMaxWheels of robot/, which this folder does not see
+inline constexpr std::size_t kTunedWheels = 8;  ///< equals kMaxWheels of robot/, which this folder does not include
 
-/// Of one axis, m/s or rad/s and its derivatives; the names of the parameters are max_linear_speed, …
+/// The limits of one axis in m/s or rad/s and their derivatives; the parameters are named max_linear_speed, …
 struct AxisTuning {
   double speed = 0;
   double acceleration = 0;
@@ -23,25 +23,25 @@ struct AxisTuning {
   double reverse_deceleration = 0;
 };
 
-/// Of one wheel: the parameters of its loop, and those of feed-forward.
+/// The parameters of one wheel: those of its loop, and those of its feed-forward.
 struct WheelTuning {
   double kp = 0;             ///< N·m·s/rad
   double ki = 0;             ///< N·m/rad
   double kd = 0;             ///< N·m·s²/rad
-  double model_inertia = 0;  ///< kg·m², of the tracking loop (control/wheel_loops/wheel_loop.h)
+  double model_inertia = 0;  ///< kg·m², in the tracking loop (control/wheel_loops/wheel_loop.h)
   double inertia = 0;        ///< kg·m², about its axle
   double damping = 0;        ///< N·m·s/rad
   double friction = 0;       ///< N·m
 };
 
 struct DriveTuning {
-  std::uint64_t count = 0;  ///< sets accepted since the process began; another count is another set
+  std::uint64_t count = 0;  ///< number of sets accepted since the process began; each set has another count
   AxisTuning linear;
   AxisTuning angular;
-  std::uint64_t keep_curvature = 0;                ///< 1: kept
+  std::uint64_t keep_curvature = 0;                ///< 1: the curvature is kept
   double cmd_vel_timeout = 0;                      ///< s; 0: never
   double tracking_bandwidth = 0;                   ///< Hz
-  double mass = 0;                                 ///< kg, of feed-forward
+  double mass = 0;                                 ///< kg, for feed-forward
   double yaw_inertia = 0;                          ///< kg·m²
   std::array<WheelTuning, kTunedWheels> wheels{};  ///< in the order of RobotModel::wheels, which is that of the joints
 };

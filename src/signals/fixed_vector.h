@@ -1,6 +1,6 @@
 #pragma once
-/// A short list that holds its elements itself: no allocation, and trivially copyable, so that the state of a law can
-/// be copied as it lies in memory (signals/law_snapshot.h).
+/// A FixedVector is a short list that holds its elements itself. It never allocates and is trivially copyable, so that
+/// the state of a law can be copied byte by byte (signals/law_snapshot.h).
 
 #include <array>
 #include <cstddef>
@@ -18,12 +18,12 @@ class FixedVector {
  public:
   FixedVector() noexcept = default;
 
-  /// Throws std::length_error: more than Capacity.
+  /// Throws std::length_error if `count` > Capacity.
   FixedVector(std::size_t count, const Element& element) {
     for (std::size_t i = 0; i < count; ++i) emplace_back(element);
   }
 
-  /// Throws std::length_error: it is full.
+  /// Throws std::length_error if the list is full.
   template <class... Arguments>
   Element& emplace_back(Arguments&&... arguments) {
     if (size_ == Capacity) throw std::length_error("more than " + std::to_string(Capacity) + " elements");

@@ -1,5 +1,5 @@
 #pragma once
-/// A number for what the gate gave to the driver in one tick, to compare two ticks bit for bit.
+/// The digest compares the gate's outputs of two ticks bit for bit.
 
 #include <cstdint>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace robot_control {
 
-/// The checksum of all commands and of the report.
+/// Returns the checksum of all commands to the driver and of the report.
 inline std::uint64_t digest_of(std::span<const JointCommand> commands, const GateReport& report) noexcept {
   Checksum sum;
   sum.mix({reinterpret_cast<const char*>(commands.data()), commands.size_bytes()});

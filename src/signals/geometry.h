@@ -1,5 +1,5 @@
 #pragma once
-/// Plain geometric values; no algebra here (that is Eigen's, inside the laws).
+/// These are plain geometric values; the laws use Eigen for algebra.
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
-/// Faults that are injected into a simulated machine, in the terms of PX4: which component fails, and how.
-/// (PX4 user guide, "System Failure Injection".)
+/// A fault of a simulated machine consists of a component and a kind, in the terms of PX4 (PX4 user guide, "System
+/// Failure Injection").
 
 #include <array>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-/// Index into InjectedFaults. Left and right mean every wheel of that side.
+/// The values are indices of InjectedFaults. Left and right mean every wheel of that side.
 enum class FaultComponent : std::size_t {
   kLeftEncoder,
   kRightEncoder,
@@ -36,7 +36,8 @@ enum class FaultKind : std::uint64_t {
 };
 inline constexpr std::size_t kFaultKinds = 8;
 
-/// Is this component a node? The faults of nodes exist in ClosedLoop alone, those of all others in the simulated plant.
+/// Returns whether the component is a node. The faults of nodes exist only in ClosedLoop, those of all other components
+/// in the simulated plant.
 constexpr bool is_node(FaultComponent component) noexcept {
   return component == FaultComponent::kController || component == FaultComponent::kEstimator ||
          component == FaultComponent::kMonitor;
@@ -48,7 +49,8 @@ inline FaultKind fault_of(const InjectedFaults& faults, FaultComponent component
   return faults[static_cast<std::size_t>(component)];
 }
 
-/// All of them in one number, for the log: Σ kind · 8^component, in octal one digit per component. 0: healthy.
+/// Returns all faults in one number for the log, Σ kind · 8^component, with one octal digit per component. 0 means
+/// healthy.
 static_assert(3 * kFaultComponents <= 53, "the log's numbers are doubles");
 constexpr std::uint64_t fault_code(const InjectedFaults& faults) noexcept {
   std::uint64_t code = 0;

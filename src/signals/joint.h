@@ -1,5 +1,5 @@
 #pragma once
-/// One joint: what is measured of it and what can be asked of it.
+/// JointSample holds the measured values of one joint, JointCommand the command to it.
 
 #include <cmath>
 #include <cstddef>
@@ -17,14 +17,14 @@ struct JointSample {
 };
 
 enum class JointMode : std::uint64_t {
-  kBrake = 0,      ///< The driver's own law: velocity damping, below a small speed position hold.
+  kBrake = 0,      ///< The driver's own law damps the velocity and, below a small speed, holds the position.
   kEffort = 1,     ///< τ = effort
   kVelocity = 2,   ///< τ = effort + damping · (velocity − q̇)
   kImpedance = 3,  ///< τ = effort + stiffness · (position − q) + damping · (velocity − q̇)
 };
 
-/// Clamped to the joint's effort limit by the gate and by the driver. The fields that a mode does not
-/// use are carried all the same (in kEffort, `velocity` is the wheel loop's target, for display).
+/// Gate and driver clamp the resulting effort to the joint's limit. Fields that a mode does not use are also filled in:
+/// in kEffort, `velocity` is the wheel loop's target, for display.
 struct JointCommand {
   JointMode mode = JointMode::kBrake;
   double position = 0;   ///< rad or m
@@ -34,7 +34,7 @@ struct JointCommand {
   double effort = 0;     ///< N·m or N
 };
 
-/// Every number of it, used by its mode or not.
+/// Returns whether every number is finite, also those that the mode does not use.
 inline bool finite(const JointCommand& joint) noexcept {
   return std::isfinite(joint.position) && std::isfinite(joint.velocity) && std::isfinite(joint.stiffness) &&
          std::isfinite(joint.damping) && std::isfinite(joint.effort);

@@ -1,10 +1,10 @@
 #pragma once
-/// What each law was given in one cycle, beside the frames that the rows of the other nodes hold. With those rows it is
-/// enough to run the law again, bit for bit.
+/// These structs hold the inputs of each law in one cycle, except the frames in the rows of the other nodes. With those
+/// rows they suffice to run the law again bit for bit.
 ///
-/// A frame that a law used is named by its checksum: a node may publish twice in one cycle, and another process may
-/// publish in its place. Where an injected fault changed a frame, `LawRow::output` is that of the healthy one, and the
-/// row holds the published one.
+/// The checksum identifies a frame that a law used: a node may publish twice in one cycle, and another process may take
+/// its place. If an injected fault changed a frame, `LawRow::output` belongs to the healthy frame, and the row holds
+/// the published one.
 
 #include <array>
 #include <cstddef>
@@ -16,11 +16,11 @@
 
 namespace robot_control {
 
-/// A frame that was looked up.
+/// The result of looking up a frame.
 struct UsedFrame {
   Lookup found = Lookup::kMissing;
-  std::uint64_t cycle = 0;     ///< where it was found
-  std::uint64_t checksum = 0;  ///< FrameHead::checksum, where it was found
+  std::uint64_t cycle = 0;     ///< cycle of the frame, if it was found
+  std::uint64_t checksum = 0;  ///< FrameHead::checksum, if it was found
 };
 
 template <class Frame>
@@ -29,11 +29,11 @@ UsedFrame used(Lookup found, const Frame& frame) noexcept {
   return {.found = found, .cycle = frame.head.cycle, .checksum = frame.head.checksum};
 }
 
-/// One row of a law.
+/// The part of a row that all laws have.
 struct LawRow {
-  std::uint64_t process = 0;  ///< random number of the process whose law it is
-  std::uint64_t number = 0;   ///< rows of this process before this one; a gap: rows were lost
-  std::uint64_t output = 0;   ///< checksum of what the law computed, under the head of its cycle
+  std::uint64_t process = 0;  ///< random number of the process that ran the law
+  std::uint64_t number = 0;   ///< number of rows of this process before this one; a gap means lost rows
+  std::uint64_t output = 0;   ///< checksum of the law's output under the head of its cycle
   std::uint64_t sensors = 0;  ///< checksum of the sensor frame of this cycle
   std::uint64_t new_run = 0;  ///< 1: `enter_run` was called since the row before
 };
@@ -51,18 +51,18 @@ struct EstimatorCalls {
   Vector3 pose{};                 ///< x [m], y [m], yaw [rad]
 };
 
-/// The permit is one that had not expired.
+/// `permit` had not expired.
 struct ControllerCalls {
   LawRow law;
-  std::uint64_t with_zero = 0;  ///< of `enter_run`
+  std::uint64_t with_zero = 0;  ///< argument of `enter_run`
   std::uint64_t tuned = 0;      ///< 1: tune(ControllerTrace::tuning) was called before the step
-  VelocityCommand inbox;        ///< of `enter_run`
+  VelocityCommand inbox;        ///< argument of `enter_run`
   VelocityCommand request;
   std::uint64_t state = 0;  ///< checksum of the state frame of this cycle
   UsedFrame permit;
 };
 
-/// What else may be called on the monitor.
+/// The further calls of the monitor.
 enum class MonitorCall : std::uint64_t {
   kEnterRun = 1,            ///< enter_run(operator_input)
   kBegin = 2,               ///< begin(argument)
@@ -85,11 +85,11 @@ struct MonitorEvent {
 /// Room for a new run in a monitor's first row, and for two requests in a pause.
 inline constexpr std::size_t kMonitorEvents = 8;
 
-/// First the events in their order, then the step of this cycle.
+/// The events come first, in their order, then the step of this cycle.
 struct MonitorCalls {
   LawRow law;
   std::uint64_t event_count = 0;
-  std::uint64_t events_lost = 0;  ///< for which there was no room
+  std::uint64_t events_lost = 0;  ///< events that did not fit
   std::array<MonitorEvent, kMonitorEvents> events{};
   UsedFrame command;  ///< of the cycle before
   std::uint64_t state_seen = 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// The complete state of a law at one moment, as it lies in memory: with it the law can run on from there
-/// (replay/). Only the build that made it can read it.
+/// A LawSnapshot is a byte copy of the complete state of a law at one moment, from which the law can continue
+/// (replay/). Only the build that wrote it can read it.
 
 #include <array>
 #include <cstddef>
@@ -13,33 +13,34 @@
 
 namespace robot_control {
 
-/// In the order of the nodes in a row of the log.
+/// The laws in the order of the nodes in a row of the log.
 enum class LawName : std::uint64_t { kGate = 0, kEstimator = 1, kController = 2, kMonitor = 3 };
 inline constexpr std::size_t kLaws = 4;
 
-/// By LawName: the node in which the law runs.
+/// The node in which each law runs, by LawName.
 inline constexpr std::array<std::string_view, kLaws> kLawNodes{"mujoco_plant", "state_estimator",
                                                                "diff_drive_controller", "safety_monitor"};
 
-/// Between two snapshots of a law. Half of what a ring of the trace holds (rt/ring.h): a telemetry that begins to read
-/// finds one among the rows that are there, so that whatever comes after can be replayed.
+/// The distance of two snapshots of a law in cycles. It is half the length of a trace ring (rt/ring.h). So telemetry
+/// that begins to read finds a snapshot in the ring, and all later rows can be replayed.
 inline constexpr std::uint64_t kSnapshotCycles = 1024;
-inline constexpr std::size_t kSnapshotBytes = 40 * 1024;  ///< the longest; that of the monitor has 30 KB
+inline constexpr std::size_t kSnapshotBytes = 40 * 1024;  ///< bytes of the longest state; that of the monitor has 30 KB
 
-/// Taken in a node's first two cycles, in the first of a run and every kSnapshotCycles: before the step of that cycle,
-/// after what LawRow::new_run and MonitorCalls::events stand for, before set_pose and tune.
+/// A snapshot is taken in a node's first two cycles, in the first cycle of a run and every kSnapshotCycles. It is taken
+/// before the step of that cycle, after the calls in LawRow::new_run and MonitorCalls::events, before set_pose and
+/// tune.
 struct LawSnapshot {
-  FrameHead head;           ///< of the cycle; sealed outside of the loop
+  FrameHead head;           ///< head of the cycle; sealed outside of the loop
   std::uint64_t build = 0;  ///< build_id() of the program
   LawName law = LawName::kGate;
   std::uint64_t process = 0;  ///< LawRow::process
   std::uint64_t number = 0;   ///< LawRow::number
-  std::uint64_t bytes = 0;    ///< of `state` that are used; the others are 0
+  std::uint64_t bytes = 0;    ///< used bytes of `state`; the others are 0
   std::array<std::byte, kSnapshotBytes> state{};
 };
 
-/// A law's object is its state: it owns nothing outside of itself. (Eigen's small matrices do not, either, though they
-/// are not trivially copyable by the letter of C++.)
+/// A law's object is its complete state, because it owns nothing outside of itself. This also holds for Eigen's small
+/// matrices, although C++ does not define them as trivially copyable.
 template <class Law>
 inline constexpr bool kCopyableState = std::is_trivially_destructible_v<Law> && sizeof(Law) <= kSnapshotBytes;
 
@@ -50,7 +51,7 @@ void save_state(const Law& law, LawSnapshot& snapshot) noexcept {
   std::memcpy(snapshot.state.data(), static_cast<const void*>(&law), sizeof(Law));
 }
 
-/// False: it is of another size.
+/// Returns false if the snapshot has another size.
 template <class Law>
 bool restore_state(const LawSnapshot& snapshot, Law& law) noexcept {
   static_assert(kCopyableState<Law>);
@@ -59,8 +60,8 @@ bool restore_state(const LawSnapshot& snapshot, Law& law) noexcept {
   return true;
 }
 
-/// Cycles before and after one in which all laws are saved. What was published in them is needed whole: the laws that
-/// are restored need frames that no law computes again.
+/// The log keeps complete frames in this many cycles before and after a snapshot of all laws. The restored laws need
+/// these frames, which no law computes again.
 inline constexpr std::uint64_t kWholeFrames = 8;
 
 constexpr bool near_snapshot(std::uint64_t cycle) noexcept {

@@ -1,9 +1,9 @@
 #pragma once
-/// The one vocabulary: every state, verdict and bit of the frames → its name, what it means, what to do.
-/// Log, topics, services and tests speak these words and no others.
+/// These tables give the name, meaning and remedy of every state, verdict and bit of the frames. Log, topics, services
+/// and tests use these words only.
 ///
-/// A table holds one row per bit, in the order of the bits (checked below). `remedy` is empty where there is
-/// nothing to repair.
+/// A table holds one row per bit in the order of the bits, which is checked below. `remedy` is empty if nothing needs
+/// repair.
 
 #include <array>
 #include <cstddef>
@@ -141,7 +141,7 @@ inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
     {kSlipSideways, "sideways", "the robot slides sideways", "turn less fast"},
 });
 
-/// By SensorIndex.
+/// The names are in the order of SensorIndex.
 inline constexpr std::array<std::string_view, 6> kStateSensorNames{"left_encoder",  "right_encoder",   "gyro",
                                                                    "accelerometer", "lateral_contact", "vertical_contact"};
 
@@ -180,7 +180,7 @@ constexpr std::string_view name_of(JointMode mode) noexcept {
   return index < kNames.size() ? kNames[index] : "unknown";
 }
 
-/// In the order of FaultComponent and of FaultKind: the words of the service inject_fault.
+/// The words of the service inject_fault, in the order of FaultComponent and of FaultKind.
 inline constexpr std::array<std::string_view, kFaultComponents> kFaultComponentNames{
     "left_encoder", "right_encoder", "gyro",    "accelerometer", "left_motor",   "right_motor",
     "controller",   "estimator",     "monitor", "battery",       "e_stop_button"};
@@ -197,7 +197,7 @@ constexpr std::string_view name_of(FaultKind kind) noexcept {
   return index < kFaultKindNames.size() ? kFaultKindNames[index] : "unknown";
 }
 
-/// The index of a word; nothing where the list does not know it.
+/// Returns the index of a word; nothing if it is not in the list.
 constexpr std::optional<std::size_t> index_of(std::span<const std::string_view> words, std::string_view word) noexcept {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == word) return i;
@@ -215,8 +215,8 @@ constexpr std::optional<FaultKind> fault_kind(std::string_view name) noexcept {
   return index ? std::optional(static_cast<FaultKind>(*index)) : std::nullopt;
 }
 
-/// Sets the fault that two words name. Otherwise changes nothing and returns what is wrong with them and which ones
-/// there are; empty: done. Allocates.
+/// Sets the fault that two words name and returns "". If a word is unknown, changes nothing and returns the problem
+/// with the list of words. Allocates.
 inline std::string set_fault(InjectedFaults& faults, std::string_view component, std::string_view kind) {
   const auto unknown = [](std::string_view what, std::string_view word, std::span<const std::string_view> words) {
     std::string text = "unknown ";
@@ -232,7 +232,7 @@ inline std::string set_fault(InjectedFaults& faults, std::string_view component,
   return {};
 }
 
-/// "gyro off, monitor slow"; "none". Allocates.
+/// Returns "gyro off, monitor slow", or "none". Allocates.
 inline std::string names_of(const InjectedFaults& faults) {
   std::string text;
   for (std::size_t i = 0; i < faults.size(); ++i) {
@@ -243,7 +243,7 @@ inline std::string names_of(const InjectedFaults& faults) {
   return text.empty() ? "none" : text;
 }
 
-/// The row of one bit; null where the table does not know it.
+/// Returns the row of one bit; null if it is not in the table.
 constexpr const BitName* row_of(std::span<const BitName> table, std::uint64_t bit) noexcept {
   for (const BitName& row : table) {
     if (row.bit == bit) return &row;
@@ -251,7 +251,8 @@ constexpr const BitName* row_of(std::span<const BitName> table, std::uint64_t bi
   return nullptr;
 }
 
-/// "controller_lost heartbeat_lost": the names of all bits set, lowest first. Not for the loop: allocates.
+/// Returns the names of all bits that are set, lowest first: "controller_lost heartbeat_lost". It allocates and is not
+/// meant for the loop.
 inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, std::string_view separator = " ") {
   std::string text;
   for (const BitName& row : table) {
@@ -262,7 +263,7 @@ inline std::string names_of(std::span<const BitName> table, std::uint64_t bits, 
   return text;
 }
 
-/// "the emergency stop button is pressed (release the button); …". Allocates.
+/// Returns "the emergency stop button is pressed (release the button); …". Allocates.
 inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bits) {
   std::string text;
   for (const BitName& row : table) {
@@ -274,7 +275,7 @@ inline std::string sentences_of(std::span<const BitName> table, std::uint64_t bi
   return text;
 }
 
-/// Row i names bit i.
+/// Returns whether row i of the table names bit i.
 constexpr bool in_bit_order(std::span<const BitName> table) noexcept {
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (table[i].bit != std::uint64_t{1} << i) return false;

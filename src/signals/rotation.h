@@ -1,5 +1,5 @@
 #pragma once
-/// Quaternion → rotation matrix; roll, pitch and yaw.
+/// These functions convert a quaternion to a rotation matrix, or to roll, pitch and yaw.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,12 +9,13 @@
 
 namespace robot_control {
 
-/// Turns vectors of the rotated axes into those of the axes that `q` refers to. `q`: x y z w, of any length but 0.
+/// Returns the matrix that converts vectors from the rotated axes to the axes to which `q` refers. `q` is x y z w with
+/// any length except 0.
 inline Eigen::Matrix3d rotation_of(const Quaternion& q) noexcept {
   return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
 }
 
-/// rad, of a unit quaternion: turned by roll about x, then by pitch about y, then by yaw about z (REP 103).
+/// Return the angle in rad of a unit quaternion: roll about x, then pitch about y, then yaw about z (REP 103).
 inline double roll_of(const Quaternion& q) noexcept {
   const auto [x, y, z, w] = q;
   return std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y));

@@ -1,5 +1,6 @@
 #pragma once
-/// Driver → all nodes: the sensors of cycle k, the driver's state, and the gate's verdict of tick k-1.
+/// The driver sends this frame to all nodes: the sensors of cycle k, the driver's state, and the gate's verdict of tick
+/// k-1.
 
 #include <array>
 #include <cstdint>
@@ -14,8 +15,9 @@ namespace robot_control {
 
 inline constexpr std::size_t kMaxContacts = 8;
 
-/// In the IMU link's own axes. Angular velocity belongs to t_k, linear acceleration (specific force, +g upwards at
-/// rest) to [t_k-1, t_k): in world axes, plus gravity, times the period, it is by how much the IMU's velocity changed.
+/// The sample is in the axes of the IMU's link. The angular velocity belongs to t_k. The linear acceleration is the
+/// specific force (+g upwards at rest), averaged over [t_k-1, t_k). In world axes, plus gravity, times the period, it
+/// is the change of the IMU's velocity.
 struct ImuSample {
   Vector3 angular_velocity{};     ///< rad/s
   Vector3 linear_acceleration{};  ///< m/s²
@@ -27,7 +29,7 @@ enum class DriverState : std::uint64_t {
   kRunning = 1,
   kPaused = 2,
   kFault = 3,
-  kEnded = 4,  ///< The driver ends and stops its machine: no further frame comes from this process.
+  kEnded = 4,  ///< The driver ends and stops its machine; this process sends no further frame.
 };
 
 /// Bits of SensorFrame::faults.
@@ -54,7 +56,7 @@ enum DigitalInput : std::uint64_t { kInputEmergencyStop = 1u << 0 };
 
 struct SensorFrame {
   FrameHead head;
-  std::uint64_t driver_instance = 0;  ///< Random number of the driver process; outlives a reset, not a restart.
+  std::uint64_t driver_instance = 0;  ///< Random number of the driver process; a restart changes it, a reset does not.
   DriverState driver_state = DriverState::kStarting;
   std::uint64_t faults = 0;
   std::uint64_t valid = 0;
@@ -62,17 +64,19 @@ struct SensorFrame {
   std::array<JointSample, kMaxJoints> joints{};  ///< in the order of RobotModel::joints
   ImuSample imu;
 
-  /// N, on the wheels, base axes, mean over [t_k-1, t_k): of RobotModel::wheels, then casters, as far as there is room.
+  /// Forces on the wheels in N, base axes, mean over [t_k-1, t_k): first those on RobotModel::wheels, then casters, as
+  /// many as fit.
   std::array<Vector3, kMaxContacts> contact_forces{};
   std::uint64_t digital_inputs = 0;
   double battery_voltage = 0;    ///< V, at the terminals
   double battery_current = 0;    ///< A, positive when discharging
-  GateReport gate;               ///< of tick k-1
+  GateReport gate;               ///< gate's report of tick k-1
   std::uint64_t overruns = 0;    ///< Ticks of this run that ended after the next deadline.
-  InjectedFaults injected{};     ///< of a simulator, for the log and ClosedLoop
-  std::uint64_t slipped_ns = 0;  ///< Time a simulated plant fell behind the wall clock in this run.
-  std::uint64_t resumes = 0;     ///< Times a simulated plant went on after a pause, on the wall clock.
-  std::uint64_t held_ns = 0;     ///< Time a simulated plant stood: paused, or reset. Outlives a reset.
+  InjectedFaults injected{};     ///< simulators only, for the log and ClosedLoop
+  std::uint64_t slipped_ns = 0;  ///< Time by which a simulated plant fell behind the wall clock in this run.
+  std::uint64_t resumes = 0;     ///< Number of resumptions of a simulated plant after a pause, on the wall clock.
+  std::uint64_t held_ns =
+      0;  ///< Total time in which a simulated plant was paused or being reset; not cleared by a reset.
 };
 
 }  // namespace robot_control

@@ -1,8 +1,8 @@
 #pragma once
-/// What StateFrame::residual_level means for the detection of slip, in words.
+/// slip_detection describes in words how StateFrame::residual_level affects the detection of slip.
 ///
-/// Within 0.2 s, by an IMU such as the BMI088, wheels that spin by less than 0.025 m/s times the level prove nothing
-/// (estimation/slip/slip_detector.h): from kSlowDetection on 0.08 m/s, from kNoDetection on 1 m/s.
+/// With an IMU such as the BMI088, slip above 0.025 m/s times the level is detected within 0.2 s
+/// (estimation/slip/slip_detector.h). From kSlowDetection on this is 0.08 m/s, from kNoDetection on 1 m/s.
 
 #include <array>
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace robot_control {
 inline constexpr double kSlowDetection = 3;
 inline constexpr double kNoDetection = 40;
 
-/// "on", "slow: residuals 12 × the sensors' noise", "off: …", or that nothing was compared yet.
+/// Returns "on", "slow: residuals 12 × the sensors' noise", "off: …" or "unknown: nothing was compared yet".
 inline std::string slip_detection(double residual_level) {
   if (residual_level == 0) return "unknown: nothing was compared yet";
   if (residual_level < kSlowDetection) return "on";

@@ -1,6 +1,6 @@
 #pragma once
-/// One row per cycle and node for the log: the frame it published, when, and what its law was given. Where an injected
-/// fault suppressed the frame, its head is that of a token, and its content is not published.
+/// The trace has one row per cycle and node for the log: the published frame, its time, and the inputs of the law. If
+/// an injected fault suppressed the frame, its head is that of a token, and its content was not published.
 
 #include <cstdint>
 
@@ -14,12 +14,13 @@
 
 namespace robot_control {
 
-/// When cycle k was due on the wall clock: its stamp, later by what a simulated plant let slip and was held.
+/// Returns when cycle k was due on the wall clock: its stamp plus the delays (`slipped_ns`) and pauses (`held_ns`) of a
+/// simulated plant.
 inline std::int64_t due_ns(const SensorFrame& sensors) noexcept {
   return sensors.head.stamp_ns + static_cast<std::int64_t>(sensors.slipped_ns + sensors.held_ns);
 }
 
-/// Relative to `due_ns`, on the same clock. Zero in lockstep, where time stands still.
+/// Times relative to `due_ns`, on the same clock. They are zero in lockstep, where no time passes within a cycle.
 struct CycleTiming {
   std::int64_t woke_ns = 0;       ///< the thread began this cycle
   std::int64_t published_ns = 0;  ///< its frame was published
@@ -28,7 +29,7 @@ struct CycleTiming {
 struct DriverTrace {
   SensorFrame sensors;
   TruthFrame truth;
-  GateReport gate;  ///< of tick k itself (SensorFrame::gate is that of k-1)
+  GateReport gate;  ///< report of tick k itself (SensorFrame::gate is that of k-1)
   CycleTiming timing;
   GateCalls calls;
 };
@@ -41,7 +42,7 @@ struct EstimatorTrace {
 
 struct ControllerTrace {
   CommandFrame command;
-  DriveTuning tuning;  ///< with which it was computed
+  DriveTuning tuning;  ///< the tuning with which the command was computed
   CycleTiming timing;
   ControllerCalls calls;
 };
@@ -52,7 +53,7 @@ struct MonitorTrace {
   MonitorCalls calls;
 };
 
-/// Of the frame that the node published, or would have.
+/// Return the head of the row's frame, published or suppressed.
 inline const FrameHead& head_of(const DriverTrace& row) noexcept {
   return row.sensors.head;
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// mujoco_plant → telemetry, tests: what really happens. No estimator, controller or monitor sees it.
+/// mujoco_plant sends this frame to telemetry and tests: the true state. No estimator, controller or monitor receives
+/// it.
 
 #include <array>
 
@@ -12,8 +13,8 @@ namespace robot_control {
 
 struct TruthFrame {
   FrameHead head;
-  Pose pose_world;   ///< base_link from where it was at cycle 0: x its heading there, z the normal of the ground
-  Twist twist_base;  ///< of base_link in its own axes
+  Pose pose_world;   ///< base_link relative to its place at cycle 0, where x is its heading and z the ground's normal
+  Twist twist_base;  ///< twist of base_link in its own axes
   std::array<JointSample, kMaxJoints> joints{};     ///< before any sensor error
   std::array<double, kMaxContacts> normal_force{};  ///< N, per wheel, mean over [t_k-1, t_k)
   std::array<double, kMaxContacts> slip{};          ///< m/s, per wheel: speed of the contact patch over ground
