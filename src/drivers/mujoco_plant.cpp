@@ -14,14 +14,14 @@
 namespace robot_control {
 namespace {
 
-constexpr double kRestSpeed = 1e-6;       // m/s and rad/s, of the base: 60 µm a minute
+constexpr double kRestSpeed = 1e-6;       // m/s and rad/s of the base: 60 µm per minute
 constexpr double kLastRestSpeed = 3e-5;   // 1 mm in 30 s
 constexpr double kJointRestSpeed = 1e-3;  // m/s and rad/s
-constexpr double kLastJointSpeed = std::numeric_limits<double>::infinity();  // a caster in the air may swing on
-constexpr double kRestTime = 0.1;   // s, so long at rest, not just at a turning point
+constexpr double kLastJointSpeed = std::numeric_limits<double>::infinity();  // a caster in the air may keep swinging
+constexpr double kRestTime = 0.1;   // s; excludes a turning point of an oscillation
 constexpr double kSettleTime = 20;  // s
 
-/// The battery alone must bear what is not a motor.
+/// Refuses a battery that cannot feed the electronics even without the motors.
 void check_battery(double voltage, double resistance) {
   const double max_resistance = voltage / (2 * kIdleCurrent);
   if (voltage <= 0 || resistance <= max_resistance) return;
@@ -76,7 +76,8 @@ void MujocoPlant::start() {
   measure();
 }
 
-/// Where the base is, its heading in the plane it stands on; how it leans there is a part of its pose.
+/// Sets the origin of truth: the position of the base and its heading in the ground plane. Its tilt against the plane
+/// is part of its pose.
 void MujocoPlant::set_origin() {
   const mjtNum* base = data_->qpos + model_.base_position;
   const Eigen::Vector3d up(model_.up[0], model_.up[1], model_.up[2]);
@@ -127,7 +128,7 @@ void MujocoPlant::settle() {
         "on a plane, z upwards from it, less steep than brakes and friction can hold; where the centre of "
         "gravity lies over the only axle, put it where casters carry a part of it.");
   }
-  // The same after every start, which other threads may not see changing.
+  // The text is the same after every start and is set only once, because other threads read it.
   if (!has_rested_) {
     unloaded_ = unloaded_wheels(model_, wheels_);
     if (!unloaded_.empty()) {
@@ -224,7 +225,7 @@ bool MujocoPlant::inject(const InjectedFaults& faults) noexcept {
 void MujocoPlant::substep(void* plant) {
   auto& self = *static_cast<MujocoPlant*>(plant);
   mj_step2(self.model_.model.get(), self.data_.get());
-  self.wheels_.weigh(*self.data_);  // mj_step1 finds the contacts of the new state and leaves their forces behind
+  self.wheels_.weigh(*self.data_);  // before mj_step1, which finds the new contacts without their forces
   mj_step1(self.model_.model.get(), self.data_.get());
 }
 
@@ -260,7 +261,7 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   return true;
 }
 
-// Half a step aside, so that rounding of the time does not decide when it begins.
+// The time is shifted by half a step, so that its rounding does not change the first step of the push.
 void MujocoPlant::push() noexcept {
   const double since = data_->time - parameters_.push_start + model_.model->opt.timestep / 2;
   const bool acts = since >= 0 && since < parameters_.push_duration;

@@ -1,40 +1,40 @@
 #pragma once
-/// The simulated machine: robot and scene in MuJoCo.
+/// MujocoPlant is the simulated machine: robot and scene in MuJoCo.
 ///
-/// A period is n = ⌈period / 1 ms⌉ MuJoCo steps of period/n. `write` does for each of them
+/// A period consists of n = ⌈period / 1 ms⌉ MuJoCo steps of period/n. For each of them `write` runs
 ///
 ///   wheels: joint law (q, q̇ → τ), motor, tyre friction  →  mj_step2 (accelerations, integration)
 ///   →  mj_step1 (kinematics of the new state)
 ///
-/// and collects what `read` and `truth` hand out, so that after `write` k everything describes t_k+1: positions,
-/// velocities and gyro at that instant; accelerometer (specific_force.h), contact forces and efforts as means over
-/// [t_k, t_k+1), as SensorFrame promises. Joints that are no wheels take no commands (JointRole): passive ones move
-/// freely, held ones stand by friction.
+/// and collects the values for `read` and `truth`. After `write` k they describe t_k+1, as SensorFrame requires:
+/// positions, velocities and gyro at that time. Accelerometer (specific_force.h), contact forces and efforts are means
+/// over [t_k, t_k+1). Joints that are no wheels take no commands (JointRole): passive ones move freely, held ones stay
+/// by friction.
 ///
-/// `start` sets the robot down on the site `start` of the scene and lets it settle with the brakes on, at most for
-/// 20 s; where it then rests is time zero and the origin of truth. It rests when its base has moved slower than
-/// 1 µm/s and 1 µrad/s, its joints than 1 mrad/s (an unloaded swivel takes long, and does not matter), for 0.1 s;
-/// or at last when the base is slower than 30 µm/s and 30 µrad/s. A robot that tilts by more than 30° falls over, and
-/// is refused; the driver then stays in state kStarting. Same model and commands, same bits, also after another
-/// `start`.
+/// `start` places the robot on the site `start` of the scene and lets it settle with the brakes on, for at most 20 s.
+/// Its place at rest is the origin of truth, and its time is zero. It is at rest when for 0.1 s its base has been
+/// slower than 1 µm/s and 1 µrad/s and its joints than 1 mrad/s. After 20 s a base slower than 30 µm/s and 30 µrad/s
+/// also counts, because an unloaded swivel moves for long without effect. A robot that tilts by more than 30° falls
+/// over and is refused; the driver then stays in state kStarting. The same model and commands give the same bits, also
+/// after another `start`.
 ///
 /// A push acts on the base's origin from push_start for push_duration after time zero.
 ///
-/// Faults: a warning of MuJoCo is kFaultSimulationDiverged, an error kFaultSimulationError, NaN or infinity in what
-/// would be handed out kFaultNotFinite. The simulation then stands; `read` and `truth` keep the last good values,
-/// with state kFault and nothing valid. `start` recovers from all but an error, which is for good.
+/// A warning of MuJoCo causes kFaultSimulationDiverged, an error kFaultSimulationError, NaN or infinity in the results
+/// kFaultNotFinite. The simulation then stops. `read` and `truth` keep the last good values, with state kFault and
+/// nothing valid. `start` recovers from all faults except an error, which is permanent.
 ///
-/// With native friction there is a known error: MuJoCo drives the slip of a wheel to zero with the time constant T/2
-/// of `solref` (T = 4 ms) but leaves out the turning of the contact's frame (J̇q̇). In a curve at v, ω the robot
-/// therefore moves sideways with v ω T/2, outwards: 0.2 mm/s at 0.5 m/s and 0.2 rad/s.
+/// Native friction has a known error. MuJoCo drives the slip of a wheel to zero with the time constant T/2 of `solref`
+/// (T = 4 ms), but omits the rotation of the contact's frame (J̇q̇). In a curve at v, ω the robot therefore moves
+/// outwards with v ω T/2: 0.2 mm/s at 0.5 m/s and 0.2 rad/s.
 ///
-/// Between command and torque: actuator_delay, injected faults (motor_faults.h), the motor's torque–speed line
-/// (motor.h). Between state and `read`: sensor errors and delay (sensor_errors.h), injected faults (sensor_faults.h).
-/// Truth stands before all of them. `start` takes all injected faults back.
+/// A command passes actuator_delay, injected faults (motor_faults.h) and the motor's torque–speed line (motor.h). The
+/// state passes sensor errors and delay (sensor_errors.h) and injected faults (sensor_faults.h) before `read`. Truth is
+/// the state itself. `start` removes all injected faults.
 ///
-/// Sensors: encoders of all joints, gyro and accelerometer at the IMU; where the parameters say so, the forces of the
-/// ground on wheels and casters (wheel_contacts.h), and a battery (battery.h) that feeds all wheels. An e-stop button
-/// that is not pressed, except by an injected fault.
+/// The sensors are encoders at all joints, gyro and accelerometer at the IMU, and an e-stop button, which only an
+/// injected fault presses. The parameters can add the ground's forces on wheels and casters (wheel_contacts.h) and a
+/// battery (battery.h) that feeds all wheels.
 
 #include <array>
 #include <string>
@@ -56,7 +56,7 @@ namespace robot_control {
 
 class MujocoPlant final : public Driver {
  public:
-  /// `period` in s. Throws DriverError: see compile_model, WheelContacts and brake_of.
+  /// `period` is in s. Throws DriverError as compile_model, WheelContacts and brake_of do.
   MujocoPlant(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
   void start() override;
@@ -67,14 +67,14 @@ class MujocoPlant final : public Driver {
   bool truth(TruthFrame& truth) noexcept override;
   bool inject(const InjectedFaults& faults) noexcept override;
 
-  /// MuJoCo's message about the fault; "" without one.
+  /// Returns MuJoCo's message about the fault; "" without one.
   const char* fault_message() const noexcept { return fault_message_.data(); }
 
-  /// "left_wheel_joint bears no load at rest, on the ground stand skid": of the first `start`; "" where all drive
-  /// wheels carry.
+  /// Returns a warning from the first `start`, "left_wheel_joint bears no load at rest, on the ground stand skid"; ""
+  /// if all drive wheels carry load.
   const std::string& unloaded() const noexcept { return unloaded_; }
 
-  /// For tests and tools: model and data. Null data before `start`.
+  /// Return model and data for tests and tools; the data are null before `start`.
   const MujocoModel& model() const noexcept { return model_; }
   const mjData* data() const noexcept { return data_.get(); }
 
@@ -104,7 +104,7 @@ class MujocoPlant final : public Driver {
   SensorErrors sensor_errors_;
   SensorFaults sensor_faults_;
   std::vector<JointCommand> brakes_;
-  std::array<double, 7> origin_{};  ///< of truth: position, quaternion w x y z
+  std::array<double, 7> origin_{};  ///< origin of truth: position, quaternion w x y z
   std::array<double, 3> push_{};    ///< N, world axes
   bool settled_ = false;
   bool has_rested_ = false;
@@ -115,7 +115,7 @@ class MujocoPlant final : public Driver {
   std::array<char, 256> fault_message_{};
   bool stopped_ = false;
 
-  // sums over the steps of a period
+  // These are sums over the steps of a period.
   std::array<double, kMaxJoints> effort_sum_{};
   std::array<double, kMaxWheels> normal_force_sum_{};
   Eigen::Vector3d specific_force_sum_ = Eigen::Vector3d::Zero();
@@ -128,12 +128,12 @@ class MujocoPlant final : public Driver {
   InjectedFaults injected_{};
   std::uint64_t cycle_ = 0;  ///< writes since `start`
 
-  // of t_k
+  // These members describe t_k.
   Measurement exact_;
-  Measurement measured_;    ///< with its errors
-  Measurement handed_out_;  ///< with its faults, once it was read
+  Measurement measured_;    ///< with the sensors' errors
+  Measurement handed_out_;  ///< with the injected faults, after `read`
   bool read_ = false;
-  std::uint64_t lost_ = 0;  ///< SensorValidity bits taken by faults
+  std::uint64_t lost_ = 0;  ///< SensorValidity bits cleared by faults
   TruthFrame truth_;
 };
 

@@ -16,7 +16,8 @@ constexpr double kFallen = 30 * M_PI / 180;
 constexpr double kMinLoad = 0.001;
 constexpr double kMinShare = 0.01;
 
-/// A body's shapes stand in the MJCF in its own order (mjcf.cpp), but for those that roll, which are one each.
+/// Returns the link of a geom. The shapes of a body are in the MJCF in the body's order (mjcf.cpp); a rolling body has
+/// a single shape.
 std::string link_of(const MujocoModel& model, int geom) {
   const int body = model.model->geom_bodyid[geom];
   std::string name = mj_id2name(model.model.get(), mjOBJ_BODY, body);

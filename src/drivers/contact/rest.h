@@ -1,5 +1,5 @@
 #pragma once
-/// Whether a robot that was set down stands, and on what.
+/// These functions check whether a placed robot stands, and on which parts.
 
 #include <string>
 
@@ -8,19 +8,22 @@
 
 namespace robot_control {
 
-/// Every component of the base's velocity below `base_speed` (m/s and rad/s), every joint's below `joint_speed`.
+/// Returns whether every component of the base's velocity is below `base_speed` (m/s and rad/s) and every joint's below
+/// `joint_speed`.
 bool at_rest(const MujocoModel& model, const mjData& data, double base_speed, double joint_speed) noexcept;
 
-/// "left" or "right": the drive wheels of that side bear less than a thousandth of the robot's weight; else empty.
+/// Returns "left" or "right" if the drive wheels of that side carry less than a thousandth of the robot's weight, else
+/// "".
 std::string unloaded_side(const MujocoModel& model, const WheelContacts& wheels);
 
-/// The drive wheels' joints that bear less than 1 % of what they would if all bore the same: "left, right"; else empty.
+/// Returns the joints of drive wheels that carry less than 1 % of an equal share of the weight: "left, right"; "" if
+/// there are none.
 std::string unloaded_wheels(const MujocoModel& model, const WheelContacts& wheels);
 
-/// The robot's links, other than its drive wheels, that touch something: "base_link, bumper".
+/// Returns the robot's links, except its drive wheels, that touch something: "base_link, bumper".
 std::string links_on_ground(const MujocoModel& model, const mjData& data);
 
-/// Tilted by more than 30° against the ground at the site `start`.
+/// Returns whether the robot is tilted by more than 30° against the ground at the site `start`.
 bool fallen(const MujocoModel& model, const mjData& data) noexcept;
 
 }  // namespace robot_control

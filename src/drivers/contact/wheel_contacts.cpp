@@ -28,7 +28,8 @@ bool inside(const mjModel& model, const mjData& data, int region, const mjtNum* 
   return sum <= 1;
 }
 
-/// N, world axes, on the second shape: the rows behind the normal's, along the other axes of the contact's frame.
+/// Returns the friction on the second shape in N, world axes. It is in the rows behind that of the normal, along the
+/// other axes of the contact's frame.
 Eigen::Vector3d native_friction(const mjData& data, const mjContact& contact) {
   if (contact.efc_address < 0 || contact.dim < 3) return Eigen::Vector3d::Zero();
   const mjtNum* force = data.efc_force + contact.efc_address;
@@ -112,7 +113,7 @@ void WheelContacts::reset() {
   }
 }
 
-/// The way of a side is the mean of its wheels'.
+/// Advances the random slip by the mean distance of each side's wheels.
 void WheelContacts::roll_on(const mjData& data) noexcept {
   for (const Side side : {Side::kLeft, Side::kRight}) {
     double distance = 0;
@@ -176,7 +177,7 @@ void WheelContacts::observe(Wheel& wheel, const mjData& data, int index) noexcep
   wheel.slip = std::max(wheel.slip, input.velocity.norm());
 }
 
-/// m/s, ε times what the turning of the wheel adds to the speed of its contact.
+/// Returns ε times the speed in m/s that the wheel's rotation adds to its contact.
 Eigen::Vector3d WheelContacts::added_speed(const Wheel& wheel, const mjData& data, const mjtNum* point) const noexcept {
   const Vector axle(data.xaxis + 3 * model_->body_jntadr[wheel.body]);
   const Eigen::Vector3d arm = Vector(point) - Vector(data.geom_xpos + 3 * wheel.shape);
@@ -199,14 +200,15 @@ double WheelContacts::friction(const mjData& data, const mjContact& contact, int
   return ground_friction_.value_or(model_->geom_friction[3 * other]);
 }
 
-// cvel: angular, then linear velocity at the centre of mass of the body's whole tree.
+// cvel has the angular, then the linear velocity at the centre of mass of the body's whole tree.
 Eigen::Vector3d WheelContacts::velocity(const mjData& data, int body, const mjtNum* point) const noexcept {
   const Vector angular(data.cvel + 6 * body), linear(data.cvel + 6 * body + 3);
   const Vector centre(data.subtree_com + 3 * model_->body_rootid[body]);
   return linear + angular.cross(Vector(point) - centre);
 }
 
-// Jᵀ f along the dofs that move the body, by their motion axes: mj_applyFT at a fraction of its cost.
+// Adds Jᵀ f for the dofs that move the body, by their motion axes. It does the same as mj_applyFT at a fraction of the
+// cost.
 void WheelContacts::push(mjData& data, int body, const mjtNum* point, const Eigen::Vector3d& force,
                          const Eigen::Vector3d& torque) const noexcept {
   const int holder = model_->body_weldid[body];
@@ -240,7 +242,7 @@ void WheelContacts::weigh(const mjData& data) noexcept {
     wheel.normal_force = 0;
     for (Contact& contact : wheel.contacts) {
       if (!contact.touches) continue;
-      // Of a frictionless contact and of an elliptic cone alike, the first row is the normal force.
+      // The first row is the normal force, both for a frictionless contact and for an elliptic cone.
       const int row = data.contact[contact.address].efc_address;
       contact.normal_force = row < 0 ? 0 : data.efc_force[row];
       wheel.normal_force += contact.normal_force;

@@ -1,28 +1,28 @@
 #pragma once
-/// The wheels' contacts with the world, and on brush tyres (tyre.h) their friction. In every MuJoCo step:
+/// WheelContacts finds the wheels' contacts with the world and computes the friction of brush tyres (tyre.h). In every
+/// MuJoCo step:
 ///
 ///   mj_step1  →  observe  →  apply  →  mj_step2  →  weigh
 ///
-/// `observe` finds the contacts of the new state and their slip; `apply` adds the tyres' forces to qfrc_applied;
-/// `weigh` reads the normal forces that the step found, which bound the friction of the next one. A wheel may stand
-/// on several things at once (floor and kerb); each contact has a tyre state of its own, kept as long as wheel and
-/// other shape touch.
+/// `observe` finds the contacts of the new state and their slip. `apply` adds the tyres' forces to qfrc_applied.
+/// `weigh` reads the normal forces of the step, which bound the friction in the next one. A wheel may touch several
+/// shapes at once (floor and kerb). Each contact has its own tyre state as long as wheel and shape touch.
 ///
-/// Friction μ of a contact: that of a region of the scene in which it lies, else ground_friction, else the other
-/// shape's `friction`. A region is a shape of the scene named "friction/…" that collides with nothing
-/// (contype="0" conaffinity="0"); a box, sphere or ellipsoid. So a patch of ice lies in a floor that stays a plane.
+/// The friction μ of a contact is that of the scene's region that contains it, else ground_friction, else the other
+/// shape's `friction`. A region is a box, sphere or ellipsoid of the scene named "friction/…" that collides with
+/// nothing (contype="0" conaffinity="0"). So a patch of ice can be part of a plane floor.
 ///
-/// A caster that nothing turns into the direction of travel (WheelModel::omni) has friction along its rolling direction
-/// alone.
+/// A caster that does not swivel (WheelModel::omni) has friction only along its rolling direction.
 ///
-/// On brush tyres the drive wheels of a robot in the field slip at random (slip_noise.h).
+/// At error level kField, drive wheels with brush tyres slip at random (slip_noise.h).
 ///
-/// Where contact sensors are asked for, `weigh` also finds the whole force on each wheel, friction included.
+/// With contact sensors, `weigh` also computes the total force on each wheel with friction.
 ///
-/// With native friction `apply` does nothing, MuJoCo's own forces act; regions then have no effect.
+/// With native friction, MuJoCo's own forces act, and `apply` and regions have no effect.
 ///
-/// m of a tyre: 1/λ, λ = Σⱼ |Aᵢⱼ|, A = J M⁻¹ Jᵀ the accelerations that unit forces at the lowest points j of all the
-/// wheels give to that of wheel i, at the start pose: Gershgorin's bound for all tyres acting at once.
+/// The mass m of a tyre (tyre.h) is 1/λ with λ = Σⱼ |Aᵢⱼ| at the start pose. A = J M⁻¹ Jᵀ has the accelerations of
+/// wheel i's lowest point by unit forces at the lowest points j of all wheels: Gershgorin's bound for all tyres at
+/// once.
 
 #include <mujoco/mujoco.h>
 
@@ -39,43 +39,44 @@ namespace robot_control {
 
 class WheelContacts {
  public:
-  /// Throws DriverError: a region that is none of the shapes above, or collides.
+  /// Throws DriverError for a region of another shape, or one that collides.
   WheelContacts(const MujocoModel& model, const MujocoPlantParameters& parameters);
 
-  /// Nothing touches, all tyres are relaxed.
+  /// Removes all contacts; all tyres are relaxed.
   void reset();
 
   void observe(const mjData& data) noexcept;
   void apply(mjData& data) noexcept;
   void weigh(const mjData& data) noexcept;
 
-  /// N: sum over the contacts of drive wheel `wheel`, of the last `weigh`.
+  /// Returns the sum of normal forces of drive wheel `wheel` in N at the last `weigh`.
   double normal_force(std::size_t wheel) const noexcept { return wheels_[wheel].normal_force; }
-  /// N, base axes: on `wheel`, of the last `weigh`; drive wheels, then casters. Zero without contact sensors.
+  /// Returns the force on `wheel` (drive wheels, then casters) in N, base axes, at the last `weigh`; zero without
+  /// contact sensors.
   const Eigen::Vector3d& force(std::size_t wheel) const noexcept { return wheels_[wheel].force; }
-  /// Drive wheels and casters.
+  /// Returns the number of drive wheels and casters.
   std::size_t count() const noexcept { return wheels_.size(); }
-  /// m/s: the fastest contact's, of the last `observe`.
+  /// Returns the slip of the fastest contact in m/s at the last `observe`.
   double slip(std::size_t wheel) const noexcept { return wheels_[wheel].slip; }
 
  private:
-  static constexpr std::size_t kContacts = 4;  ///< per wheel; more slide without friction
+  static constexpr std::size_t kContacts = 4;  ///< per wheel; further contacts have no friction
 
   struct Contact {
-    int other = -1;  ///< geom; -1: free
+    int other = -1;  ///< geom; -1: the contact is not used
     bool touches = false;
-    int address = 0;  ///< into mjData::contact
+    int address = 0;  ///< index into mjData::contact
     double normal_force = 0;
     double side = 1;  ///< +1: the contact's normal points to the wheel, else −1
     TyreInput input;
     TyreState state;
-    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< N, world axes, of the tyre
+    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< N, world axes, force of the tyre
   };
   struct Wheel {
     int shape = 0, body = 0, dof = 0;
     double radius = 0;
     bool omni = false;
-    std::optional<Side> side;  ///< of a drive wheel
+    std::optional<Side> side;  ///< drive wheels only
     TyreParameters tyre;
     std::array<Contact, kContacts> contacts;
     double normal_force = 0;
@@ -100,7 +101,7 @@ class WheelContacts {
   int base_body_;
   std::size_t drive_wheels_;
   std::optional<double> ground_friction_;
-  std::vector<int> wheel_of_;  ///< per geom; -1: none
+  std::vector<int> wheel_of_;  ///< index of the wheel per geom; -1: none
   std::vector<int> regions_;   ///< geoms
   std::vector<Wheel> wheels_;  ///< drive wheels, then casters
   SlipNoise slip_noise_;

@@ -46,11 +46,11 @@ Eigen::Vector3d eigen(const Vector3& v) {
   return {v[0], v[1], v[2]};
 }
 
-// Turns the z axis to `axis`, of any length. Eigen's FromTwoVectors has a singular value decomposition in it,
-// which is most of the time that this file is compiled.
+// Returns the rotation from the z axis to `axis`, which may have any length. Eigen's FromTwoVectors would double the
+// compile time of this file by its singular value decomposition.
 Eigen::Quaterniond from_z(const Eigen::Vector3d& axis) {
   const Eigen::Vector3d to = axis.normalized();
-  const double s = std::sqrt(2 * (1 + to.z()));  // twice the cosine of half the angle
+  const double s = std::sqrt(2 * (1 + to.z()));  // twice the cosine of half the angle of rotation
   if (s < 1e-6) return {0, 1, 0, 0};
   const Eigen::Vector3d turn = Eigen::Vector3d::UnitZ().cross(to) * (1 / s);
   return {s / 2, turn.x(), turn.y(), turn.z()};
@@ -68,7 +68,7 @@ class Writer {
     base.translation() = Eigen::Vector3d(place.pose[0], place.pose[1], place.pose[2]);
     base.linear() = Eigen::Quaterniond(place.pose[3], place.pose[4], place.pose[5], place.pose[6]).toRotationMatrix();
     write_body(0, base);
-    // A viewer opens with the robot in sight, not with all of the ground.
+    // A viewer then opens with the robot in view instead of all the ground.
     text += "<statistic extent=\"1\"" + attribute("center", mjcf_numbers(base.translation())) + "/>\n";
     text += "<asset>\n" + assets_ + "</asset>\n<worldbody>\n" + bodies_ + "</worldbody>\n";
     text += "<equality>\n" + equalities_ + "</equality>\n<sensor>\n";
@@ -132,7 +132,7 @@ class Writer {
     return joint.spring_stiffness > 0 ? joint.spring_load / joint.spring_stiffness : 0;
   }
 
-  // Of a swivel that carries rolling casters.
+  // Returns the armature of a swivel that carries rolling casters.
   double swivel_inertia(const RigidBody& body) const {
     double radius = 0;
     for (const WheelModel& caster : model_.casters) {

@@ -20,7 +20,7 @@ std::string rolling(const WheelModel& wheel, const MujocoPlantParameters& parame
   return R"( condim="3" priority="1" friction=")" + mjcf_number(*parameters.ground_friction) + R"( 0 0")";
 }
 
-// At least kThinnest along each principal direction.
+// Returns the corners of a mesh that is at least kThinnest thick along each principal direction.
 std::vector<Eigen::Vector3d> thickened(std::vector<Eigen::Vector3d> corners) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& corner : corners) mean += corner / static_cast<double>(corners.size());

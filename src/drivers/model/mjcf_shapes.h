@@ -1,5 +1,5 @@
 #pragma once
-/// Collision shapes as MJCF elements; the rules are mjcf.h's.
+/// These functions write collision shapes as MJCF elements by the rules in mjcf.h.
 
 #include <Eigen/Geometry>
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace robot_control {
 
-/// 17 digits, "." as decimal point: as text and back without a change.
+/// Return numbers with 17 digits and the decimal point ".", which are read back without a change.
 std::string mjcf_number(double value);
 std::string mjcf_numbers(const Eigen::Vector3d& values);
 
-/// ` pos="…" quat="…"`
+/// Returns ` pos="…" quat="…"`.
 std::string mjcf_pose(const Eigen::Isometry3d& frame);
 
-/// `<geom …/>` of a shape that slides; `mesh` names its asset.
+/// Returns `<geom …/>` of a shape that slides; `mesh` names its asset.
 std::string mjcf_sliding_shape(const Shape& shape, const std::string& mesh);
 
-/// `<geom …/>` of a drive wheel or caster: `frame` has the axle as its z.
+/// Returns `<geom …/>` of a drive wheel or caster; the z axis of `frame` is the axle.
 std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const WheelModel& wheel,
                                const MujocoPlantParameters& parameters);
 
-/// `<mesh …/>` with its corners; flat ones thickened.
+/// Returns `<mesh …/>` with its corners; flat meshes are thickened.
 std::string mjcf_mesh(const std::string& name, const std::vector<Eigen::Vector3d>& corners);
 
 }  // namespace robot_control

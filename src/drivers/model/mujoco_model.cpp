@@ -85,7 +85,7 @@ void check_mass(const MujocoModel& robot, const std::string& path) {
                     " kg. Remove settotalmass, boundmass or inertiafromgeom from its <compiler>.");
 }
 
-// `start`: pose of the base at its start.
+// Sets the options of the plant; `start` is the pose of the base at its start.
 void set_options(mjModel& model, double timestep, double slope, const std::array<double, 7>& start) {
   model.opt.timestep = timestep;
   model.opt.integrator = mjINT_EULER;
@@ -121,7 +121,7 @@ void find_addresses(MujocoModel& result) {
   result.imu = find(model, mjOBJ_SITE, kMjcfImu);
 }
 
-/// ", such as flat, kerb in its folder"; empty: there is none.
+/// Returns ", such as flat, kerb in its folder"; "" if there is no other scene.
 std::string scenes_beside(const std::filesystem::path& scene) {
   std::vector<std::string> names;
   std::error_code error;
@@ -157,7 +157,7 @@ MujocoModel compile_model(const RobotModel& robot, const MujocoPlantParameters& 
   const std::string name = scene.stem().string() + "+robot.xml";
   VirtualFiles files;
   files.add(name, robot_mjcf(result.robot, parameters, place));
-  // In the scene's directory, so that its own relative paths stay true.
+  // The text is loaded in the scene's directory, so that relative paths in the scene stay valid.
   result.model = load((scene.parent_path() / name).string(), files.get(), robot.source + " in scene " + scene.string());
   result.substeps = static_cast<int>(std::ceil(period / kMaxStep - 1e-9));
   set_options(*result.model, period / result.substeps, parameters.slope, place.pose);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kXmlBlank = " \t\r\n";
 
-/// Values of `name="…"`, wherever they stand.
+/// Returns the values of all attributes `name="…"` in the text.
 std::vector<std::string> attribute_values(std::string_view text, std::string_view name) {
   std::vector<std::string> values;
   for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
@@ -61,7 +61,7 @@ class SceneFiles {
   }
 
   std::filesystem::path folder_;
-  std::set<std::filesystem::path> folders_;  ///< in which assets may lie, relative to the scene's
+  std::set<std::filesystem::path> folders_;  ///< folders for assets, relative to the scene's folder
   std::set<std::filesystem::path> seen_;
 };
 

@@ -1,13 +1,14 @@
 #pragma once
-/// The files of a scene before MuJoCo opens them: the MJCF itself and, in it and in what it includes, everything that
-/// an attribute `file` names, in the scene's folder and in those of `meshdir`, `texturedir` and `assetdir`.
+/// check_scene_files checks the files of a scene before MuJoCo opens them: the MJCF itself and every file that an
+/// attribute `file` names. It also searches included files, and the folders of `meshdir`, `texturedir` and `assetdir`
+/// beside the scene's folder.
 
 #include <string>
 
 namespace robot_control {
 
-/// Throws DriverError: the scene is no regular file of at most kMaxDescription bytes, or a file that it names is
-/// there and is none. What is not there is left to MuJoCo's own message.
+/// Throws DriverError if the scene or an existing file that it names is no regular file of at most kMaxDescription
+/// bytes. MuJoCo itself reports missing files.
 void check_scene_files(const std::string& scene);
 
 }  // namespace robot_control

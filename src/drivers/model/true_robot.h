@@ -1,6 +1,6 @@
 #pragma once
-/// The simulated robot: as its URDF describes it, without the overrides of the `robot:` block, with the configured
-/// errors of the plant.
+/// true_robot returns the simulated robot. It is the robot of the URDF, without the overrides of the `robot:` block,
+/// with the configured errors of the plant.
 ///
 ///   radius      (1 + left_radius_error) or (1 + right_radius_error) times the URDF's
 ///   wheel base  every wheel moved sideways by wheel_base_error · wheel_base / 2, outwards
@@ -10,7 +10,7 @@
 ///   centre of gravity   in the field (errors.h), ahead and to the left of the described one by
 ///               centre_of_gravity_error · wheel_base, by moving that of the root link
 ///
-/// Effort limits are the described ones: they belong to the drive.
+/// Effort limits stay as described, because they belong to the drive.
 
 #include "drivers/mujoco_plant_parameters.h"
 #include "robot/bodies/rigid_bodies.h"
@@ -18,7 +18,7 @@
 
 namespace robot_control {
 
-/// Throws RobotError as read_robot does, which it calls.
+/// Throws RobotError as read_robot does.
 RobotModel true_robot(const RobotModel& described, const MujocoPlantParameters& parameters);
 
 }  // namespace robot_control

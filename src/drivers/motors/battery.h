@@ -1,13 +1,14 @@
 #pragma once
-/// The battery's voltage at its terminals, where it has to feed the motors.
+/// battery_under_load computes the battery's voltage at its terminals while it feeds the motors.
 ///
-/// A source U₀ behind a resistance R. The motors draw the mechanical power P that they give (losses in copper and
-/// gears are left out, so that a real battery sags more; P < 0: they charge it), everything else the current I₀:
+/// The battery is a source U₀ behind a resistance R. The motors draw their mechanical power P; P < 0 charges the
+/// battery. Losses in copper and gears are left out, so that the voltage of a real battery falls further. All other
+/// devices draw the current I₀:
 ///
 ///   U = U₀ − R I      I = P/U + I₀      U² − (U₀ − R I₀) U + R P = 0,  the greater root
 ///
-/// More power than (U₀ − R I₀)²/(4 R) no such source gives; there U stays at half of U₀ − R I₀. The motors do not
-/// notice; it does not run down.
+/// The source cannot give more power than (U₀ − R I₀)²/(4 R); beyond that U stays at half of U₀ − R I₀. The motors are
+/// not limited by the battery, and it does not discharge.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ struct BatterySample {
   double current = 0;  ///< A, positive when discharging
 };
 
-/// `open_voltage` U₀ > R I₀; `resistance` R ≥ 0, Ω; `power` P, W.
+/// `open_voltage` is U₀ > R I₀ in V, `resistance` is R ≥ 0 in Ω, `power` is P in W.
 inline BatterySample battery_under_load(double open_voltage, double resistance, double power) noexcept {
   const double half = (open_voltage - resistance * kIdleCurrent) / 2;
   const double voltage = half + std::sqrt(std::max(0.0, half * half - resistance * power));

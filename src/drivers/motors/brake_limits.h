@@ -1,5 +1,5 @@
 #pragma once
-/// How hard a wheel brakes: what the user says, else what robot and time step bear.
+/// brake_of computes how hard a wheel brakes. Values that the user does not set are derived from robot and time step:
 ///
 ///   effort      B = min(effort limit, max(B₀ − f, B₀/10)),  with F = a (m + Σ J/r²)
 ///                 slowing  B₀ = max(F/2, m g sin 5°, min(0.9 F, m g sin 10°)) r / n
@@ -8,12 +8,13 @@
 ///   stiffness   k = 0.06 J/h²
 ///   hold speed  0.03 m/s / r
 ///
-/// n drive wheels, h time step, J a wheel's inertia about its axle, r its radius, f the dry friction of joint and
-/// motor, which brakes as well, m the robot's mass. a is the deceleration at which wheels lift
-/// (robot/bodies/tipping.h). A robot that tips easily still stands on slopes of 10°; it slows down on them as far as it
-/// does not tip, and on 5° in any case. More than the ground's friction carries is harmless, the wheel then slides.
+/// The robot has n drive wheels and the mass m. A wheel has the inertia J about its axle and the radius r; h is the
+/// time step. The dry friction f of joint and motor also brakes. At the deceleration a wheels lift
+/// (robot/bodies/tipping.h). A robot that tips easily is still held on slopes of 10°. It slows down on slopes of 5°,
+/// and on steeper ones as far as it does not tip. A torque above the ground's friction is harmless, because the wheel
+/// then slides.
 ///
-/// d and k: see joint_law.h; a factor of four to its limits.
+/// d and k are four times below the stability limits of joint_law.h.
 
 #include <string>
 
@@ -30,8 +31,8 @@ struct Brake {
   double hold_speed = 0;   ///< rad/s
 };
 
-/// Of the true robot's `wheel`. Throws DriverError for given values that the wheel does not bear, naming value and
-/// bound. `step` = h in seconds.
+/// Returns the brake of a wheel of the true robot; `step` is h in s. Throws DriverError, with value and bound, for a
+/// given value that is not stable.
 Brake brake_of(const RobotModel& robot, std::size_t wheel, const MujocoPlantParameters& parameters, double step);
 
 /// Throws DriverError unless 0 < d h / J ≤ 0.5 and 0 < k h² / J ≤ 0.5.

@@ -1,5 +1,5 @@
 #pragma once
-/// The wheels of one side, as indices into the frames' joint arrays.
+/// wheel_joints returns the wheels of one side as indices into the frames' joint arrays.
 
 #include <cstddef>
 #include <vector>

@@ -1,15 +1,15 @@
 #pragma once
-/// A device whose samples arrive after a delay that varies: what a driver reads that polls a serial line or a USB port.
+/// LateSamples simulates a device whose samples arrive after a varying delay, as over a serial line or a USB port.
 /// Sample i, taken in cycle i, arrives at
 ///
 ///   a(i) = max(a(i−1), i·T + delay + |jitter·w(i)|)      w independent standard normal numbers, at most 6
 ///
-/// and in cycle k the driver reports the newest one that has arrived, the first sample until there is one: one sample
-/// may be reported in several cycles, another in none, and their order holds. The frame's stamp is the time of the
-/// cycle, not of the sample, as that of a driver that cannot measure the delay: the receiver has to estimate or to
-/// tolerate the age of a sample.
+/// In cycle k the driver reports the newest sample that has arrived, or the first sample until one has. A sample may be
+/// reported in several cycles or in none; their order is kept. The frame's stamp is the time of the cycle, not of the
+/// sample, as with a driver that cannot measure the delay. The receiver has to estimate or to tolerate the age of a
+/// sample.
 ///
-/// Holds all samples that have not arrived yet itself: no allocation after construction.
+/// The class holds all samples that have not arrived yet itself and never allocates after construction.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace robot_control {
 template <class Value>
 class LateSamples {
  public:
-  /// `delay`, `jitter` ≥ 0, `period` > 0, in s.
+  /// `delay` ≥ 0, `jitter` ≥ 0 and `period` > 0 are in s.
   LateSamples(double delay, double jitter, double period, ErrorStream stream)
       : delay_(delay / period), jitter_(jitter / period), stream_(stream), on_the_way_(longest() + 2) {}
 
@@ -33,12 +33,12 @@ class LateSamples {
     last_arrival_ = 0;
   }
 
-  /// Cycles after which a sample has arrived for certain; 0: all are on time.
+  /// Returns after how many cycles every sample has arrived; 0 if all are on time.
   std::size_t longest() const noexcept {
     return delay_ == 0 && jitter_ == 0 ? 0 : static_cast<std::size_t>(std::ceil(delay_ + kMaxDeviations * jitter_));
   }
 
-  /// In goes the sample of this cycle, out comes what the driver reports, in its place.
+  /// Replaces the sample of this cycle by the one that the driver reports.
   void step(Value& value) noexcept {
     if (delay_ == 0 && jitter_ == 0) return;
     if (cycle_ == 0) reported_ = value;

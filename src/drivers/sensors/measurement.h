@@ -1,5 +1,5 @@
 #pragma once
-/// What the sensors of the plant read.
+/// A Measurement holds the readings of the plant's sensors.
 
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace robot_control {
 
-/// Everything that a sensor of the plant reports of one instant.
+/// All readings of the plant's sensors at one time.
 struct Measurement {
   std::array<JointSample, kMaxJoints> joints{};
   ImuSample imu;

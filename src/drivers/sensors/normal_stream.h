@@ -1,13 +1,13 @@
 #pragma once
-/// The random numbers of the plant's errors: one stream for each error, so that one that is set to zero changes none of
-/// the others.
+/// Each error of the plant has its own stream of random numbers, so that setting one error to zero does not change the
+/// others.
 
 #include <cstdint>
 #include <random>
 
 namespace robot_control {
 
-/// Numbers of the streams; 0 … 5 are bias, noise and walk of gyro and accelerometer (sensor_errors.cpp).
+/// The numbers of the streams; 0 … 5 are bias, noise and walk of gyro and accelerometer (sensor_errors.cpp).
 enum ErrorStream : std::uint64_t {
   kVibrationStream = 6,
   kSlowErrorStream = 7,
@@ -17,8 +17,8 @@ enum ErrorStream : std::uint64_t {
   kRightSlipStream = 11,
 };
 
-/// Independent standard normal numbers: G. Marsaglia's polar method (SIAM Review 6, 1964, p. 260), a quarter of the
-/// time that libstdc++'s distribution takes, and the same bits with any standard library.
+/// A NormalStream returns independent standard normal numbers by G. Marsaglia's polar method (SIAM Review 6, 1964, p.
+/// 260). It takes a quarter of the time of libstdc++'s distribution and gives the same bits with any standard library.
 class NormalStream {
  public:
   void seed(std::uint64_t seed, std::uint64_t stream);
@@ -28,7 +28,7 @@ class NormalStream {
   double uniform() noexcept;
 
   std::mt19937_64 engine_;
-  double spare_ = 0;  ///< the method gives two at a time
+  double spare_ = 0;  ///< the method computes two numbers at a time
   bool has_spare_ = false;
 };
 

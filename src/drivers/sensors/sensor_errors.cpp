@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-// Numbers of the streams: three a device.
+// The numbers of the streams; each device has three.
 constexpr std::uint64_t kBiasStream = 0;
 constexpr std::uint64_t kNoiseStream = 1;
 constexpr std::uint64_t kWalkStream = 2;
@@ -78,7 +78,7 @@ void SensorErrors::encode(Measurement& measurement) noexcept {
   }
 }
 
-/// Efforts are not sampled by the encoder: they stay those of this cycle.
+/// Delays the samples. Efforts are those of this cycle, because the encoder does not sample them.
 void SensorErrors::make_late(Measurement& measurement) noexcept {
   late_imu_.step(measurement.imu);
   Encoders encoders{};

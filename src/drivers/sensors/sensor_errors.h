@@ -1,35 +1,35 @@
 #pragma once
-/// What encoders, gyro and accelerometer report instead of the truth.
+/// SensorErrors adds the errors of encoders, gyro and accelerometer to the true values.
 ///
-/// Encoder of a wheel with N = encoder_resolution counts per turn, δ = 2π/N, T the period:
+/// The encoder of a wheel with N = encoder_resolution counts per turn, δ = 2π/N, T the period:
 ///
 ///   n(k) = round(q(k)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
 ///
-/// the velocity as a drive derives it, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); 0 in the first sample.
-/// N = 0: exact. Joints that are no wheels are exact, and so are contact forces, battery and inputs, and efforts: a
-/// drive measures its own current.
+/// The velocity is computed as in a drive, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); it is 0 in the first
+/// sample. With N = 0 the encoder is exact. Exact are also joints that are no wheels, contact forces, battery and
+/// inputs, and efforts, because a drive measures its own current.
 ///
-/// Gyro and accelerometer, each axis, with σ = noise, s = walk, and w, v, u independent standard normal numbers:
+/// Each axis of gyro and accelerometer, with σ = noise, s = walk, and w, v, u independent standard normal numbers:
 ///
 ///   measured(k) = (1 + e)·true(k) + b(k) + σ/√T·w(k)      b(k) = b(k−m) + s·√(m·T)·v(k)      b(0) = bias·u
 ///
-/// with e = gyro_scale_error, 0 of the accelerometer.
+/// e is gyro_scale_error; for the accelerometer it is 0.
 ///
-/// White noise of density σ, so that its integral over t has the variance σ²·t, on a bias that is drawn at switch-on
-/// and walks with the variance s²·t (the model of IEEE Std 952, Annex C, without its terms of bias instability and
-/// quantisation; σ and s are the continuous-time densities of N. Trawny and S. Roumeliotis, "Indirect Kalman Filter
-/// for 3D Attitude Estimation", 2005). It walks every m = kWalkCycles cycles: a step in each of them would be 4·10⁻⁵ of
-/// the noise and twice the work.
+/// The model is white noise of density σ, whose integral over t has the variance σ²·t, and a bias. The bias is drawn at
+/// switch-on and walks with the variance s²·t. This is the model of IEEE Std 952, Annex C, without bias instability and
+/// quantisation. σ and s are the continuous-time densities of N. Trawny and S. Roumeliotis, "Indirect Kalman Filter for
+/// 3D Attitude Estimation", 2005. The bias walks only every m = kWalkCycles cycles, because a step in each cycle would
+/// be 4·10⁻⁵ of the noise and double the work.
 ///
-/// In the field a moving robot shakes both (vibration.h), and the samples of the IMU, of the encoders where asked for,
-/// arrive late and at irregular times (late_samples.h). The IMU has measured the standing robot before a run begins, so
-/// that what arrives in the first cycles are samples of that time.
+/// In the field a moving robot shakes both devices (vibration.h). The samples of the IMU, and if configured those of
+/// the encoders, arrive late and at irregular times (late_samples.h). The IMU has measured the standing robot before a
+/// run begins; its samples arrive in the first cycles.
 ///
-/// Then all samples are `sensor_delay` cycles late together, under the head of the present cycle; until there is one
-/// so old, the first one comes.
+/// Finally all samples are delayed together by `sensor_delay` cycles, under the head of the present cycle. In the first
+/// cycles the first sample is reported.
 ///
-/// Random numbers come from `seed` alone. Noise, bias and walk of each device are streams of their own: one that is
-/// set to zero changes none of the others. `reset` restarts all of them, with the same bits.
+/// Random numbers depend only on `seed`. Noise, bias and walk of each device have their own streams, so that setting
+/// one to zero does not change the others. `reset` restarts all streams with the same bits.
 
 #include <array>
 #include <cstddef>
@@ -46,12 +46,12 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kMaxDelay = 100;  ///< cycles, of sensors as of actuators
+inline constexpr std::size_t kMaxDelay = 100;  ///< cycles, for sensors and actuators
 
-/// The noise and the bias of a device with three axes.
+/// An InertialError adds noise and bias to a device with three axes.
 class InertialError {
  public:
-  /// Densities as above; `period` in s. `device`: another number for each.
+  /// The densities are those above, `period` is in s. `device` is a number that differs between devices.
   InertialError(double noise, double bias, double walk, double period, std::uint64_t device);
 
   static constexpr std::uint64_t kWalkCycles = 10;
@@ -63,8 +63,8 @@ class InertialError {
 
  private:
   double noise_;  ///< standard deviation of one sample
-  double draw_;   ///< of the bias at switch-on
-  double walk_;   ///< of the bias' step in kWalkCycles periods
+  double draw_;   ///< standard deviation of the bias at switch-on
+  double walk_;   ///< standard deviation of the bias' step in kWalkCycles periods
   std::uint64_t device_;
   std::uint64_t cycle_ = 0;
   Vector3 bias_{};
@@ -73,13 +73,13 @@ class InertialError {
 
 class SensorErrors {
  public:
-  /// Throws DriverError: a delay of more than kMaxDelay cycles. At kIdeal all steps change nothing.
+  /// Throws DriverError for a delay of more than kMaxDelay cycles. At kIdeal no step changes anything.
   SensorErrors(const RobotModel& robot, const MujocoPlantParameters& parameters, double period);
 
-  /// Ordinary thread: restarts.
+  /// Restarts all errors; an ordinary thread calls it.
   void reset();
 
-  /// Once per period: truth in, what is measured in its place. Real-time safe.
+  /// Replaces the true values by measured ones; is called once per period. It is real-time safe.
   void step(Measurement& measurement) noexcept;
 
   const InertialError& gyro() const noexcept { return gyro_; }
@@ -88,7 +88,7 @@ class SensorErrors {
  private:
   void encode(Measurement& measurement) noexcept;
   void disturb(Measurement& measurement) noexcept;   ///< gyro and accelerometer
-  void begin(const Measurement& standing) noexcept;  ///< before the first cycle
+  void begin(const Measurement& standing) noexcept;  ///< is called before the first cycle
   void make_late(Measurement& measurement) noexcept;
 
   ErrorLevel level_;
@@ -96,7 +96,7 @@ class SensorErrors {
   double period_;
   double count_;  ///< rad, δ; 0: exact
   std::vector<std::size_t> wheels_;
-  std::array<double, kMaxWheels> counted_{};  ///< n of the last sample
+  std::array<double, kMaxWheels> counted_{};  ///< n in the last sample
   bool first_ = true;
   double gyro_scale_;  ///< 1 + e
   InertialError gyro_, accelerometer_;
@@ -107,7 +107,7 @@ class SensorErrors {
   DelayLine<Measurement, kMaxDelay> delay_;
 };
 
-/// A delay in cycles out of the parameters; throws DriverError naming it where it is above kMaxDelay.
+/// Returns a delay of the parameters in cycles. Throws DriverError with its `name` if it is above kMaxDelay.
 std::size_t checked_delay(const char* name, std::uint64_t cycles);
 
 }  // namespace robot_control

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// False: there is no sample.
+/// Returns false if there is no sample.
 bool step_axes(FaultyOutput<Vector3>& output, FaultKind kind, std::uint64_t cycle, double range,
                Vector3& value) noexcept {
   const auto distort = [range](FaultKind how, Vector3& axes, FaultRandom& random) {

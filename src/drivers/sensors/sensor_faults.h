@@ -1,31 +1,31 @@
 #pragma once
-/// Encoders, gyro, accelerometer, battery gauge and e-stop button with injected faults; what they report, by component
-/// and kind:
+/// SensorFaults injects faults into encoders, gyro, accelerometer, battery gauge and e-stop button. Each component
+/// reports with each kind of fault:
 ///
 ///                 encoders of a side (all its wheels)           gyro, accelerometer
 ///   off           position and velocity NaN: the drive          not valid (SensorFrame::valid), NaN
-///                 lives, but has no number to report
+///                 works, but has no angle to report
 ///   stuck         the angle stays, velocity 0                   the sample stays
-///   garbage       angle within a turn of where it began,        within the range of a BMI088: ±2000 °/s, ±24 g
+///   garbage       angle within a turn of the first one,         within the range of a BMI088: ±2000 °/s, ±24 g
 ///                 velocity within ±kGarbageSpeed, uniform       on each axis, uniform
-///   wrong         counts backwards from where it began,         every axis has the other sign
-///                 velocity with the other sign
+///   wrong         counts backwards from the first angle,        every axis has the opposite sign
+///                 velocity with the opposite sign
 ///   slow          a sample every 10 cycles, held in between
 ///   delayed       the sample of 10 cycles ago
 ///   intermittent  as off, and healthy, at random
 ///
-///                 battery, where there is one                   e-stop button, not pressed
+///                 battery, if there is one                      e-stop button, not pressed
 ///   off           not valid, NaN                                pressed: its contacts open like a cut wire (ISO 13850)
 ///   stuck         voltage and current stay                      pressed, jammed
-///   garbage       voltage within twice, current within          pressed or not, new in every cycle
-///                 ±kGarbageCurrent, uniform
-///   wrong         kWrongVoltage of the voltage                  pressed
+///   garbage       voltage up to twice its value, current        pressed or not, new in every cycle
+///                 within ±kGarbageCurrent, uniform
+///   wrong         kWrongVoltage times the voltage               pressed
 ///   slow          a sample every 10 cycles, held in between     not pressed
 ///   delayed       the sample of 10 cycles ago                   not pressed
 ///   intermittent  as off, and healthy, at random                pressed and not, at random: a loose wire
 ///
-/// When and how long, see faults/faulty_output.h. Efforts and temperatures stay: the drive itself is well. All else of
-/// a frame is untouched. What is valid stays so in every kind but off: a device does not detect its own wrong values.
+/// faults/faulty_output.h defines when a fault acts. Efforts, temperatures and all other values of a frame do not
+/// change. Valid samples stay valid with every kind except off, because a device does not detect its own wrong values.
 
 #include <array>
 #include <cstddef>
@@ -45,15 +45,15 @@ class SensorFaults {
   static constexpr double kGyroRange = 34.9;            ///< rad/s
   static constexpr double kAccelerometerRange = 235.4;  ///< m/s²
   static constexpr double kGarbageCurrent = 100;        ///< A
-  static constexpr double kWrongVoltage = 0.6;          ///< below that of any charged battery
+  static constexpr double kWrongVoltage = 0.6;  ///< factor; the result is below the voltage of any charged battery
 
   SensorFaults(const RobotModel& robot, std::uint64_t seed);
 
-  /// Without faults, as at the start.
+  /// Removes all faults.
   void reset() noexcept;
 
-  /// Once per cycle: healthy samples in, the faulty samples in their place. Bits of SensorValidity: what is not valid
-  /// any more. Real-time safe.
+  /// Replaces healthy samples by faulty ones; is called once per cycle. Returns the SensorValidity bits of samples that
+  /// are no longer valid. It is real-time safe.
   std::uint64_t step(const InjectedFaults& faults, std::uint64_t cycle, Measurement& measurement) noexcept;
 
  private:
@@ -70,7 +70,7 @@ class SensorFaults {
 
   static void step_encoders(Encoders& encoders, FaultKind kind, std::uint64_t cycle, Measurement& measurement) noexcept;
 
-  bool failing_ = false;  ///< in the last step
+  bool failing_ = false;  ///< any component failed in the last step
   Encoders left_, right_;
   FaultyOutput<Vector3> gyro_, accelerometer_;
   FaultyOutput<BatterySample> battery_;

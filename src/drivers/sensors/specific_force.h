@@ -1,13 +1,14 @@
 #pragma once
-/// What an exact accelerometer at the IMU measures: its mean over one MuJoCo step of h seconds, in the IMU's axes,
+/// SpecificForce computes the value of an exact accelerometer at the IMU: its mean over one MuJoCo step of h seconds,
+/// in the IMU's axes,
 ///
 ///   f = ½ (R₀ + R₁)ᵀ ((v₁ − v₀)/h − g)
 ///
 /// v  velocity of the IMU's origin, world axes     R  IMU → world     g  gravity     0, 1: before, after the step
 ///
-/// so that R f + g integrates to the velocity. MuJoCo's own accelerometer does not: it reads the acceleration without
-/// the implicit part of joint damping, with which the Euler integrator moves the robot (mj_EulerSkip in MuJoCo's
-/// engine_forward.c). With wheel-joint damping of 1 N·m·s/rad it integrates to twice the true velocity.
+/// By this definition R f + g integrates to the velocity. MuJoCo's own accelerometer does not integrate to it. Its
+/// acceleration lacks the implicit part of joint damping, with which the Euler integrator moves the robot (mj_EulerSkip
+/// in MuJoCo's engine_forward.c). With wheel-joint damping of 1 N·m·s/rad it integrates to twice the true velocity.
 
 #include <Eigen/Core>
 
@@ -22,7 +23,7 @@ class SpecificForce {
   /// Begins at the state that mj_step1 has just evaluated.
   void reset(const mjData& data) noexcept;
 
-  /// m/s², over the step that ended at the state that mj_step1 has just evaluated.
+  /// Returns f in m/s² over the step that ended at the state that mj_step1 has just evaluated.
   Eigen::Vector3d step(const mjData& data) noexcept;
 
  private:

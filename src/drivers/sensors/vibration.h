@@ -1,15 +1,16 @@
 #pragma once
-/// How a moving robot shakes its IMU. With v the mean speed of the drive wheels' rims and s the way they have gone,
+/// Vibration adds the vibration of a moving robot to its IMU. With the mean speed v of the drive wheels' rims and the
+/// distance s that they have rolled,
 ///
 ///   measured = true + r·v·n(t) + r·b(s)
 ///
 /// r  roughness
 /// n  accelerometer_vibration, gyro_vibration: noise that is white up to kBandwidth (first order), so that its integral
-///    over t has the variance (r v σ)²·t as that of white noise
-/// b  accelerometer_slow_error: what floor, suspension and scale add to the accelerometer: an Ornstein–Uhlenbeck walk
-///    of the correlation length kLength along the way; it stands still when the robot does
+///    over t has the variance (r v σ)²·t of white noise
+/// b  accelerometer_slow_error: the errors of the accelerometer from floor, suspension and scale, an Ornstein–Uhlenbeck
+///    process of the correlation length kLength along the path; it is constant while the robot stands
 ///
-/// Axes are independent. Real-time safe.
+/// The axes are independent. The class is real-time safe.
 
 #include <vector>
 
@@ -22,15 +23,16 @@ namespace robot_control {
 
 class Vibration {
  public:
-  static constexpr double kBandwidth = 50;  ///< Hz: the recordings' IMUs sample at 100 Hz and say nothing of more
-  static constexpr double kLength = 0.5;    ///< m: of the recordings' slow errors half is gone after 0.5 … 2 s
+  static constexpr double kBandwidth =
+      50;                                 ///< Hz; the recordings' IMUs sample at 100 Hz and show no higher frequencies
+  static constexpr double kLength = 0.5;  ///< m; in the recordings, slow errors fall to half in 0.5 … 2 s
 
-  /// `period` in s.
+  /// `period` is in s.
   Vibration(const RobotModel& robot, const Errors& errors, double period);
 
   void reset(std::uint64_t seed);
 
-  /// Once per period; reads the exact speeds of the wheels.
+  /// Is called once per period with the exact speeds of the wheels.
   void step(Measurement& measurement) noexcept;
 
  private:
@@ -41,7 +43,7 @@ class Vibration {
 
   std::vector<Rim> rims_;
   double period_;
-  double follow_;                ///< of the low pass, in a period
+  double follow_;                ///< gain of the low pass per period
   double gyro_, accelerometer_;  ///< standard deviation of a white sample at 1 m/s, r σ/√T
   double slow_;                  ///< m/s², r·accelerometer_slow_error
   NormalStream vibration_stream_, slow_stream_;
