@@ -89,12 +89,12 @@ TEST_F(MotionRequestsTest, OfANewProcessOfTheSameNameAreItsOwn) {
 TEST_F(MotionRequestsTest, OfClosedConnectionsAreForgottenBeyondABound) {
   const auto name = [](std::size_t number) { return "/once_" + std::to_string(number); };
   requests_.request(teleop_, now_);
-  for (std::size_t i = 0; i <= MotionRequests::kMostClosed; ++i) {
+  for (std::size_t i = 0; i <= MotionRequests::kMaxClosed; ++i) {
     requests_.request({name(i), boost::make_shared<char>()}, now_);
   }
   withdraw();
   EXPECT_TRUE(requests_.revoked(teleop_)) << "it is open";
-  EXPECT_TRUE(revoked_again({name(MotionRequests::kMostClosed)}));
+  EXPECT_TRUE(revoked_again({name(MotionRequests::kMaxClosed)}));
   EXPECT_FALSE(revoked_again({name(0)}));
 }
 
