@@ -109,10 +109,10 @@ bool replace(const fs::path& path, const struct stat* old, const std::string& te
 void write_output_file(const std::string& path, const std::string& text) {
   const fs::path target = behind_links(path);
   struct stat old {};
-  const bool there = stat(target.c_str(), &old) == 0;
-  if (there && !S_ISREG(old.st_mode)) {
+  const bool exists = stat(target.c_str(), &old) == 0;
+  if (exists && !S_ISREG(old.st_mode)) {
     write_in_place(target, text, 0);
-  } else if (!replace(target, there ? &old : nullptr, text)) {
+  } else if (!replace(target, exists ? &old : nullptr, text)) {
     write_in_place(target, text, O_TRUNC);
   }
 }
