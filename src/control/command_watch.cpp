@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
-/// Whole periods in the rest of `timeout`. The margin keeps 1.25 s / 1 ms at 1250, although neither number is exact in
-/// binary.
+/// Returns the whole periods in the rest of `timeout`. The margin keeps 1.25 s / 1 ms at 1250, although neither number
+/// is exact in binary.
 std::uint64_t cycles_left(double timeout, std::int64_t age_ns, double period) noexcept {
   constexpr double kMargin = 1e-6;
   if (timeout <= 0) return kNever;

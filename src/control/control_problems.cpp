@@ -19,7 +19,7 @@ namespace {
 
 struct Load {
   const char* name;
-  bool driven;  ///< the robot's own, on its wheels
+  bool driven;  ///< a load that the robot drives with, on its wheels
   WheelLoad load;
 
   bool operator==(const Load& other) const noexcept { return load == other.load; }
@@ -27,91 +27,93 @@ struct Load {
 
 using Loads = std::array<Load, 8>;
 
-/// Of the wheel as the set has it, and as the robot's description has it.
+/// Returns the loads of a wheel, first as the set has it and then as the robot's description has it.
 Loads loads(const RobotModel& set, const RobotModel& described, std::size_t wheel) {
   Loads loads{};
   auto next = loads.begin();
   for (const RobotModel* robot : {&set, &described}) {
-    const WheelModel& of = robot->wheels[wheel];
-    const double damping = robot->joints[of.joint].damping;
-    const double straight = straight_inertia(*robot, of);
-    *next++ = {"lifted", false, {of.inertia, damping}};
-    *next++ = {"turning", true, {turning_inertia(*robot, of), damping}};
+    const WheelModel& model = robot->wheels[wheel];
+    const double damping = robot->joints[model.joint].damping;
+    const double straight = straight_inertia(*robot, model);
+    *next++ = {"lifted", false, {model.inertia, damping}};
+    *next++ = {"turning", true, {turning_inertia(*robot, model), damping}};
     *next++ = {"driving straight", true, {straight, damping}};
-    *next++ = {"driving straight with its mass doubled", false, {2 * straight - of.inertia, damping}};
+    *next++ = {"driving straight with its mass doubled", false, {2 * straight - model.inertia, damping}};
   }
   return loads;
 }
 
-/// Damping ratio that every mode of the wheel loop needs with a load that the robot drives; kLeastDampingOff with the
-/// wheel lifted or the mass doubled. Derived gains have 0.5 … 0.6 and 0.28 … 0.4 at 1 kHz.
-constexpr double kLeastDamping = 0.3;
-constexpr double kLeastDampingOff = 0.2;
+/// Every mode of the wheel loop needs this damping ratio with a load that the robot drives. With the wheel lifted or
+/// the mass doubled it needs kMinDampingOff. Derived gains have 0.5 … 0.6 and 0.28 … 0.4 at 1 kHz.
+constexpr double kMinDamping = 0.3;
+constexpr double kMinDampingOff = 0.2;
 
-/// `tracking_bandwidth`, times the period: 2π·0.1 of the way to each new count within a cycle. Above, wheel speeds are
-/// the encoder's counts, and the loop makes torque of them.
-constexpr double kMostTracking = 0.1;
+/// This limits `tracking_bandwidth` times the period. Within a cycle the loop then moves by 2π·0.1 of the distance to a
+/// new count. Above it, wheel speeds are the encoder's counts, from which the loop makes torque.
+constexpr double kMaxTracking = 0.1;
 
-/// `pid_kp` and `tracking_bandwidth`, over what is derived.
-constexpr double kWeakest = 0.1;
+/// `pid_kp` and `tracking_bandwidth` must be at least this share of the derived values.
+constexpr double kMinShare = 0.1;
 
-/// RMS of the torque of a lifted wheel behind an encoder, of the torque limit: what safety_monitor stops in the end.
-constexpr double kMostRipple = 0.3;
+/// This limits the RMS of the torque of a lifted wheel behind an encoder, over the torque limit. The safety monitor
+/// stops more in the end.
+constexpr double kMaxRipple = 0.3;
 
-/// What derived gains would do nearly as well is not the set's fault.
+/// A set is not refused if derived gains are nearly as bad.
 constexpr double kNotWorse = 1.2;
 
-/// Of full speed, in which counts are judged.
+/// Counts are judged at these shares of full speed.
 constexpr std::array kSpeedParts{1.0, 0.3, 0.1, 0.03};
 
-/// What decides about stability.
+/// Holds the values that decide about stability.
 struct Loop {
   WheelLoopGains gains;
   double bandwidth;     ///< Hz
   double period;        ///< s
   double effort_limit;  ///< N·m
-  double speed;         ///< rad/s, the fastest
-  Loads loads;          ///< those of the set, then those of the description
+  double speed;         ///< rad/s, fastest speed
+  Loads loads;          ///< loads of the set, then those of the description
 
   bool operator==(const Loop& other) const noexcept {
     return gains.kp == other.gains.kp && gains.ki == other.gains.ki && effort_limit == other.effort_limit &&
            speed == other.speed && loads == other.loads;
   }
 
-  double radius(const Load& of) const { return wheel_loop_spectral_radius(gains, of.load, period, bandwidth); }
+  double radius(const Load& load) const { return wheel_loop_spectral_radius(gains, load.load, period, bandwidth); }
 
-  double damping(const Load& of) const { return wheel_loop_damping_ratio(gains, of.load, period, bandwidth); }
+  double damping(const Load& load) const { return wheel_loop_damping_ratio(gains, load.load, period, bandwidth); }
 
-  /// The damping ratio that `of` needs: no more than nine tenths of what `derived`, the loop of derived gains, has.
-  static double least_damping(const Loop& derived, const Load& of) {
-    return std::min(of.driven ? kLeastDamping : kLeastDampingOff, 0.9 * derived.damping(of));
+  /// Returns the damping ratio that `load` needs, at most nine tenths of what `derived`, the loop of derived gains,
+  /// has.
+  static double least_damping(const Loop& derived, const Load& load) {
+    return std::min(load.driven ? kMinDamping : kMinDampingOff, 0.9 * derived.damping(load));
   }
 
-  /// The first load with too little damping; null: it is enough.
+  /// Returns the first load with too little damping; null: none.
   const Load* underdamped_load(const Loop& derived) const {
     const auto found =
         std::ranges::find_if(loads, [&](const Load& load) { return damping(load) < least_damping(derived, load); });
     return found == loads.end() ? nullptr : &*found;
   }
 
-  /// Of the torque limit, RMS, the most at any of kSpeedParts.
-  double ripple(const Load& of) const {
-    double most = 0;
+  /// Returns the largest RMS of the torque at any of kSpeedParts, over the torque limit.
+  double ripple(const Load& load) const {
+    double largest = 0;
     for (const double part : kSpeedParts)
-      most = std::max(most, quantisation_ripple(gains, of.load, bandwidth, effort_limit, part * speed, period));
-    return most / effort_limit;
+      largest = std::max(largest, quantisation_ripple(gains, load.load, bandwidth, effort_limit, part * speed, period));
+    return largest / effort_limit;
   }
 
-  /// The lifted wheel, of the set or of the description, whose torque oscillates; null: none.
+  /// Returns the lifted wheel, of the set or of the description, whose torque oscillates; null: none.
   const Load* oscillating_load(const Loop& derived) const {
-    for (const Load* of : {loads.data(), loads.data() + loads.size() / 2}) {
-      const double part = ripple(*of);
-      if (part > kMostRipple && part > kNotWorse * derived.ripple(*of)) return of;
+    for (const Load* lifted : {loads.data(), loads.data() + loads.size() / 2}) {
+      const double part = ripple(*lifted);
+      if (part > kMaxRipple && part > kNotWorse * derived.ripple(*lifted)) return lifted;
     }
     return nullptr;
   }
 
-  /// Null: stable with every load.
+  /// Returns the first unstable load; null: none.
   const Load* unstable_load() const {
     const auto found = std::ranges::find_if(loads, [&](const Load& load) { return !(radius(load) < 1); });
     return found == loads.end() ? nullptr : &*found;
@@ -119,10 +121,10 @@ struct Loop {
 };
 
 constexpr double kStep = 0.8408964152537145;  // 2^(−1/4)
-constexpr int kSteps = 80;                    // down to a millionth
+constexpr int kSteps = 80;                    // steps down to a millionth
 
-/// The largest factor f < 1, in steps of 2^(1/4), with which f·kp, f²·ki, f·kd are stable and damped for every load;
-/// 0: none.
+/// Returns the largest factor f < 1, in steps of 2^(1/4), with which f·kp, f²·ki and f·kd are stable and damped for
+/// every load; 0: none.
 double stable_part(const Loop& loop, const Loop& derived) {
   Loop scaled = loop;
   double part = 1;
@@ -136,7 +138,7 @@ double stable_part(const Loop& loop, const Loop& derived) {
   return 0;
 }
 
-/// The largest pid_ki below the loop's, in the same steps, that damps every load enough; 0: none.
+/// Returns the largest pid_ki below the loop's, in the same steps, that damps every load enough; 0: none.
 double damped_ki(const Loop& loop, const Loop& derived) {
   Loop scaled = loop;
   for (int i = 0; i < kSteps; ++i) {
@@ -146,7 +148,7 @@ double damped_ki(const Loop& loop, const Loop& derived) {
   return 0;
 }
 
-/// Of the robot as described, where the set says otherwise of it.
+/// Returns true if the load is that of the described robot and differs from that of the set.
 bool described(const Loop& loop, const Load& load) {
   const auto place = static_cast<std::size_t>(&load - loop.loads.data());
   const std::size_t half = loop.loads.size() / 2;
@@ -182,8 +184,8 @@ std::string underdamped_message(const Loop& loop, const Loop& derived, const std
        << "' oscillates with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
        << (described(loop, load) ? " by the description" : "") << "): damping ratio " << loop.damping(load)
        << ", must be at least " << Loop::least_damping(derived, load) << ". ";
-  if (const double most = damped_ki(loop, derived); most > 0) {
-    text << "Use at most pid_ki " << most;
+  if (const double limit = damped_ki(loop, derived); limit > 0) {
+    text << "Use at most pid_ki " << limit;
   } else {
     text << "Lower pid_kp and pid_kd, or bring tracking_bandwidth nearer to " << derived.bandwidth << " Hz";
   }
@@ -198,16 +200,16 @@ std::string oscillation_message(const Loop& loop, const Loop& derived, const std
        << loop.bandwidth << " Hz: behind an encoder of " << kCounts << " counts the torque of joint '" << joint
        << "' oscillates by " << loop.ripple(load) << " of its limit, RMS, with the wheel " << load.name << " ("
        << load.load.inertia << " kg·m²" << (described(loop, load) ? " by the description" : "") << "), must be at most "
-       << kMostRipple << ". Lower tracking_bandwidth, derived are " << derived.bandwidth
+       << kMaxRipple << ". Lower tracking_bandwidth, derived are " << derived.bandwidth
        << " Hz, or pid_kp and pid_kd; or leave them out: then they are derived from the robot.";
   return text.str();
 }
 
-std::string tracking_message(double bandwidth, double most, double period) {
+std::string tracking_message(double bandwidth, double limit, double period) {
   std::ostringstream text;
   text.precision(3);
-  text << "diff_drive_controller.tracking_bandwidth = " << bandwidth << " Hz: must be at most " << most << " Hz, "
-       << kMostTracking << " of the rate of " << std::lround(1 / period)
+  text << "diff_drive_controller.tracking_bandwidth = " << bandwidth << " Hz: must be at most " << limit << " Hz, "
+       << kMaxTracking << " of the rate of " << std::lround(1 / period)
        << " Hz: above, wheel speeds follow the encoder's counts. Leave it out: then it is derived from the rate.";
   return text.str();
 }
@@ -216,7 +218,7 @@ std::string weak_message(const std::string& key, double value, double derived, c
   std::ostringstream text;
   text.precision(3);
   text << "diff_drive_controller." << key << " = " << value << " " << unit << ": must be at least "
-       << kWeakest * derived << " " << unit << ", a tenth of what is derived from the robot: below, the wheels follow "
+       << kMinShare * derived << " " << unit << ", a tenth of what is derived from the robot: below, the wheels follow "
        << "feed_forward alone. Raise it, or leave it out: then it is derived.";
   return text.str();
 }
@@ -229,7 +231,7 @@ std::string powerless_message(const JointModel& joint, const RobotModel& robot) 
   return text.str();
 }
 
-/// Nothing but limits is set: the rest is derived from the description.
+/// Returns true if nothing but limits is set: the rest is derived from the description.
 bool only_limits(const DriveControllerParameters& parameters) noexcept {
   const FeedForwardParameters& given = parameters.feed_forward;
   return !parameters.pid_kp && !parameters.pid_ki && parameters.pid_kd == 0 && !parameters.tracking_bandwidth &&
@@ -253,9 +255,9 @@ void check_loops(const DriveControllerParameters& parameters, const RobotModel& 
     Loop derived = loop;
     derived.gains = wheel_loop_gains({}, described, described.wheels[i], period);
     derived.bandwidth = tracking_bandwidth({}, period);
-    if (std::ranges::find(judged, loop) != judged.end()) continue;  // said of an equal wheel
+    if (std::ranges::find(judged, loop) != judged.end()) continue;  // An equal wheel has been judged.
     judged.push_back(loop);
-    if (loop.gains.kp < kWeakest * derived.gains.kp) {
+    if (loop.gains.kp < kMinShare * derived.gains.kp) {
       problems.push_back(weak_message("pid_kp", loop.gains.kp, derived.gains.kp, "N·m·s/rad"));
     }
     if (const Load* load = loop.unstable_load()) {
@@ -277,9 +279,9 @@ std::vector<std::string> control_problems(const DriveControllerParameters& param
   const RobotModel robot = measured_robot(described, parameters.feed_forward);
   std::vector<std::string> problems = feed_forward_problems(parameters, described);
   const double bandwidth = tracking_bandwidth(parameters, period);
-  const double most = std::max(kMostTracking / period, tracking_bandwidth({}, period));
-  if (bandwidth > most) problems.push_back(tracking_message(bandwidth, most, period));
-  if (const double derived = tracking_bandwidth({}, period); bandwidth < kWeakest * derived) {
+  const double limit = std::max(kMaxTracking / period, tracking_bandwidth({}, period));
+  if (bandwidth > limit) problems.push_back(tracking_message(bandwidth, limit, period));
+  if (const double derived = tracking_bandwidth({}, period); bandwidth < kMinShare * derived) {
     problems.push_back(weak_message("tracking_bandwidth", bandwidth, derived, "Hz"));
   }
   check_loops(parameters, described, robot, period, problems);

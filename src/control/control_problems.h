@@ -1,6 +1,6 @@
 #pragma once
-/// The check of limits, gains and feed-forward, at start and while driving: are they plausible, stable and damped on
-/// this robot at this rate?
+/// Checks at start and while driving whether limits, gains and feed-forward are plausible, stable and damped on this
+/// robot at this rate.
 
 #include <string>
 #include <vector>
@@ -10,19 +10,18 @@
 
 namespace robot_control {
 
-/// One message per problem, with value, rule and remedy; empty: none.
+/// Returns one message per problem, with value, rule and remedy; empty: none. The checks are:
 ///
-///   wheels                a torque limit above 0
-///   feed_forward          within plausible factors of the description
-///   tracking_bandwidth    at most a tenth of the rate, at least a tenth of what is derived
-///   gains                 pid_kp at least a tenth of what is derived; for the wheel lifted, turning, straight, and
-///   straight with the robot's mass doubled, as the
-///                         set and as the description have it: spectral radius < 1, and in every mode a damping ratio
-///                         of at least 0.3 (turning, straight) or 0.2, or nine tenths of what derived gains have
-///                         lifted, with the counts of an encoder: torque below 0.3 of the limit, RMS
-///                         (quantisation_ripple.h), or 1.2 times that of derived gains
+///   wheels               the torque limit is above 0
+///   feed_forward         it is within plausible factors of the description
+///   tracking_bandwidth   it is at most a tenth of the rate and at least a tenth of the derived one
+///   gains                pid_kp is at least a tenth of the derived one. With every load, as set and as described, the
+///                        loop is stable (spectral radius < 1) and damped: a ratio of at least 0.3 (turning, straight)
+///                        or 0.2 (lifted, mass doubled), or nine tenths of that of derived gains. With the counts of an
+///                        encoder, the torque of the lifted wheel is below 0.3 of the limit, RMS
+///                        (quantisation_ripple.h), or 1.2 times that of derived gains
 ///
-/// `parameters` are within their ranges, `period` s is > 0.
+/// `parameters` are within their ranges, and `period` (s) is > 0.
 std::vector<std::string> control_problems(const DriveControllerParameters& parameters, const RobotModel& described,
                                           double period);
 

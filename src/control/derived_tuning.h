@@ -1,8 +1,8 @@
 #pragma once
-/// The user's parameters → the numbers that the controller runs with.
+/// Converts the user's parameters to the numbers that the controller runs with.
 ///
-/// Parameters that are left out are derived: a deceleration from its acceleration (drive_limits.h), gains and bandwidth
-/// from robot and rate (wheel_loop_gains.h), with the measured robot (measured_robot.h). They are derived again
+/// Parameters that are left out are derived. A deceleration follows from its acceleration (drive_limits.h). Gains and
+/// bandwidth follow from the rate and the measured robot (wheel_loop_gains.h, measured_robot.h). They are derived again
 /// whenever another parameter changes.
 
 #include "control/drive_controller_parameters.h"
@@ -13,8 +13,8 @@
 
 namespace robot_control {
 
-/// `robot` as described; at most kMaxWheels wheels. `period` s > 0. Count is 0. Allocates: not for the real-time
-/// thread.
+/// `robot` is the described one, with at most kMaxWheels wheels, and `period` (s) is > 0. The count is 0. It allocates
+/// and is not for the real-time thread.
 DriveTuning drive_tuning(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
 
 SpeedLimits speed_limits(const DriveTuning& tuning) noexcept;

@@ -35,7 +35,7 @@ PlanarTwist scaled(const PlanarTwist& twist, double scale) noexcept {
   return {scale * twist.linear, scale * twist.angular};
 }
 
-/// The largest factor m ≥ 0 with |rest + m·inertial| ≤ limit, N·m; infinite if there is none.
+/// Returns the largest factor m ≥ 0 with |rest + m·inertial| ≤ limit, N·m; infinite if there is none.
 double affordable_multiple(double inertial, double rest, double limit) noexcept {
   if (inertial == 0) return std::numeric_limits<double>::infinity();
   return std::max((limit - std::copysign(rest, rest * inertial)) / std::abs(inertial), 0.0);
@@ -45,7 +45,7 @@ JointCommand effort_command(double velocity, double effort) noexcept {
   return {.mode = JointMode::kEffort, .velocity = velocity, .effort = effort};
 }
 
-constexpr double kLeastAccelerationScale = 0.2;  // header
+constexpr double kMinAccelerationScale = 0.2;  // lower bound of the scale
 
 constexpr std::uint64_t kGateClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
@@ -120,7 +120,7 @@ bool DriveController::track(const WheelValues& angle, const SensorFrame& sensors
     // Very large finite numbers overflow the tracking loops, which would not recover by themselves.
     good = good && std::isfinite(loops_[i].velocity());
   }
-  // From each wheel to the next: within some cycles all have it.
+  // Each wheel takes the resolution of the next one, so that all wheels have it within some cycles.
   for (std::size_t i = 0; i < loops_.size(); ++i) loops_[i].assume_encoder_of(loops_[(i + 1) % loops_.size()]);
   return good;
 }
@@ -157,11 +157,12 @@ std::uint64_t DriveController::state_reasons(const StateFrame* state, std::uint6
   return usable_now ? 0u : std::uint64_t{kReasonNoState};
 }
 
-/// The requested twist, limited by the permit.
+/// Returns the requested twist, limited by the permit.
 PlanarTwist DriveController::permitted_twist(const Permit* permit, CommandFrame& out) const noexcept {
   const PlanarTwist requested{out.twist_requested.linear[0], out.twist_requested.angular[2]};
   if ((out.reasons & kReasonPermitRamp) != 0) return {};
-  if ((out.reasons & (kReasonNoPermit | kReasonPermitBrake)) != 0) return requested;  // braked in any case
+  if ((out.reasons & (kReasonNoPermit | kReasonPermitBrake)) != 0)
+    return requested;  // The joints are braked in any case.
   if (permit->speed_limit >= kNoSpeedLimit) return requested;
   const double scale = kinematics_.rim_speed_scale(requested, permit->speed_limit);
   if (scale < 1) out.reasons |= kReasonPermitSlow;
@@ -189,8 +190,8 @@ PlanarTwist DriveController::measured_twist() const noexcept {
 void DriveController::follow_measured(const SensorFrame& sensors) noexcept {
   average_held_efforts(sensors);
   const PlanarTwist twist = measured_twist();
-  const double scale = kinematics_.wheel_speed_scale(twist);  // no plan beyond the joints' limits
-  // Treads that a brake holds strained tremble: a plan that began with that would strain them the other way.
+  const double scale = kinematics_.wheel_speed_scale(twist);  // The plan stays within the joints' limits.
+  // Strained treads tremble under a brake. A plan that began with that motion would strain them the other way.
   const bool rests = ground_friction_.scrubs() && (standstill_.standing() || slow());
   limiter_.restart_from(rests ? PlanarTwist{} : PlanarTwist{scale * twist.linear, scale * twist.angular});
   if (ground_friction_.scrubs()) {
@@ -217,7 +218,7 @@ double DriveController::affordable_acceleration_scale(const PlanarTwist& limited
         multiple, affordable_multiple(inertial, loops_[i].unclamped_effort() - inertial, loops_[i].effort_limit()));
   }
   if (std::isinf(multiple)) return 1;
-  return std::clamp(multiple * limiter_.used_acceleration_scale(), kLeastAccelerationScale, 1.0);
+  return std::clamp(multiple * limiter_.used_acceleration_scale(), kMinAccelerationScale, 1.0);
 }
 
 WheelValues DriveController::planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept {

@@ -1,46 +1,51 @@
 #pragma once
-/// One step of diff_drive_controller: request → limits → kinematics → wheel loops → torque.
+/// The drive controller computes one cycle of diff_drive_controller: request → limits → kinematics → wheel loops →
+/// torque.
 ///
-/// Every joint is braked (JointMode::kBrake) when
+/// Every joint is braked (JointMode::kBrake) in these cases:
 ///   - there is no unexpired permit, or it orders the brake, or its ramp has ended;
-///   - the sensors are not valid, not finite, for another number of joints, their cycle does not advance, or a wheel
-///     angle jumped faster than kFastestWheel (the wheel loops then restart from the next sample);
-///   - the robot holds: requested twist and limited twist are zero and all wheels stand (standstill.h); directly after
-///     a brake it is enough that all wheels are slower than kStandstillSpeed. The driver's brake law keeps the
-///     position. The next requested twist ≠ 0 ends it.
-/// A stop that was not requested ramps with the emergency deceleration: after a command that timed out or was refused,
-/// with more than one sender if that is forbidden, and under a ramp permit. Under a ramp permit the requested twist is
-/// zero. Under a permit with a speed limit it is scaled, with the same curvature, until no rim is faster. Joints that
-/// are not wheels are always braked.
+///   - the sensors are unusable: not valid, not finite, for another number of joints, or of a cycle that does not
+///     advance;
+///   - a wheel angle jumped faster than kFastestWheel; the wheel loops then restart from the next sample;
+///   - the robot holds: requested and limited twist are zero and all wheels stand (standstill.h). Directly after a
+///     brake, wheels slower than kStandstillSpeed are enough. The driver's brake law keeps the position until the next
+///     requested twist ≠ 0.
+/// Joints that are not wheels are always braked.
 ///
-/// While this controller is not in control of the wheels (it brakes, or the gate reports that tick k−1 was braked),
-/// limiter and wheel loops are set to the measured speed in every cycle, so that nothing jumps at release: the first
-/// torque is that of an unaccelerated motion, and the ramp starts once the gate has passed it. A robot whose treads
-/// scrub and whose wheels stand starts from rest. While the wheels stand, the integrators are preloaded with the load
-/// that the brake holds: the mean of the measured effort over about the last kStandstillTime in which the wheels stood
-/// and this controller was not in control. One sample would not do: a robot that was braked hard rocks on its brakes,
-/// and with a wrong preload it moves by itself at release. While the wheels turn, the effort of the brake is not a
-/// load, and the integrators keep their values.
+/// A stop that was not requested ramps with the emergency deceleration. This applies after a command that timed out or
+/// was refused, with more than one sender if that is forbidden, and under a ramp permit. A ramp permit sets the
+/// requested twist to zero. A permit with a speed limit scales the requested twist, with the same curvature, until no
+/// rim is faster.
 ///
-/// Saturation keeps the curvature.
-/// Speed: the requested twist is scaled until no wheel exceeds the part of its velocity limit that kinematics.h allows.
-/// The limited twist is scaled in the same way, because a target that changes during a ramp may lead past that limit;
-/// without keep_curvature this may exceed an acceleration limit by a factor of up to 1.4.
-/// Torque: effort_i = rest_i + inertial_i of the last cycle, inertial_i what feed-forward adds for the acceleration.
+/// The controller is not in control while it brakes, or if the gate reports that tick k−1 was braked. Then limiter and
+/// wheel loops are set to the measured speed in every cycle, so that nothing jumps at release. The first torque is that
+/// of an unaccelerated motion, and the ramp starts once the gate has passed it. If treads scrub and the wheels stand,
+/// the limiter starts from rest.
+///
+/// While the wheels stand, the integrators are preloaded with the load that the brake holds. It is the mean of the
+/// measured effort over about the last kStandstillTime of standstill without control. One sample is not enough, because
+/// a robot rocks on its brakes after a hard stop, and a wrong preload would move it at release. While the wheels turn,
+/// the effort of the brake is not a load, and the integrators keep their values.
+///
+/// Saturation keeps the curvature. The requested twist is scaled until no wheel exceeds the share of its velocity limit
+/// that kinematics.h allows. The limited twist is scaled in the same way, because a target that changes during a ramp
+/// may lead past that limit. Without keep_curvature this may exceed an acceleration limit by a factor of up to 1.4.
+///
+/// The effort of the last cycle is effort_i = rest_i + inertial_i; inertial_i is the feed-forward for the acceleration.
 /// The limiter may use the acceleration limits times
 ///
 ///   scale = used·min_i max(effort_limit_i − sign(inertial_i)·rest_i, 0)/|inertial_i|,   0.2 ≤ scale ≤ 1
 ///
-/// `used`: the scale that it used in that cycle. So all wheels slow down their ramps alike, and no plan runs ahead of
-/// wheels that cannot follow. `rest` contains the torque that the loops add when the wheels lag behind, so wrong masses
-/// and slopes are included. A ramp towards zero is never stretched: a robot that cannot stop as planned is detected by
-/// the safety monitor (not_stopping, runaway). So is a robot that is blocked or pushed back: after five times its ramp
-/// time the target is the requested speed, whatever the wheels do (stall, wrong_direction).
+/// `used` is the scale of that cycle. So all wheels slow down their ramps alike, and no plan runs ahead of wheels that
+/// cannot follow. `rest` contains the torque of the loops for lagging wheels, so wrong masses and slopes are included.
+/// A ramp towards zero is never stretched: the safety monitor detects a robot that cannot stop as planned
+/// (not_stopping, runaway). After five times its ramp time the target is the requested speed. So the monitor also
+/// detects a robot that is blocked or pushed back (stall, wrong_direction).
 ///
-/// The wheel loops use the encoders only: a state frame that is held (of an older cycle) or marked invalid does not
-/// stop the drive. A cycle without any state frame does: state frames wake this controller, so it is not woken and
-/// publishes no command; the gate holds the last command for up to 3 missed cycles and then brakes.
-/// Skipped cycles: dt = (k − k_previous)·period. After more than kCommandLife cycles the driver has already braked.
+/// The wheel loops use the encoders only. A state frame of an older cycle or one marked invalid does not stop the
+/// drive. A cycle without any state frame does, because state frames wake the controller. The gate then holds the last
+/// command for up to 3 missed cycles and brakes. After skipped cycles dt = (k − k_previous)·period. After more than
+/// kCommandLife cycles the driver has already braked.
 
 #include <cstdint>
 #include <optional>
@@ -64,7 +69,7 @@
 
 namespace robot_control {
 
-/// All inputs of one cycle. Null: not available in this cycle.
+/// Holds the inputs of one cycle. A null pointer is an input that is not available in this cycle.
 struct ControlInput {
   const SensorFrame* sensors = nullptr;  ///< never null
   const StateFrame* state = nullptr;
@@ -72,25 +77,25 @@ struct ControlInput {
   VelocityCommand request;         ///< the inbox; a new message is one with a new count
 };
 
-/// rad/s, 10⁴ rpm, more than any wheel reaches: a faster change of angle is an encoder error.
+/// No wheel reaches this speed, in rad/s (10⁴ rpm): a faster change of angle is an encoder error.
 inline constexpr double kFastestWheel = 1000;
 
 using WheelLoops = FixedVector<WheelLoop, kMaxWheels>;
 
 class DriveController {
  public:
-  /// `robot` as read_robot gives it: at least a wheel on either side, wheels[i].joint == i. `period` s.
+  /// `robot` is a model from read_robot: at least one wheel on either side, and wheels[i].joint == i. `period` is in s.
   DriveController(const DriveControllerParameters& parameters, const RobotModel& robot, double period);
 
-  /// A new run: all state is as at the start; requests that the inbox holds now do not count.
-  /// `with_zero`: the run begins with a zero request (command_watch.h).
+  /// Begins a new run: all state is as at the start, and requests in the inbox do not count. With `with_zero` the run
+  /// begins with a zero request (command_watch.h).
   void enter_run(const VelocityCommand& inbox = {}, bool with_zero = false) noexcept;
 
-  /// Between two cycles: other limits, timeout and gains, from the next step on. Bumpless (wheel_loop.h); speeds above
-  /// a lowered limit return to it as the limiter does. The values stay after `enter_run`.
+  /// Sets limits, timeout and gains between two cycles, from the next step on. The change is bumpless (wheel_loop.h).
+  /// Speeds above a lowered limit return to it as the limiter does. The values stay after `enter_run`.
   void tune(const DriveTuning& tuning) noexcept;
 
-  /// What it runs with: derived from the parameters, or the last that `tune` got.
+  /// Returns the values in use: derived from the parameters, or set by `tune`.
   const DriveTuning& tuning() const noexcept { return tuning_; }
 
   /// Fills everything but `out.head`.
@@ -105,7 +110,7 @@ class DriveController {
   PlanarTwist permitted_twist(const Permit* permit, CommandFrame& out) const noexcept;
   bool slow() const noexcept;
   void average_held_efforts(const SensorFrame& sensors) noexcept;
-  PlanarTwist measured_twist() const noexcept;  ///< of the wheels
+  PlanarTwist measured_twist() const noexcept;  ///< twist by the wheels' speeds
   void follow_measured(const SensorFrame& sensors) noexcept;
   double affordable_acceleration_scale(const PlanarTwist& limited, const WheelValues& feed_forward) const noexcept;
   WheelValues planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept;
@@ -122,16 +127,16 @@ class DriveController {
   CommandWatch watch_;
   SpeedLimiter limiter_;
   Standstill standstill_;
-  WheelLoops loops_;                         ///< one per wheel; its index is the joint's
-  std::optional<std::uint64_t> last_cycle_;  ///< of the last usable sample
-  std::optional<WheelValues> last_angle_;    ///< rad, of the sample before; none: the loops restart
+  WheelLoops loops_;                         ///< one per wheel, with the index of its joint
+  std::optional<std::uint64_t> last_cycle_;  ///< cycle of the last usable sample
+  std::optional<WheelValues> last_angle_;    ///< rad, in the sample before; none: the loops restart
   WheelValues held_effort_{};                ///< N·m, mean since `held_cycles_`
-  std::uint64_t held_cycles_ = 0;            ///< in which the wheels stood and this controller was not in control
-  double acceleration_scale_ = 1;            ///< of the acceleration limits, as the wheels' torque allows
-  double periods_ = 1;                       ///< between the last two usable samples
-  bool driving_ = false;                     ///< the last command was not the brake
-  bool holding_ = false;                     ///< kReasonHolding in the last cycle
-  bool in_control_ = false;                  ///< the torque before this sample came from this controller
+  std::uint64_t held_cycles_ = 0;  ///< cycles in which the wheels stood and this controller was not in control
+  double acceleration_scale_ = 1;  ///< share of the acceleration limits that the wheels' torque allows
+  double periods_ = 1;             ///< between the last two usable samples
+  bool driving_ = false;           ///< The last command was not the brake.
+  bool holding_ = false;           ///< kReasonHolding in the last cycle
+  bool in_control_ = false;        ///< The torque before this sample came from this controller.
   std::uint64_t state_cycle_ = 0;
   std::uint64_t permit_cycle_ = 0;
 };

@@ -12,60 +12,60 @@ namespace robot_control {
 
 namespace {
 
-/// One value of feed_forward beside what the URDF says of it.
+/// Holds one value of feed_forward and the value of the URDF.
 struct MeasuredValue {
   const char* key;
   const char* unit;
   std::optional<double> given;
   double described;
-  double most;  ///< times either way
+  double max_factor;  ///< allowed factor between both
 };
 
 void check_plausible(const MeasuredValue& value, std::vector<std::string>& problems) {
-  if (!value.given || (*value.given <= value.most * value.described && value.described <= value.most * *value.given)) {
+  if (!value.given ||
+      (*value.given <= value.max_factor * value.described && value.described <= value.max_factor * *value.given)) {
     return;
   }
   std::ostringstream text;
   text.precision(4);
   text << "diff_drive_controller.feed_forward." << value.key << " = " << *value.given << " " << value.unit << ": "
-       << "the description says " << value.described << " " << value.unit << "; more than " << value.most
+       << "the description says " << value.described << " " << value.unit << "; more than " << value.max_factor
        << " times either way is taken for a typing error. Correct the one or the other.";
   problems.push_back(text.str());
 }
 
-/// What the joints take at full speed by the set, beside what the motors have and what the description says.
+/// Checks the torque that the joints take at full speed against the motors' torque and the description.
 void check_joint_losses(const DriveControllerParameters& parameters, const RobotModel& robot,
                         std::vector<std::string>& problems) {
-  constexpr double kPart = 0.25;  // of the effort limit, for bearing and gear: half of a worm gear's at full load
-  constexpr double kTimes = 2;    // of what is described
+  constexpr double kPart = 0.25;  // of the effort limit: half of what a worm gear loses at full load
+  constexpr double kTimes = 2;    // of the described value
   const DriveKinematics kinematics(robot);
   const double linear = parameters.max_linear_speed;
   const double angular = parameters.max_angular_speed;
   const PlanarTwist fastest{linear, angular};
   const WheelValues speeds = kinematics.joint_speeds(
       {kinematics.wheel_speed_scale(fastest) * linear, kinematics.wheel_speed_scale(fastest) * angular});
-  double most_damping = std::numeric_limits<double>::infinity();
-  double most_friction = most_damping;
+  double max_damping = std::numeric_limits<double>::infinity();
+  double max_friction = max_damping;
   for (const WheelModel& wheel : robot.wheels) {
     const JointModel& joint = robot.joints[wheel.joint];
     const double speed = std::ranges::max(speeds, {}, [](double value) { return std::abs(value); });
-    most_damping =
-        std::min(most_damping, std::max(kTimes * joint.damping, kPart * joint.effort_limit / std::abs(speed)));
-    most_friction = std::min(most_friction, std::max(kTimes * joint.friction, kPart * joint.effort_limit));
+    max_damping = std::min(max_damping, std::max(kTimes * joint.damping, kPart * joint.effort_limit / std::abs(speed)));
+    max_friction = std::min(max_friction, std::max(kTimes * joint.friction, kPart * joint.effort_limit));
   }
-  const auto check = [&](const char* key, const char* unit, const std::optional<double>& given, double most,
+  const auto check = [&](const char* key, const char* unit, const std::optional<double>& given, double limit,
                          const char* why) {
-    if (!given || *given <= most) return;
+    if (!given || *given <= limit) return;
     std::ostringstream text;
     text.precision(4);
     text << "diff_drive_controller.feed_forward." << key << " = " << *given << " " << unit
-         << ": plausible for this robot are 0 … " << most << " " << unit << ", " << why
+         << ": plausible for this robot are 0 … " << limit << " " << unit << ", " << why
          << ", or twice what the description says. Where it really is more, say so in the URDF (<dynamics>).";
     problems.push_back(text.str());
   };
-  check("wheel_damping", "N·m·s/rad", parameters.feed_forward.wheel_damping, most_damping,
+  check("wheel_damping", "N·m·s/rad", parameters.feed_forward.wheel_damping, max_damping,
         "a quarter of the wheel's torque limit at the fastest wheel speed of these limits");
-  check("wheel_friction", "N·m", parameters.feed_forward.wheel_friction, most_friction,
+  check("wheel_friction", "N·m", parameters.feed_forward.wheel_friction, max_friction,
         "a quarter of the wheel's torque limit");
 }
 

@@ -1,10 +1,10 @@
 #pragma once
-/// Is `feed_forward` plausible on this robot? A payload, a rotor behind a gear: but not a hundred times what is
-/// described, which would drive the robot by itself.
+/// Checks whether `feed_forward` is plausible on this robot. A payload or a rotor behind a gear is plausible, but a
+/// hundred times the described value would drive the robot by itself.
 ///
-///   mass, yaw_inertia, wheel_inertia    within 3, 3 and 30 times of the description, either way
-///   wheel_damping, wheel_friction       a quarter of the torque limit at the fastest wheel speed, or twice the
-///   described
+///   mass, yaw_inertia, wheel_inertia    within factors of 3, 3 and 30 of the description
+///   wheel_damping, wheel_friction       up to a quarter of the torque limit at the fastest wheel speed, or twice the
+///                                       described value
 
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace robot_control {
 
-/// One message per problem, with value, rule and remedy; empty: none.
+/// Returns one message per problem, with value, rule and remedy; empty: none.
 std::vector<std::string> feed_forward_problems(const DriveControllerParameters& parameters, const RobotModel& robot);
 
 }  // namespace robot_control

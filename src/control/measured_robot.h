@@ -1,6 +1,5 @@
 #pragma once
-/// The robot model that the controller uses: the URDF, with measured values (identify.py) in place of the described
-/// ones.
+/// Replaces values of the URDF by measured ones (identify.py) in the robot model of the controller.
 ///
 /// Feed-forward, derived gains and the stability check use it. Plant, estimator and monitor use the described robot: a
 /// mass with which the controller drives better is not necessarily the true mass. Geometry, limits and hash stay.

@@ -1,5 +1,5 @@
 #pragma once
-/// Plain values of a differential drive: a planar twist, a value per side, a value per wheel.
+/// These types hold plain values of a differential drive: a planar twist, a value per side and a value per wheel.
 
 #include <array>
 
@@ -17,7 +17,7 @@ struct SidePair {
   double right = 0;
 };
 
-/// In the order of RobotModel::wheels, which is that of the joints; 0 beyond the last wheel.
+/// Holds values in the order of RobotModel::wheels, which is that of the joints; 0 beyond the last wheel.
 using WheelValues = std::array<double, kMaxWheels>;
 
 }  // namespace robot_control

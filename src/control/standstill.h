@@ -1,7 +1,7 @@
 #pragma once
-/// Do all wheels stand? Each has moved less than kStandstillSpeed·kStandstillTime for kStandstillTime.
+/// Decides whether all wheels stand: each has moved less than kStandstillSpeed·kStandstillTime for kStandstillTime.
 ///
-/// Angles are compared, not speeds: one encoder count (0.0015 rad of 4096) lifts every filtered speed above the
+/// Angles are compared instead of speeds. One encoder count (0.0015 rad of 4096) lifts every filtered speed above the
 /// threshold, but does not leave the angle window of 0.005 rad.
 
 #include <cstdint>
@@ -15,18 +15,18 @@ inline constexpr double kStandstillTime = 0.25;   ///< s; longer than the wheel 
 
 class Standstill {
  public:
-  /// `period` > 0, s.
+  /// `period` is in s, > 0.
   explicit Standstill(double period);
 
-  /// Restarts: the robot may be moving.
+  /// Restarts; the robot may be moving.
   void reset() noexcept;
 
-  /// rad of every wheel's joint, `cycle` of the sample.
+  /// `angles` are in rad for every wheel's joint; `cycle` is that of the sample.
   void step(const WheelValues& angles, std::uint64_t cycle) noexcept;
 
   bool standing() const noexcept { return standing_; }
-  std::uint64_t cycles() const noexcept { return cycles_; }  ///< since when all angles have stayed in the window
-  std::uint64_t cycles_needed() const noexcept { return cycles_needed_; }  ///< kStandstillTime
+  std::uint64_t cycles() const noexcept { return cycles_; }  ///< cycles for which all angles have stayed in the window
+  std::uint64_t cycles_needed() const noexcept { return cycles_needed_; }  ///< kStandstillTime in cycles
 
  private:
   std::uint64_t cycles_needed_;

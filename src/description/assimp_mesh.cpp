@@ -13,7 +13,7 @@
 namespace robot_control {
 namespace {
 
-/// Materials and textures beside a mesh are not there.
+/// Hides materials and textures beside a mesh.
 class NoFiles final : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -22,7 +22,7 @@ class NoFiles final : public Assimp::IOSystem {
   void Close(Assimp::IOStream*) override {}
 };
 
-// A reader that is not registered cannot take a broken file for one of its own.
+// Only the wanted reader stays registered, because another one could accept a broken file as its own format.
 void keep_only(Assimp::Importer& importer, const std::string& format) {
   Assimp::BaseImporter* const wanted = importer.GetImporter(format.c_str());
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
@@ -50,7 +50,7 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent
   for (unsigned int i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], in_root, points);
 }
 
-/// "F" and the points' bytes, or "P" and the problem.
+/// Returns "F" and the points' bytes, or "P" and the problem.
 std::string parsed(std::string_view bytes, const std::string& format) {
   Assimp::Importer importer;
   importer.SetIOHandler(std::make_unique<NoFiles>().release());

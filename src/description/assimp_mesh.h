@@ -1,8 +1,8 @@
 #pragma once
-/// OBJ and DAE through assimp 5.2, the only two of its readers that are used. It prints nothing.
+/// Reads OBJ and DAE files through assimp 5.2, whose other readers are not used. It prints nothing.
 ///
-/// It runs in a process of its own (other_process.h): nodes that stand for each other in a circle and counts or strides
-/// that the file does not hold to lead it out of its stack and out of its arrays.
+/// It runs in a separate process (other_process.h). Nodes that refer to each other in a circle make assimp overflow its
+/// stack. Wrong counts or strides in a file make it access memory outside its arrays.
 
 #include <string>
 #include <string_view>
@@ -11,8 +11,8 @@
 
 namespace robot_control {
 
-/// The corners of every face with three or more, where the nodes' transforms put them. A problem is reported in
-/// assimp's words, or that it breaks down. `format`: "obj" or "dae". Nothing but `bytes` is read: no textures, no
+/// Returns the corners of every face with three or more, placed by the nodes' transforms. A problem is reported in
+/// assimp's words, or as a crash of assimp. `format` is "obj" or "dae". Only `bytes` is read: no textures, no
 /// materials.
 MeshFaces parse_with_assimp(std::string_view bytes, const std::string& format);
 

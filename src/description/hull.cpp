@@ -13,15 +13,16 @@
 namespace robot_control {
 namespace {
 
-constexpr double kThin = 1e-6;  // of the largest extent: single precision, in which STL is written, resolves 10⁻⁷
+constexpr double kThin = 1e-6;  // share of the largest extent: STL's single precision resolves 10⁻⁷
 
 using Indices = std::vector<std::size_t>;
 
-/// The points in their principal axes about their mean, in units of the largest extent, and how many of the axes count.
+/// Holds the points in their principal axes about their mean, in units of the largest extent, and the number of
+/// significant axes.
 struct Cloud {
   Eigen::Matrix3Xd points;
   int dimension = 0;
-  bool is_mirrored = false;  ///< the axes are a left-handed frame
+  bool is_mirrored = false;  ///< The axes are a left-handed frame.
 };
 
 Cloud principal(const Points& points) {
@@ -51,7 +52,7 @@ Indices ends(const Cloud& cloud) {
   return {static_cast<std::size_t>(low), static_cast<std::size_t>(high)};
 }
 
-/// Qhull with what it owns. It reports errors to a file, which is not read.
+/// Owns a Qhull instance. Its error file is not read.
 class Qhull {
  public:
   Qhull() : silence_(std::fopen("/dev/null", "w")) { qh_zero(&qh_, silence_); }
@@ -65,7 +66,7 @@ class Qhull {
   Qhull(const Qhull&) = delete;
   Qhull& operator=(const Qhull&) = delete;
 
-  /// False when Qhull gives up.
+  /// Returns false if Qhull fails.
   bool run(const Cloud& cloud, const char* options) {
     if (silence_ == nullptr) return false;
     coordinates_ = cloud.points.topRows(cloud.dimension);
@@ -83,7 +84,7 @@ class Qhull {
     return result;
   }
 
-  /// In three dimensions, of facets with three corners.
+  /// Returns the facets with three corners of a hull in three dimensions.
   std::vector<std::array<std::size_t, 3>> triangles() {
     std::vector<std::array<std::size_t, 3>> result;
     for (facetT* facet = qh_.facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next) {
@@ -110,7 +111,7 @@ class Qhull {
 
   std::FILE* silence_;
   qhT qh_{};
-  Eigen::MatrixXd coordinates_;  // Qhull points into it
+  Eigen::MatrixXd coordinates_;  // Qhull points into it.
   int count_ = 0;
 };
 
@@ -150,7 +151,7 @@ Points thinned(const Points& corners) {
     keep(static_cast<std::size_t>(low - corners.begin()));
     keep(static_cast<std::size_t>(high - corners.begin()));
   }
-  while (kept.size() < kMostHullCorners) {
+  while (kept.size() < kMaxHullCorners) {
     keep(static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
   }
   return kept;
@@ -163,7 +164,7 @@ Points hull_corners(const Points& points) {
   Points corners;
   for (const std::size_t index : corners_of(principal(points))) corners.push_back(points[index]);
   order(corners);
-  if (corners.size() > kMostHullCorners) {
+  if (corners.size() > kMaxHullCorners) {
     corners = thinned(corners);
     order(corners);
   }

@@ -33,11 +33,11 @@ std::string read_bytes(const std::filesystem::path& path) {
   if (!error && size == 0) {
     refuse(path, "mesh", "the file is empty (0 bytes)", "It is a placeholder: fetch the real file, or draw a <box>");
   }
-  if (!error && size > kLargestMesh) {
-    refuse(path, "mesh", std::to_string(size >> 20U) + " MiB are more than " + std::to_string(kLargestMesh >> 20U),
+  if (!error && size > kMaxMeshSize) {
+    refuse(path, "mesh", std::to_string(size >> 20U) + " MiB are more than " + std::to_string(kMaxMeshSize >> 20U),
            "Thin the mesh out");
   }
-  InputFile file = read_input_file(path, kLargestMesh);
+  InputFile file = read_input_file(path, kMaxMeshSize);
   if (!file.problem.empty()) refuse(path, "mesh", "it cannot be read: " + file.problem, "Check the file's permissions");
   return std::move(file.text);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the parsers of mesh files give.
+/// This type holds the result of a parser of mesh files.
 
 #include <Eigen/Core>
 #include <string>
@@ -8,8 +8,8 @@
 namespace robot_control {
 
 struct MeshFaces {
-  std::vector<Eigen::Vector3d> points;  ///< m; the corners of all faces, in the order of the file
-  std::string problem;                  ///< what is wrong with the file; empty: nothing
+  std::vector<Eigen::Vector3d> points;  ///< m, corners of all faces in the order of the file
+  std::string problem;                  ///< problem of the file; empty: none
 };
 
 }  // namespace robot_control

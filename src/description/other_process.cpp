@@ -77,7 +77,7 @@ pid_t spawn(std::vector<std::string> arguments, std::vector<std::string> environ
   return error == 0 ? child : -1;
 }
 
-/// False: nothing more comes.
+/// Returns false at the end of the data.
 bool read_some(int from, std::string& to) {
   std::array<char, 65536> block;
   const ssize_t got = read(from, block.data(), block.size());
@@ -86,17 +86,17 @@ bool read_some(int from, std::string& to) {
   return got > 0;
 }
 
-/// Until both are closed; false: too silent or too much.
+/// Reads until both are closed; returns false if they are silent for too long or write too much.
 bool read_all(Pipe& output, Pipe& errors, int silence, ProcessResult& result) {
   while (output.reader() >= 0 || errors.reader() >= 0) {
-    // poll passes over a negative descriptor
+    // poll ignores a negative descriptor.
     std::array<pollfd, 2> watched{{{output.reader(), POLLIN, 0}, {errors.reader(), POLLIN, 0}}};
     const int ready = poll(watched.data(), watched.size(), silence * 1000);
     if (ready < 0 && errno == EINTR) continue;
     if (ready <= 0) return false;
     if (watched[0].revents != 0 && !read_some(output.reader(), result.output)) output.close_reader();
     if (watched[1].revents != 0 && !read_some(errors.reader(), result.errors)) errors.close_reader();
-    if (result.output.size() > kMostOutput || result.errors.size() > kMostOutput) return false;
+    if (result.output.size() > kMaxOutput || result.errors.size() > kMaxOutput) return false;
   }
   return true;
 }
@@ -132,7 +132,7 @@ rlim_t address_space() {
 
 [[noreturn]] void work_apart(const std::function<std::string()>& work, const Pipe& output, const Pipe& errors) {
   dup2(errors.writer(), STDERR_FILENO);
-  // A crash is to be one: no handler of a sanitizer's or of ours.
+  // A crash ends the process, without a handler of a sanitizer or of this program.
   for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal_number, SIG_DFL);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, kApartSeconds);

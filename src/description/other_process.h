@@ -1,5 +1,5 @@
 #pragma once
-/// Work that is done in a process of its own: another program, or a library that must not take ours down.
+/// Runs work in a separate process: another program, or a library that may crash.
 
 #include <cstddef>
 #include <functional>
@@ -11,30 +11,30 @@ namespace robot_control {
 struct ProcessResult {
   enum class End {
     kExited,
-    kNotStarted,  ///< no such program, or no processes left
-    kEnded,       ///< by us: it was silent for too long or wrote more than kMostOutput
-    kKilled,      ///< by a signal
+    kNotStarted,  ///< There is no such program, or no more process can be created.
+    kEnded,       ///< The parent killed it: it was silent for too long or wrote more than kMaxOutput.
+    kKilled,      ///< killed by a signal
   };
   End end = End::kNotStarted;
-  int code = 0;  ///< exit code, or number of the signal
+  int code = 0;  ///< exit code or number of the signal
   std::string output;
   std::string errors;
 };
 
-inline constexpr std::size_t kMostOutput = std::size_t{1} << 30U;  ///< bytes, of output and errors each
+inline constexpr std::size_t kMaxOutput = std::size_t{1} << 30U;  ///< bytes of output and of errors
 
-/// Runs `arguments[0]` (a path, or a name looked for on PATH), without a shell, with our environment and the
-/// `environment` entries ("NAME=VALUE") laid over it, nothing on its standard input. One that writes nothing for
-/// `silence` seconds is killed.
+/// Runs `arguments[0]`, a path or a name found on PATH, without a shell and without standard input. The entries of
+/// `environment` ("NAME=VALUE") replace those of this process. A program that writes nothing for `silence` seconds is
+/// killed.
 ProcessResult run_program(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
                           int silence);
 
-/// Runs `work` in a copy of this process (fork) and hands back what it returns as `output`. Whatever it does, a crash
-/// included, stays there. It gets kApartMemory, kApartSeconds of processor time, no core file, and must not wait for
-/// other threads, for they are not copied. An exception ends it with code 1.
+/// Runs `work` in a copy of this process (fork) and returns its result as `output`. Its effects stay in the copy, a
+/// crash included. The copy has kApartMemory, kApartSeconds of processor time and no core file. It must not wait for
+/// other threads, which are not copied. An exception ends it with code 1.
 ProcessResult run_apart(const std::function<std::string()>& work);
 
-inline constexpr std::size_t kApartMemory = std::size_t{1} << 30U;  ///< bytes beyond ours
+inline constexpr std::size_t kApartMemory = std::size_t{1} << 30U;  ///< bytes beyond those of this process
 inline constexpr int kApartSeconds = 20;
 
 }  // namespace robot_control

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
 
-constexpr std::size_t kLargestManifest = std::size_t{1} << 20U;  // bytes
+constexpr std::size_t kMaxManifest = std::size_t{1} << 20U;  // bytes
 
 std::vector<fs::path> folders_of(const std::string& search_path) {
   std::vector<fs::path> folders;
@@ -45,7 +45,7 @@ bool is_folder(const fs::path& path) {
 
 std::string package_name(const fs::path& folder) {
   TiXmlDocument xml;
-  xml.Parse(read_input_file(folder / "package.xml", kLargestManifest).text.c_str());
+  xml.Parse(read_input_file(folder / "package.xml", kMaxManifest).text.c_str());
   if (!xml.Error() && xml.FirstChildElement("package") != nullptr) {
     const TiXmlElement* name = xml.FirstChildElement("package")->FirstChildElement("name");
     if (name != nullptr && name->GetText() != nullptr) {
@@ -63,7 +63,7 @@ using Packages = std::map<std::string, fs::path>;
 void crawl(const fs::path& folder, int depth, Packages& packages) {
   if (is_there(folder / "CATKIN_IGNORE")) return;
   if (is_there(folder / "package.xml") || is_there(folder / "manifest.xml")) {
-    packages.emplace(package_name(folder), folder);  // the first one counts
+    packages.emplace(package_name(folder), folder);  // The first package of a name counts.
     return;
   }
   if (depth == 0 || is_there(folder / "rospack_nosubdirs")) return;
@@ -77,7 +77,7 @@ void crawl(const fs::path& folder, int depth, Packages& packages) {
   for (const fs::path& next : inside) crawl(next, depth - 1, packages);
 }
 
-/// The packages below one entry of the search path.
+/// Returns the packages below one entry of the search path.
 const Packages& crawled(const fs::path& entry) {
   static std::mutex mutex;
   static std::map<fs::path, Packages> remembered;
@@ -89,7 +89,7 @@ const Packages& crawled(const fs::path& entry) {
 
 std::optional<fs::path> on_search_path(const std::string& package) {
   for (const fs::path& entry : folders_of(environment("ROS_PACKAGE_PATH"))) {
-    // spares the crawl in the usual case
+    // This avoids the crawl in the usual case.
     if (is_there(entry / package / "package.xml") && package_name(entry / package) == package) return entry / package;
     const Packages& packages = crawled(entry);
     if (const auto found = packages.find(package); found != packages.end()) return found->second;
@@ -110,7 +110,7 @@ std::optional<fs::path> above_urdf(const std::string& package, const std::string
   if (!start) return {};
   for (fs::path folder = start->lexically_normal(); folder != folder.root_path(); folder = folder.parent_path()) {
     if (is_there(folder / "package.xml") && package_name(folder) == package) return folder;
-    // any folder may happen to bear the name
+    // A folder may have the name by chance.
     if (is_there(folder / package / "package.xml") || is_there(folder / package / file)) return folder / package;
   }
   return {};
@@ -196,7 +196,7 @@ fs::path resolve_resource(const std::string& uri, const RobotDescription& descri
   }
   fs::path path = locate(uri, description);
   if (is_there(path)) return path;
-  // a/b/../c, where b is not there: cleaned up, as a URL is
+  // In a/b/../c, where b does not exist, the path is normalised as in a URL.
   if (fs::path cleaned = path.lexically_normal(); is_there(cleaned)) return cleaned;
   refuse(description.source, element_of(uri), "there is no file " + path.string(),
          "Put it there, or correct the file name (letters count in upper and lower case)");

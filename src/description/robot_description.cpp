@@ -19,9 +19,9 @@ bool continues_character(char byte) {
 }
 
 std::string shortened(const std::string& message) {
-  if (message.size() <= kLongestRefusal) return message;
-  std::size_t first = kLongestRefusal * 2 / 3;
-  std::size_t rest = message.size() - kLongestRefusal / 3;
+  if (message.size() <= kMaxRefusal) return message;
+  std::size_t first = kMaxRefusal * 2 / 3;
+  std::size_t rest = message.size() - kMaxRefusal / 3;
   while (first > 0 && continues_character(message[first])) --first;
   while (rest < message.size() && continues_character(message[rest])) ++rest;
   return message.substr(0, first) + " … " + message.substr(rest);
@@ -36,7 +36,7 @@ bool is_lfs_pointer(const std::string& bytes) {
 }
 
 void refuse(const std::string& source, const std::string& element, const std::string& what, const std::string& remedy) {
-  // TinyXML's sentences bring their full stop along.
+  // TinyXML's sentences already have a full stop.
   const std::string sentence = what.substr(0, what.find_last_not_of('.') + 1);
   throw RobotError(printable(source) + ": " + printable(element) + ": " + fit_for_message(sentence) + ". " +
                    fit_for_message(remedy) + ".");

@@ -37,7 +37,7 @@ class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
 
-  /// Empty at the end.
+  /// Returns the next word; empty at the end.
   std::string_view next() {
     constexpr std::string_view kSpace = " \t\r\n\v\f";
     rest_.remove_prefix(std::min(rest_.find_first_not_of(kSpace), rest_.size()));
@@ -50,7 +50,7 @@ class Words {
     std::string_view word = next();
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    // from_chars leaves `value` as it was where a double cannot hold it.
+    // If a double cannot hold the number, from_chars leaves `value` unchanged.
     if (error == std::errc::result_out_of_range) value = is_tiny(word) ? 0 : std::numeric_limits<double>::infinity();
     return !word.empty() && end == word.data() + word.size() && error != std::errc::invalid_argument;
   }

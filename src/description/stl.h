@@ -1,5 +1,5 @@
 #pragma once
-/// The bytes of an STL file as the corners of its triangles.
+/// Reads the bytes of an STL file as the corners of its triangles.
 
 #include <string_view>
 
@@ -7,8 +7,8 @@
 
 namespace robot_control {
 
-/// Refused is of binary files nothing, for their length is what makes them so; of texts a facet with another number of
-/// vertices than three, a vertex that is no three numbers, a missing `endsolid`.
+/// A binary file is always accepted, because its length identifies it. A text is refused if a facet has another number
+/// of vertices than three, or a vertex is not three numbers. It is also refused without `endsolid`.
 MeshFaces parse_stl(std::string_view bytes);
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// A URDF text as urdfdom understands it, or a message that says what is wrong and where.
+/// Parses a URDF text with urdfdom, or reports what is wrong and where.
 
 #include <urdf_world/types.h>
 
@@ -16,18 +16,18 @@ namespace robot_control {
 struct UrdfDocument {
   std::string source;                    ///< for messages
   urdf::ModelInterfaceSharedPtr model;   ///< never null
-  std::vector<std::string> joint_order;  ///< names as they stand in the file (urdfdom sorts by name)
-  std::vector<std::string> link_order;   ///< likewise
-  std::set<std::string> driven;          ///< joints (urdf_markup.h)
+  std::vector<std::string> joint_order;  ///< names in the order of the file (urdfdom sorts by name)
+  std::vector<std::string> link_order;   ///< names in the order of the file
+  std::set<std::string> driven;          ///< driven joints (urdf_markup.h)
   std::vector<SidewaysName> sideways_names;
-  std::set<std::string> sideways_plugins;             ///< their files (urdf_markup.h)
-  std::set<std::string> steering_plugins;             ///< likewise
-  std::set<std::string> unsaid_axes;                  ///< joints (urdf_markup.h)
-  std::map<std::string, std::string> turned_origins;  ///< (urdf_markup.h)
+  std::set<std::string> sideways_plugins;             ///< files of plugins that move sideways (urdf_markup.h)
+  std::set<std::string> steering_plugins;             ///< files of plugins that steer (urdf_markup.h)
+  std::set<std::string> unsaid_axes;                  ///< joints without a given axis (urdf_markup.h)
+  std::map<std::string, std::string> turned_origins;  ///< elements turned by more than a whole turn (urdf_markup.h)
 };
 
-/// Throws RobotError: what parse_markup refuses, or whatever urdfdom objects to, in its own words. What urdfdom would
-/// print on the console goes into the message.
+/// Throws RobotError for what parse_markup refuses, and for an error of urdfdom, in its own words. Messages that
+/// urdfdom would print on the console become part of the error.
 UrdfDocument parse_urdf(const RobotDescription& description);
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// How messages and notes name things: `<link name="…">`, numbers with six digits.
+/// These functions word messages and notes: `<link name="…">`, numbers with six digits.
 
 #include <string>
 #include <vector>
@@ -9,19 +9,19 @@ namespace robot_control {
 std::string link_element(const std::string& name);
 std::string joint_element(const std::string& name);
 
-/// Six significant digits: "0.1", "1e-09".
+/// Returns six significant digits: "0.1", "1e-09".
 std::string number(double value);
 
-/// "a, b, c"; "none" when there is none.
+/// Returns "a, b, c", or "none" for an empty list.
 std::string list(const std::vector<std::string>& names);
 
-/// Whether `name` says "left" or "right" in either case.
+/// Returns true if `name` contains "left" or "right" in either case.
 bool says_left(const std::string& name);
 bool says_right(const std::string& name);
 
 std::string lower_case(std::string text);
 
-/// The lines of a message, with "; " between them.
+/// Returns the lines of a message with "; " between them.
 std::string on_one_line(std::string text);
 
 }  // namespace robot_control

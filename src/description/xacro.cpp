@@ -24,7 +24,7 @@ std::string python() {
   return fs::exists(ours, error) ? ours : "/usr/bin/python3";
 }
 
-/// The package robot_control as sourced, else that of the sources.
+/// Returns the sourced path of the package robot_control, followed by that of the sources.
 std::string python_path() {
   const std::string sourced = environment("PYTHONPATH");
   return "PYTHONPATH=" + (sourced.empty() ? "" : sourced + ":") + ROBOT_CONTROL_PROJECT "/scripts";

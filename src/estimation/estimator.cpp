@@ -112,7 +112,7 @@ void Estimator::step(const SensorFrame& sensors, StateFrame& out) noexcept {
   flags_ = lasting_flags_;
   std::uint64_t cycles = 0;
   if (!began_) {
-    skipped_ = cycle;  // the run began earlier
+    skipped_ = cycle;  // The run began before the first frame.
   } else if (cycle > cycle_) {
     cycles = cycle - cycle_;
     skipped_ += cycles - 1;
@@ -170,7 +170,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
   end_slide();
 }
 
-/// Raw odometry: the travel of either side since its last reading.
+/// Raw odometry integrates the travel of either side since its last reading.
 void Estimator::integrate_wheels() noexcept {
   const Motion motion = geometry_.base_motion(wheels_.mean(), wheels_.turned());
   const Planar chord = chord_of(motion, wheel_odometry_.yaw);
@@ -193,8 +193,8 @@ void Estimator::follow_rate(double dt) noexcept {
   rate_.follow(rate, smooth, dt);
 }
 
-/// What the wheels rolled since their readings, which are late by a positive clock offset, or what the robot turned
-/// since the gyro's, which are late by a negative one; and what a side without a reading in this step rolled.
+/// Predicts the motion since the readings that the core has used. A positive clock offset means that the wheels are
+/// late, a negative one that the gyro is late. A side without a reading in this step is predicted by its speed.
 Estimator::Prediction Estimator::prediction() const noexcept {
   if (resting_) return {};
   Prediction ahead;

@@ -1,37 +1,40 @@
 #pragma once
-/// state_estimator's law: sensors of one cycle → state of that cycle. REP 103, REP 105.
+/// The estimator computes the state of a cycle from the sensors of that cycle (REP 103, REP 105).
 ///
 ///   encoders ─► travel of either side ─┬─► planar core ─► pose, calibration, covariance
 ///   gyro ──────────────────────────────┤        ▲ explicit, bounded correction of the path
 ///   accelerometer, tilt filter ────────┴─► slip detector ─► slide
 ///
-/// The pose is wheels for the distance and gyro for the heading (planar/planar_core.h). The accelerometer enters it by
-/// the tilt, which shortens the distance, and the creep of tyres, parts of a percent; else only while slip is proven
-/// (slip/slip_detector.h, slip/wheel_slide.h), and then within bounds. Slip widens the covariance.
+/// The wheels give the distance and the gyro the heading (planar/planar_core.h). The accelerometer shortens the
+/// distance by parts of a percent: it shows the tilt and the creep of tyres. It corrects the path further only while
+/// slip is proven, and within bounds (slip/slip_detector.h, slip/wheel_slide.h). Slip widens the covariance.
 ///
-/// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay, the gyro's bias and the tilt
-/// (tilt/tilt.h) are learned; until the first rest is over the pose is corrected by that bias, too. Every run begins at
-/// rest. A window that turns out not to be quiet is integrated at once, with the one before. A run that begins in
-/// motion is wheels and gyro until it rests, where a turn drags wheels: no slide is corrected, for the accelerometer's
-/// bias is not known, either, and wheels do not show the gyro's (planar/planar_core.h).
+/// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay. The gyro's bias and the tilt
+/// (tilt/tilt.h) are learned. The bias that the first rest shows also corrects the pose. The estimator takes the robot
+/// to rest at the beginning of a run. A window that turns out not to be quiet is integrated at once, together with the
+/// one before.
 ///
-/// Samples may come at any rate. One that is not finite or impossible is not used (kStateBadSample, which also states
-/// that encoders are missing in this cycle), and the last one holds: for three times the gap between the last two,
-/// within kShortestHold … kLongestHold. Beyond that the sensor is lost, and its flag is set:
-///   gyro            yaw comes from the wheels, by the calibration learned so far
+/// A run that begins in motion uses wheels and gyro until the robot rests. If turns drag the wheels, no slide is
+/// corrected before that rest. The accelerometer's bias is not known then, and such wheels do not show the gyro's bias
+/// (planar/planar_core.h).
+///
+/// Samples may come at any rate. A sample that is not finite or impossible is not used and sets kStateBadSample. A
+/// missing encoder sample sets the same flag. The last good sample holds for three times the gap between the last two,
+/// within kMinHoldTime … kMaxHoldTime. After that the sensor is lost, and its flag is set:
+///   gyro            the wheels turn the robot, by the calibration learned so far
 ///   accelerometer   tilt and slip of all wheels together are not noticed
 ///   one encoder     gyro and the other side continue
-///   both encoders, or one and the gyro: no longer kStateValid. The next good reading brings the whole travel.
-/// A frame of a cycle that is not newer gives the last state again.
+///   both encoders, or one and the gyro: kStateValid is cleared. The next good reading brings the whole travel.
+/// If the cycle of a frame is not newer than the last one, the last state is published again.
 ///
-/// The angular velocity of the twist is the gyro's, less its bias, behind a tracking loop (rate_tracker.h); pose and
-/// biases follow every sample.
+/// The angular velocity of the twist is the gyro's minus its bias, smoothed by a tracking loop (rate_tracker.h). Pose
+/// and biases use every sample.
 ///
-/// kStateDegraded, with a reason: kDegradedHeading, the gyro's bias is known no better than kUnknownBias, which is
-/// so before the first rest, or wheels and gyro contradicted each other since the last rest; kDegradedPosition, wheels
-/// slip.
+/// kStateDegraded has two possible reasons. In kDegradedPosition wheels slip. In kDegradedHeading the deviation of the
+/// gyro's bias exceeds kUnknownBias, or wheels and gyro have contradicted each other since the last rest. Before the
+/// first rest the bias is unknown.
 ///
-/// Confidence of a sensor: 0 not used, else min(1, 1/nis), nis smoothed over kBlock.
+/// The confidence of a sensor is 0 while it is not used, else min(1, 1/nis), with nis smoothed over kBlock.
 
 #include <Eigen/Core>
 #include <array>
@@ -50,33 +53,34 @@ namespace robot_control {
 
 class Estimator : private EstimatorState {
  public:
-  /// `period`: s, > 0. Throws std::invalid_argument: a parameter or a measure of the robot out of range, a
-  /// side without a wheel.
+  /// `period` is in s and > 0. Throws std::invalid_argument if a parameter or a measure of the robot is out of range or
+  /// a side has no wheel.
   Estimator(const EstimatorParameters& parameters, const RobotModel& robot, double period);
 
-  /// A new run: the first sample is the offset of the encoders, the pose starts at zero.
+  /// Begins a new run: the first sample is the offset of the encoders, and the pose is zero.
   void enter_run() noexcept { static_cast<EstimatorState&>(*this) = fresh_; }
 
-  /// After a restart within a run: continue from the last frame published, covariance grown: by the restart
-  /// constants and by what the last twist travels in the cycles between. A frame that is not finite or was
-  /// never valid is not continued from.
+  /// Continues from the last published frame after a restart within a run. The covariance grows by the restart
+  /// constants and by the distance that the last twist travels in the missed cycles. A frame that is not finite or
+  /// never was valid is ignored.
   void resume(const StateFrame& last) noexcept;
 
-  /// set_odometry, reset_odometry: from this cycle on the pose is (x [m], y [m], yaw [rad]), exactly so in the next
-  /// frame, with a covariance of zero; all else stays.
+  /// Requests the pose (x [m], y [m], yaw [rad]) for the services set_odometry and reset_odometry. The next frame has
+  /// exactly this pose, with a covariance of zero. All else stays.
   void set_pose(const Vector3& pose) noexcept { pose_request_ = pose; }
 
-  /// Fills everything but `out.head`. dt = (sensors.head.cycle − the last one's) · period.
+  /// Fills everything but `out.head`. The time step is (cycle − last cycle) · period.
   void step(const SensorFrame& sensors, StateFrame& out) noexcept;
 
-  /// The same with samples that come at any time: `dt` [s] after the last one, > 0; the head's cycle does not count.
+  /// Does the same for samples at any time, `dt` [s] > 0 after the last one. The cycle of the head is ignored.
   void step(const SensorFrame& sensors, double dt, StateFrame& out) noexcept;
 
  private:
   static constexpr std::size_t kLeft = WheelSides::kLeft;
   static constexpr std::size_t kRight = WheelSides::kRight;
 
-  /// From the core's pose, which is that of the sensor that is late by the clock offset, to the present one.
+  /// Holds the motion from the core's pose, which belongs to the sensor that is late by the clock offset, to the
+  /// present pose.
   struct Prediction {
     double distance = 0, turn = 0;  ///< m, rad
   };
@@ -134,8 +138,8 @@ class Estimator : private EstimatorState {
   Eigen::Matrix3d base_from_imu_;
   double encoder_;          ///< m, deviation of one side's reading
   double rate_noise_gain_;  ///< RateTracker::noise_gain
-  bool drags_wheels_;       ///< estimator_setup.h
-  EstimatorState fresh_;    ///< at the beginning of a run
+  bool drags_wheels_;       ///< A turn drags wheels over the floor (estimator_setup.h).
+  EstimatorState fresh_;    ///< state at the beginning of a run
 };
 
 }  // namespace robot_control

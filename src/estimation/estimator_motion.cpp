@@ -1,4 +1,4 @@
-// The estimator in motion: the gyro turns, the wheels move, slip is watched, calibration is learned.
+// The estimator in motion: the gyro turns, the wheels move, slip is watched and the calibration is learned.
 
 #include <algorithm>
 #include <cmath>
@@ -27,14 +27,14 @@ void Estimator::move(double dt) noexcept {
   }
 }
 
-/// `gyro` rad/s, bias included.
+/// `gyro` is in rad/s and includes the bias.
 void Estimator::turn_tilt(const Eigen::Vector3d& gyro, double dt) noexcept {
   Eigen::Vector3d rate = gyro - gyro_bias();
   if (!bias_measured_) rate.head<2>().setZero();
   tilt_.turn(array(rate), dt, bias_measured_);
 }
 
-/// The heading; rad, bias removed.
+/// Turns the heading and returns the angle in rad, without the bias.
 double Estimator::turn(double dt) noexcept {
   const double before = core_.pose().yaw;
   const double wheel_turn = core_.wheel_turn(wheels_.left(), wheels_.right());
@@ -50,9 +50,9 @@ double Estimator::turn(double dt) noexcept {
   return turned;
 }
 
-/// m, along and to the left: by how much less the robot goes than its treads roll. A tyre that pulls or holds creeps by
-/// tyre_creep times the specific force per distance (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter 3, linear
-/// range); of gravity only what is beyond kSignificant deviations of the tilt.
+/// Returns by how much less the robot travels than its treads roll, along and to the left, in m. A tyre under force
+/// creeps by tyre_creep times the specific force per distance (H. B. Pacejka, Tire and Vehicle Dynamics, 2012, chapter
+/// 3, linear range). Gravity counts only beyond kSignificant deviations of the tilt.
 std::array<double, 2> Estimator::tyres_creep(double distance) const noexcept {
   if (!imu_.accelerometer() || parameters_.tyre_creep == 0) return {};
   std::array<double, 2> creep = tilt_.acceleration(array(*imu_.accelerometer()));
@@ -60,13 +60,13 @@ std::array<double, 2> Estimator::tyres_creep(double distance) const noexcept {
     const double sine = tilt_.up()[axis];
     const double uncertain = Tuning::kSignificant * std::sqrt(std::max(0.0, tilt_.covariance(axis, axis)));
     creep[axis] += kGravity * std::copysign(std::max(0.0, std::abs(sine) - uncertain), sine);
-    creep[axis] = std::clamp(creep[axis], -kGravity, kGravity);  // more no tyre holds
+    creep[axis] = std::clamp(creep[axis], -kGravity, kGravity);  // No tyre holds more.
     creep[axis] *= parameters_.tyre_creep * std::abs(distance);
   }
   return creep;
 }
 
-/// The distance is shortened by slope and creep, and laid along the heading that the robot had halfway.
+/// Slope and creep shorten the distance, which is laid along the heading that the robot had halfway.
 void Estimator::advance_path(const WheelSides::Travel& travel) noexcept {
   const Vector3& up = tilt_.up();
   const double level = travel.distance * std::sqrt(std::max(0.0, 1 - up[0] * up[0]));
@@ -145,7 +145,7 @@ WheelSlide::Input Estimator::slide_input() const noexcept {
           .sideways = slip_detector_.proven(SlipResidual::kAcross)};
 }
 
-/// The axes of the slip detector are turned against odom's.
+/// The axes of the slip detector are turned against the axes of odom.
 void Estimator::correct(const WheelSlide::Correction& correction) noexcept {
   const Planar shift = rotated(correction.shift, core_.pose().yaw - uncorrected_yaw_);
   core_.shift(shift.x, shift.y, correction.variance);
@@ -156,7 +156,7 @@ void Estimator::compare_turns(double dt) noexcept {
   comparison_.time += dt;
   comparison_.left += wheels_.left();
   comparison_.right += wheels_.right();
-  comparison_.stuck |= imu_.gyro_unchanged() > Tuning::kLongestHold;
+  comparison_.stuck |= imu_.gyro_unchanged() > Tuning::kMaxHoldTime;
   if (slide_.active()) comparison_.open = false;
   if (!wheels_.both_received() || (comparison_.open && comparison_.time < Tuning::kBlock)) return;
   if (!imu_.gyro() || gyro_turn_.silent()) return;
@@ -181,9 +181,9 @@ void Estimator::begin_comparison() noexcept {
 }
 
 void Estimator::note(SensorIndex sensor, double nis, double dt) noexcept {
-  if (!(nis >= 0)) return;  // a sensor it compares is lost
+  if (!(nis >= 0)) return;  // A sensor of this comparison is lost.
   double& smoothed = nis_[sensor];
-  smoothed += dt / (Tuning::kBlock + dt) * (std::min(nis, Tuning::kLargestNis) - smoothed);
+  smoothed += dt / (Tuning::kBlock + dt) * (std::min(nis, Tuning::kMaxNis) - smoothed);
 }
 
 }  // namespace robot_control

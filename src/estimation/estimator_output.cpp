@@ -1,4 +1,4 @@
-// The estimator's state of the middle of the wheels ↔ the frame that is published: of base_link, with covariances.
+// This file converts the estimator's state of the middle of the wheels to the published frame of base_link.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -24,12 +24,12 @@ void Estimator::fill(StateFrame& out) const noexcept {
   fill_health(out);
 }
 
-/// m, odom axes: from base_link to the middle of the wheels.
+/// Returns the vector from base_link to the middle of the wheels, in m, odom axes.
 Planar Estimator::axle(double yaw) const noexcept {
   return rotated({geometry_.axle_x, geometry_.axle_y}, yaw);
 }
 
-/// Of a frame's pose, moved from base_link to the middle of the wheels.
+/// Returns the covariance of a frame's pose, moved from base_link to the middle of the wheels.
 Eigen::Matrix3d Estimator::covariance_of_middle(const StateFrame& frame) const noexcept {
   const Planar lever = axle(yaw_of(frame.pose_odom.orientation));
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity();
@@ -55,15 +55,16 @@ void Estimator::fill_pose(StateFrame& out) const noexcept {
   fill_pose_covariance(middle.yaw, lever, out);
 }
 
-/// Probability that the clock offset is positive.
+/// Returns the probability that the clock offset is positive.
 double Estimator::wheels_late() const noexcept {
   const double deviation = core_.deviation(PlanarCore::kOffset);
   if (deviation == 0) return core_.offset() > 0 ? 1 : 0;
   return std::erfc(-core_.offset() / deviation / std::numbers::sqrt2) / 2;
 }
 
-/// P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ (σ_encoder² + v² σ_stamp²), J by clock offset, x, y and yaw; a: direction of
-/// travel, m: velocity of base_link, gap: between two samples of the gyro, evenly distributed.
+///   P = J P_core Jᵀ + m mᵀ gap²/8 + a aᵀ (σ_encoder² + v² σ_stamp²)
+/// J is the Jacobian by clock offset, x, y and yaw, a the direction of travel and m the velocity of base_link. The
+/// present is evenly distributed over the gap between two samples of the gyro.
 void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame& out) const noexcept {
   const double late = wheels_late();
   const double yaw_rate = resting_ ? 0 : yaw_rate_;
@@ -84,7 +85,7 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, StateFrame
   fill_attitude_covariance(yaw, covariance(2, 2), out);
 }
 
-/// An error of u across is one of roll, of u along one of −pitch; about odom axes.
+/// An error of u across is an error of roll, and an error of u along is one of −pitch. Both are turned to odom axes.
 void Estimator::fill_attitude_covariance(double yaw, double yaw_variance, StateFrame& out) const noexcept {
   Eigen::Matrix2d tilt;
   tilt << tilt_.covariance(1, 1), -tilt_.covariance(1, 0), -tilt_.covariance(0, 1), tilt_.covariance(0, 0);

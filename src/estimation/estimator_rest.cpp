@@ -34,7 +34,7 @@ void Estimator::rest(double dt) noexcept {
   std::array<double, 2> acceleration{};
   if (imu_.accelerometer()) acceleration = tilt_.acceleration(array(*imu_.accelerometer()));
   open_window_.step(dt, wheels_.left(), wheels_.right(), imu_.gyro(), {acceleration[0], acceleration[1]});
-  if (wheels_.both_fell_silent()) {  // no sensor confirms that it still rests
+  if (wheels_.both_fell_silent()) {  // No sensor confirms that the robot still rests.
     watch_.reset();
     lasting_flags_ &= ~std::uint64_t{kStateStandstill};
     return;
@@ -64,10 +64,10 @@ void Estimator::begin_rest() noexcept {
   }
 }
 
-/// The last two windows are integrated at once.
+/// Integrates the last two windows at once.
 void Estimator::end_rest() noexcept {
   rested_ = rested_ || bias_measured_;
-  const bool stood = (lasting_flags_ & kStateStandstill) != 0;  // a run may begin in motion
+  const bool stood = (lasting_flags_ & kStateStandstill) != 0;  // A run may begin in motion.
   moved_ = true;
   resting_ = false;
   lasting_flags_ &= ~std::uint64_t{kStateStandstill};
@@ -101,7 +101,7 @@ void Estimator::learn_at_rest() noexcept {
   if (watch_.force()) tilt_.rest(*watch_.force(), window);
 }
 
-/// `mean` rad/s over `window` s.
+/// `mean` is in rad/s, over `window` s.
 void Estimator::learn_gyro_bias(const Vector3& mean, double window) noexcept {
   gyro_noise_.add(mean[2], window);
   core_.set_gyro_noise(gyro_noise_.density());

@@ -1,5 +1,5 @@
 #pragma once
-/// What a user sets and what the robot is → what the estimator's parts start with.
+/// These functions derive the parameters of the estimator's parts from the user's parameters and the robot.
 
 #include "estimation/estimator_parameters.h"
 #include "estimation/planar/planar_core.h"
@@ -11,22 +11,22 @@
 
 namespace robot_control {
 
-/// Throws std::invalid_argument: a parameter or a measure of the robot out of range, a side without a wheel, an
-/// orientation of the IMU that is no rotation.
+/// Returns `parameters`. Throws std::invalid_argument if a parameter or a measure of the robot is out of range. A side
+/// without a wheel and an IMU orientation of norm 0 are refused, too.
 const EstimatorParameters& checked(const EstimatorParameters& parameters, const RobotModel& robot, double period);
 
-/// m, standard deviation of one side's reading.
+/// Returns the standard deviation of one side's reading, in m.
 double encoder_deviation(const EstimatorParameters& parameters, const RobotModel& robot);
 
-/// m, standard deviation of where along x the robot turns: wherever between the first and the last axle its load puts
-/// it. Where the wheels' places are not known, the length between the axles is that which the multiplier of the wheel
-/// base follows from (RobotModel::wheel_base_multiplier).
+/// Returns the standard deviation of the x of the centre of rotation, in m. The load puts that centre anywhere between
+/// the first and the last axle. If the places of the wheels are not known, the wheel base's multiplier gives the length
+/// between the axles (RobotModel::wheel_base_multiplier).
 double icr_deviation(const RobotModel& robot);
-/// A turn drags wheels over the floor: those behind each other, and tracks. Where nothing but wheel radius and base is
-/// known (no bodies) there may be such.
+/// Returns true if a turn drags wheels over the floor: wheels behind each other, tracks, or a robot without known
+/// bodies.
 bool drags_wheels(const RobotModel& robot);
 
-/// Without self_calibration ratio and wheel base are known for ever.
+/// Without self_calibration the radius ratio and the wheel base are held.
 PlanarCoreParams core_params(const EstimatorParameters& parameters, const RobotModel& robot);
 TiltParams tilt_params(const EstimatorParameters& parameters);
 RestWatchParams rest_params(const EstimatorParameters& parameters, const RobotModel& robot);

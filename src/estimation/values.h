@@ -1,5 +1,5 @@
 #pragma once
-/// Small algebra on plain values, which the estimator's state is made of.
+/// These functions compute with plain values, of which the estimator's state consists.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -15,7 +15,7 @@ inline Vector3 array(const Eigen::Vector3d& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Vector in the plane; trivially copyable, which Eigen's is not.
+/// This vector in the plane is trivially copyable, which Eigen's vectors are not.
 struct Planar {
   double x = 0, y = 0;
 
@@ -28,7 +28,7 @@ struct Planar {
   double norm() const noexcept { return std::hypot(x, y); }
 };
 
-/// `v` turned by `angle` rad; components in base axes → components in odom axes, if `angle` is the yaw.
+/// Returns `v` turned by `angle` rad. If `angle` is the yaw, this changes base axes to odom axes.
 inline Planar rotated(const Planar& v, double angle) noexcept {
   const double c = std::cos(angle);
   const double s = std::sin(angle);

@@ -1,6 +1,6 @@
 #pragma once
-/// The gravity of every law: of the estimator, and of what is derived from a weight. A simulated world has the gravity
-/// of its scene, the same unless that says otherwise.
+/// This gravity is used by the estimator and for all that is derived from a weight. A simulated world has the gravity
+/// of its scene, which is the same by default.
 
 namespace robot_control {
 

@@ -14,7 +14,7 @@ bool is_letter(char c) {
   return c >= 'a' && c <= 'z';
 }
 
-/// "simulated" has an "imu", too.
+/// Returns true if a word in `name` begins with `word`; "simulated" contains an "imu", too.
 bool begins_word(const std::string& name, const std::string& word) {
   for (std::size_t at = name.find(word); at != std::string::npos; at = name.find(word, at + 1)) {
     if (at == 0 || !is_letter(name[at - 1])) return true;

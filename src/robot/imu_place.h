@@ -1,5 +1,5 @@
 #pragma once
-/// Where the IMU sits.
+/// Finds the place of the IMU.
 
 #include <string>
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace robot_control {
 
-/// The link of the IMU: `requested_link` where it is not empty, else "imu_link", else the first link in the file with a
-/// word of its name that begins with "imu" or "gyro", each only if it does not move against the root. Empty: in the
-/// base. Throws RobotError: a requested link that does not exist or moves.
+/// Returns the link of the IMU; empty: the IMU is in the base. It is `requested_link` if that is not empty, else
+/// "imu_link". Else it is the first link in the file with a word that begins with "imu" or "gyro". A link that moves
+/// against the root is not used. Throws RobotError if the requested link does not exist or moves.
 std::string imu_link_of(const RigidBodies& robot, const std::string& requested_link, std::vector<RobotNote>& notes);
 
-/// Where the IMU sits, in the base's axes: at `link` (empty: in the base), but for what imu_position and
+/// Returns the pose of the IMU in the base's axes: at `link` (empty: in the base), unless imu_position and
 /// imu_orientation say otherwise. A difference of more than 1 % of `wheel_base`, or 0.01 rad, is noted. Throws
-/// RobotError: a number that is not finite.
+/// RobotError if a number is not finite.
 Pose imu_pose(const RigidBodies& robot, const std::string& link, const RobotParameters& parameters, double wheel_base,
               std::vector<RobotNote>& notes);
 

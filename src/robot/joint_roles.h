@@ -1,8 +1,8 @@
 #pragma once
-/// The roles of the joints that are not drive wheels.
+/// Determines the roles of the joints that are not drive wheels.
 ///
-///   kPassive  wheels of casters and the swivels above them, suspensions and rockers (what stands between the root and
-///             a wheel), followers of a <mimic>, joints without an effort limit
+///   kPassive  wheels of casters and the swivels above them, suspensions and rockers (all joints between the root and a
+///             wheel), followers of a <mimic>, joints without an effort limit
 ///   kHeld     the others: arms, lifts, grippers
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace robot_control {
 
-/// One per body; the root's means nothing.
+/// Returns one role per body; that of the root has no meaning.
 std::vector<JointRole> joint_roles(const RigidBodies& robot, const DriveTrain& train);
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// A robot in 64 bits: of its text and of everything the `robot:` block says.
+/// Computes a 64-bit hash of a robot's text and of everything in the `robot:` block.
 
 #include <cstdint>
 #include <string>

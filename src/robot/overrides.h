@@ -1,5 +1,5 @@
 #pragma once
-/// What the `robot:` block sets differently from the URDF.
+/// Replaces values of the URDF by those of the `robot:` block.
 
 #include <optional>
 #include <string>
@@ -11,8 +11,8 @@ namespace robot_control {
 
 inline constexpr double kWorthNoting = 0.01;
 
-/// `given` where there is one, else `from_urdf`. A difference above 1 % is noted, once for equal words. Throws
-/// RobotError: a value that is not finite or not above zero.
+/// Returns `given` if it is set, else `from_urdf`. A difference above 1 % is noted, once for equal words. Throws
+/// RobotError if the value is not finite or not above zero.
 double overridden(const std::string& name, const std::string& unit, const std::optional<double>& given,
                   double from_urdf, const RigidBodies& robot, std::vector<RobotNote>& notes);
 

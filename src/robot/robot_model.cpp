@@ -23,7 +23,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kCentral = 0.05;  // of the wheel base
+constexpr double kCentral = 0.05;  // share of the wheel base
 
 Vector3 plain(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -68,7 +68,7 @@ void add_joint(const RigidBody& body, JointRole role, RobotModel& model) {
                           .prismatic = body.joint.type == JointType::kPrismatic});
 }
 
-/// Wheels turn without end, whatever their joints say.
+/// Wheels turn without end, regardless of their joints' limits.
 void free_wheels(RobotModel& model) {
   for (const WheelModel& wheel : model.wheels) model.joints[wheel.joint].range.reset();
   for (const WheelModel& caster : model.casters) model.joints[caster.joint].range.reset();
@@ -106,7 +106,7 @@ void read_joints(const RigidBodies& robot, const RobotParameters& parameters, Dr
 struct MassSum {
   double mass = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double yaw_inertia = 0;  ///< about the vertical through the centre
+  double yaw_inertia = 0;  ///< kg·m² about the vertical through the centre
 };
 
 MassSum sum_of_masses(const RigidBodies& robot) {
@@ -170,7 +170,7 @@ void read_imu(const RigidBodies& robot, const RobotParameters& parameters, Robot
   model.imu_in_base = imu_pose(robot, model.imu_link, parameters, model.wheel_base, model.notes);
 }
 
-/// Without a mesh that is not there the robot may have nothing to stand on.
+/// Without a missing mesh the robot may have nothing to stand on.
 void check_missing_meshes(const RobotModel& model) {
   const std::vector<std::string>& missing = model.bodies->missing_meshes;
   if (!missing.empty() && !(lifting_deceleration(model) > 0)) throw RobotError(missing.front());
@@ -190,7 +190,7 @@ void check_finite(const RobotModel& model) {
   }
 }
 
-/// Four wheels that lack the same are one note.
+/// Merges equal notes of several elements into one.
 std::vector<RobotNote> merged(const std::vector<RobotNote>& notes) {
   std::vector<RobotNote> result;
   for (const RobotNote& note : notes) {

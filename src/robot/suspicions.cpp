@@ -32,14 +32,14 @@ Eigen::AlignedBox3d box_of(const RigidBody& body, const Shape& shape) {
 
 void note_lengths(RobotModel& robot) {
   for (const WheelModel& wheel : robot.wheels) {
-    if (wheel.radius < kLargestWheel) continue;
+    if (wheel.radius < kMaxWheelRadius) continue;
     note(robot, joint_element(robot.joints[wheel.joint].name),
          "a wheel radius of " + number(wheel.radius) + " m: are lengths in millimetres? A URDF's are metres");
   }
   for (const RigidBody& body : robot.bodies->bodies) {
     for (const Shape& shape : body.shapes) {
       const double size = box_of(body, shape).sizes().maxCoeff();
-      if (size < kLargestPart) continue;
+      if (size < kMaxPart) continue;
       note(robot, link_element(shape.link),
            "a shape that measures " + number(size) +
                " m: are lengths in millimetres? For a mesh in millimetres give "
@@ -68,7 +68,7 @@ void note_masses(RobotModel& robot) {
   }
 }
 
-/// m/s²; empty where a wheel's torque limit is not the user's or the file's.
+/// Returns the deceleration in m/s²; empty if a wheel's torque limit is neither the user's nor the file's.
 std::optional<double> given_deceleration(const RobotModel& robot) {
   double force = 0;
   for (const WheelModel& wheel : robot.wheels) {

@@ -1,17 +1,17 @@
 #pragma once
-/// What a robot hardly is, noted as suspicious:
+/// Notes properties that a robot hardly has as suspicious:
 ///
-///   lengths   wheels of kLargestWheel or more, or a shape larger than kLargestPart: millimetres
-///   masses    more than a block of steel as large as the robot, the box about all its shapes: grams
-///   base      less than kLightBase of the whole mass is in the root and what is fixed to it: an <inertial> is missing
-///   tipping   the first wheel lifts (tipping.h) at less than the robot's own limit: what the wheels' given torque
-///             limits brake it by, at most g; where none is given, kUsualRamp. Or nothing carries it before or behind
-///             its centre of gravity, and it has no springs
-///   wheels    their torque limits, less their joints' friction, accelerate the robot by less than kWeak
-///   limits    wheels of kFastRim or more at their velocity limit: degrees or turns; or wheels of one robot with other
+///   lengths   wheels of kMaxWheelRadius or more, or a shape larger than kMaxPart: probably millimetres
+///   masses    more than a block of steel with the size of the box about all shapes: probably grams
+///   base      less than kLightBase of the mass is in the root and the parts fixed to it: a missing <inertial>
+///   tipping   the first wheel lifts (tipping.h) below the deceleration of the wheels' given torque limits, at most g,
+///             or below kUsualRamp if none is given; or a robot without springs has no support before or behind its
+///             centre of gravity
+///   wheels    their torque limits minus their joints' friction accelerate the robot by less than kWeak
+///   limits    wheels of kFastRim or more at their velocity limit: probably degrees or turns; or wheels with unequal
 ///             limits
-///   root      farther than kFar diagonals of the robot from its wheels: a world that the robot is fixed to
-///   mecanum   the file speaks of such wheels, and more than two drive
+///   root      farther than kFar diagonals of the robot from its wheels: probably a world that the robot is fixed to
+///   mecanum   the file mentions such wheels, and more than two drive
 
 #include <string>
 
@@ -19,21 +19,21 @@
 
 namespace robot_control {
 
-inline constexpr double kLargestWheel = 0.6;  ///< m, radius
-inline constexpr double kLargestPart = 20;    ///< m
-inline constexpr double kSteel = 7850;        ///< kg/m³
+inline constexpr double kMaxWheelRadius = 0.6;  ///< m, radius
+inline constexpr double kMaxPart = 20;          ///< m
+inline constexpr double kSteel = 7850;          ///< kg/m³
 inline constexpr double kLightBase = 0.15;
 inline constexpr double kUsualRamp = 2;  ///< m/s², default of max_linear_emergency_deceleration
 
-inline constexpr double kWeak = 0.05;  ///< m/s²; an incline of 0.3° holds it
+inline constexpr double kWeak = 0.05;  ///< m/s², which an incline of 0.3° takes
 inline constexpr double kFar = 2;
 inline constexpr double kFastRim = 15;  ///< m/s
 inline constexpr double kSameLimit = 0.01;
 
-/// Of a robot that is complete.
+/// Adds the notes to a complete robot model.
 void note_suspicions(RobotModel& robot);
 
-/// All suspicious notes in one sentence, for an error that they may explain; empty: none.
+/// Returns all suspicious notes in one sentence, for an error that they may explain; empty: none.
 std::string suspicions_of(const RobotModel& robot);
 
 }  // namespace robot_control

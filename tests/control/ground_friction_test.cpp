@@ -37,7 +37,7 @@ class GroundFrictionTest : public testing::Test {
 TEST_F(GroundFrictionTest, TurnsTreadsThatScrub) {
   for (const double direction : {1.0, -1.0}) {
     turn(direction);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(law_.effort(i), direction * kLeastGround * 3.677, 0.02);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(law_.effort(i), direction * kInitialGroundFriction * 3.677, 0.02);
   }
 }
 
@@ -55,21 +55,21 @@ TEST_F(GroundFrictionTest, FindsTheFrictionInTheIntegratorsAndLeavesTheTorqueAsI
     learn();
     EXPECT_NEAR(integral_[2] + law_.effort(2), torque, 1e-3 * torque);
   }
-  EXPECT_NEAR(law_.friction(), kLeastGround + 0.5, 0.001);
+  EXPECT_NEAR(law_.friction(), kInitialGroundFriction + 0.5, 0.001);
   turn(-1);
   EXPECT_NEAR(law_.effort(2), -torque, 0.01 * torque) << "it follows the turn";
   law_.reset();
-  EXPECT_EQ(law_.friction(), kLeastGround);
+  EXPECT_EQ(law_.friction(), kInitialGroundFriction);
 }
 
 // 0.2 s at 2 1/s.
 TEST_F(GroundFrictionTest, RisesUntilTheRobotTurnsAndThenSearchesNoMore) {
   turn(1);
   for (int i = 0; i < 200; ++i) law_.search({.part = 0.5, .effort = 2}, kCycle);
-  EXPECT_NEAR(law_.friction(), kLeastGround + 0.4, 1e-9);
+  EXPECT_NEAR(law_.friction(), kInitialGroundFriction + 0.4, 1e-9);
   const auto needed = static_cast<int>(GroundFriction::kLearningWay / (0.2 * kCycle)) + 1;  // 0.25 m·rad/s and more
   for (int i = 0; i < needed; ++i) law_.search({.part = 1, .effort = 2}, kCycle);
-  EXPECT_NEAR(law_.friction(), kLeastGround + 0.4, 1e-9);
+  EXPECT_NEAR(law_.friction(), kInitialGroundFriction + 0.4, 1e-9);
   EXPECT_FALSE(law_.searches());
   law_.reset();
   EXPECT_TRUE(law_.searches());
@@ -91,10 +91,10 @@ TEST_F(GroundFrictionTest, GivesBackWhatTheTorqueRoseByUntilTheRobotWasSeenToTur
 
 TEST_F(GroundFrictionTest, SearchesNoMoreThanDryConcreteAndNotWithoutATurn) {
   law_.search({}, 1);
-  EXPECT_EQ(law_.friction(), kLeastGround);
+  EXPECT_EQ(law_.friction(), kInitialGroundFriction);
   turn(1);
   law_.search({}, 10);
-  EXPECT_EQ(law_.friction(), GroundFriction::kMostSearched);
+  EXPECT_EQ(law_.friction(), GroundFriction::kMaxSearched);
 }
 
 TEST_F(GroundFrictionTest, LeavesASlopeToTheIntegrators) {
@@ -121,7 +121,7 @@ TEST_F(GroundFrictionTest, StaysWithinFrictionsThatThereAre) {
       hold(direction * 10);
       learn();
     }
-    EXPECT_EQ(law_.friction(), direction > 0 ? kMostGroundFriction : 0);
+    EXPECT_EQ(law_.friction(), direction > 0 ? kMaxGroundFriction : 0);
   }
 }
 

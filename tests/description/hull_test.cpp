@@ -85,7 +85,7 @@ TEST(HullCorners, OfTheFinestBallAreFewAndLoseLittle) {
   Points points;
   for (int i = 0; i < 20'000; ++i) points.push_back(direction(random));
   const Points corners = hull_corners(points);
-  EXPECT_EQ(corners.size(), kMostHullCorners);
+  EXPECT_EQ(corners.size(), kMaxHullCorners);
   double least = 1;
   for (int i = 0; i < 2000; ++i) least = std::min(least, reach(corners, direction(random)));
   EXPECT_GT(least, 1 - 0.005);

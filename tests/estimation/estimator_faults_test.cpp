@@ -125,7 +125,7 @@ TEST_F(EstimatorFaultsTest, OneEncoderWithoutGyroIsNoValidState) {
 
 TEST_F(EstimatorFaultsTest, AMissingGyroSampleIsHeldNoLongerThanTheShortHold) {
   const auto silence = [](SensorFrame& frame) { frame.valid &= ~std::uint64_t{kValidGyro}; };
-  const int held = static_cast<int>(Tuning::kShortestHold / kPeriod) - 1;
+  const int held = static_cast<int>(Tuning::kMinHoldTime / kPeriod) - 1;
   for (int i = 0; i < held; ++i) {
     broken(silence);
     ASSERT_FALSE(has(kStateNoGyro)) << i;

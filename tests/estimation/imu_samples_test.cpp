@@ -78,7 +78,7 @@ TEST_F(ImuSamplesTest, TheIntegralOverIrregularGapsIsTheTrapezoidOfTheSamples) {
 
 TEST_F(ImuSamplesTest, AGapLongerThanTheHoldIsNotBridged) {
   gyro(0.1);
-  gyro(0.5, 2 * Tuning::kLongestHold);
+  gyro(0.5, 2 * Tuning::kMaxHoldTime);
   EXPECT_FALSE(imu_.gyro().has_value());  // neither sample speaks for all that time
   gyro(0.5);
   EXPECT_EQ(rate(), 0.5);
@@ -86,15 +86,15 @@ TEST_F(ImuSamplesTest, AGapLongerThanTheHoldIsNotBridged) {
 
 TEST_F(ImuSamplesTest, ASampleHoldsForTheShortHoldAtLeast) {
   gyro(0.2);  // a gap of 1 ms: three of them are less
-  none(0.99 * Tuning::kShortestHold);
+  none(0.99 * Tuning::kMinHoldTime);
   EXPECT_EQ(rate(), 0.2);
   EXPECT_FALSE(imu_.new_gyro());
-  none(0.02 * Tuning::kShortestHold);
+  none(0.02 * Tuning::kMinHoldTime);
   EXPECT_FALSE(imu_.gyro().has_value());
 }
 
 TEST_F(ImuSamplesTest, ASampleHoldsForThreeTimesTheLastGap) {
-  const double gap = 0.7 * Tuning::kShortestHold;
+  const double gap = 0.7 * Tuning::kMinHoldTime;
   gyro(0.2, gap);
   none(2.9 * gap);
   EXPECT_TRUE(imu_.gyro().has_value());
@@ -103,17 +103,17 @@ TEST_F(ImuSamplesTest, ASampleHoldsForThreeTimesTheLastGap) {
 }
 
 TEST_F(ImuSamplesTest, ASampleHoldsForTheLongHoldAtMost) {
-  gyro(0.2, 0.9 * Tuning::kLongestHold);
-  none(0.99 * Tuning::kLongestHold);
+  gyro(0.2, 0.9 * Tuning::kMaxHoldTime);
+  none(0.99 * Tuning::kMaxHoldTime);
   EXPECT_TRUE(imu_.gyro().has_value());
-  none(0.02 * Tuning::kLongestHold);
+  none(0.02 * Tuning::kMaxHoldTime);
   EXPECT_FALSE(imu_.gyro().has_value());
 }
 
 // The first gap ends beyond the short hold: it must be learned all the same.
 TEST_F(ImuSamplesTest, ASensorSlowerThanTheShortHoldIsHeldFromItsSecondSampleOn) {
   constexpr int kRows = 5;
-  constexpr double kGap = 2 * Tuning::kShortestHold;
+  constexpr double kGap = 2 * Tuning::kMinHoldTime;
   for (int sample = 0; sample < 4; ++sample) {
     for (int row = 1; row < kRows; ++row) {
       none(kGap / kRows);
@@ -168,7 +168,7 @@ TEST_F(ImuSamplesTest, ASlowAccelerometerIsNone) {
 
 // Otherwise a gyro slower than the shortest hold would be lost for ever.
 TEST_F(ImuSamplesTest, AGyroSlowerThanTheShortHoldIsFoundOut) {
-  const double gap = 1.5 * Tuning::kShortestHold;
+  const double gap = 1.5 * Tuning::kMinHoldTime;
   for (int i = 0; i < 4; ++i) gyro(0.2, gap);
   none(gap);
   EXPECT_TRUE(imu_.gyro().has_value());

@@ -103,8 +103,8 @@ TEST_F(SideEncoderTest, BringsTheTravelOfAGapWithTheNextGoodReading) {
 }
 
 TEST_F(SideEncoderTest, RemembersNoGapBeyondItsBound) {
-  EXPECT_EQ(read(12.52, 10 * Tuning::kLongestGap), EncoderReading::kTravel);
-  EXPECT_EQ(encoder_.gap(), Tuning::kLongestGap);
+  EXPECT_EQ(read(12.52, 10 * Tuning::kMaxGap), EncoderReading::kTravel);
+  EXPECT_EQ(encoder_.gap(), Tuning::kMaxGap);
 }
 
 TEST_F(SideEncoderTest, RejectsSamplesThatAreNotValid) {

@@ -8,16 +8,16 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-/// The largest a with F(a) ≤ distance.
+/// Returns the largest a with F(a) ≤ distance.
 double max_acceleration_to_reach(double distance, double step, double dt) noexcept {
   const double needed = distance / dt;
   if (needed <= step) return needed;
-  if (!(step > 0)) return 0;  // the distance is so short that its share of the jerk underflows
+  if (!(step > 0)) return 0;  // The distance is so short that its share of the jerk underflows.
   const double n = std::floor((std::sqrt(1 + 8 * needed / step) - 1) / 2);
   return (needed + step * n * (n + 1) / 2) / (n + 1);
 }
 
-/// The largest a with G(a) ≤ distance.
+/// Returns the largest a with G(a) ≤ distance.
 double max_acceleration_before_zero(double least, double distance, double step, double dt) noexcept {
   const double needed = distance / dt;
   if (needed <= step) return std::max(least, needed);
@@ -27,7 +27,7 @@ double max_acceleration_before_zero(double least, double distance, double step, 
   return std::min(least + n * step, (needed + step * n * (n - 1) / 2) / n);
 }
 
-/// All values in the direction of the target, which is ahead by `distance` ≥ 0.
+/// All values are relative to the direction of the target, which is ahead by `distance` ≥ 0.
 double largest_acceleration(double speed, double distance, const AxisLimits& limits, double dt) noexcept {
   const double step = limits.jerk * dt;
   const double reaching = max_acceleration_to_reach(distance, step, dt);
@@ -61,7 +61,7 @@ AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limi
   const double arriving = distance / dt;
   AxisStep step;
   step.state.speed = next == arriving ? target : state.speed + ahead * next * dt;
-  const bool arrives = step.state.speed == target;  // by rounding, too
+  const bool arrives = step.state.speed == target;  // Arrival by rounding counts, too.
   // An acceleration that rounding lifted above the jerk of one step would lead beyond the target.
   const bool faster = next > release_jerk * dt * (1 + kRounding);
   step.state.acceleration = ahead * (arrives && !faster ? std::min(next, release_jerk * dt) : next);

@@ -1,5 +1,5 @@
 #pragma once
-/// The user's limits → the limits of the limiter. Limits that are left out are derived from the others.
+/// Converts the user's limits to those of the limiter. Limits that are left out are derived from the others.
 ///
 ///   deceleration            = acceleration
 ///   in reverse              = forwards; its speed −min_linear_speed, but at most max_linear_speed
@@ -13,13 +13,13 @@
 
 namespace robot_control {
 
-/// m/s², half of what dry ground of friction 1 carries.
+/// This is half of what dry ground of friction 1 carries, in m/s².
 inline constexpr double kHalfGrip = 4.9;
 
-/// Infinite if `jerk` is 0, which means no limit.
+/// Returns infinity if `jerk` is 0, which means no limit.
 double jerk_limit(double jerk) noexcept;
 
-/// Within the ranges of the schema.
+/// The parameters are within the ranges of the schema.
 SpeedLimits speed_limits(const DriveControllerParameters& parameters) noexcept;
 
 }  // namespace robot_control

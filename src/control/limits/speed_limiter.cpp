@@ -9,23 +9,23 @@ namespace robot_control {
 
 namespace {
 
-/// The largest scale ≤ 1 for which `requested` stays within `limit`.
+/// Returns the largest scale ≤ 1 for which `requested` stays within `limit`.
 double scale_within(double requested, double limit) noexcept {
   const double size = std::abs(requested);
   return size > limit ? limit / size : 1.0;
 }
 
-/// On the way from `speed` to `goal`.
+/// Returns the limits on the way from `speed` to `goal`.
 AxisLimits in_force(const MotionLimits& limits, double speed, double goal, bool emergency,
                     double acceleration_scale) noexcept {
   const double deceleration = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
   return {acceleration_scale * limits.acceleration_towards(goal - speed), deceleration, limits.jerk};
 }
 
-/// The motion of one axis towards its target.
+/// Describes the motion of one axis towards its target.
 struct Approach {
   AxisLimits own;
-  double distance;  ///< without sign
+  double distance;  ///< |distance|
   bool slows_down;
 
   double bound() const noexcept { return slows_down ? own.deceleration : own.acceleration; }
@@ -35,7 +35,7 @@ Approach approach(const AxisState& state, double goal, const AxisLimits& own) no
   return {own, std::abs(goal - state.speed), slows_down(state.speed, goal)};
 }
 
-/// The limits with which `axis` arrives together with `other`.
+/// Returns the limits with which `axis` arrives together with `other`.
 AxisLimits together(const Approach& axis, const Approach& other) noexcept {
   const double ratio = axis.distance / other.distance;
   const double bound = std::min(axis.bound(), ratio * other.bound());

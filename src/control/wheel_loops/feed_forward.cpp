@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFrictionSpeed = 0.1;  // rad/s, ε of the header
 
-/// h of the header.
+/// Returns h of the header.
 double wheels_beside(const RobotModel& robot, const WheelModel& wheel) noexcept {
   return static_cast<double>(std::ranges::count(robot.wheels, wheel.side, &WheelModel::side));
 }
@@ -72,7 +72,8 @@ WheelValues FeedForward::efforts(const PlanarTwist& twist, const PlanarTwist& ac
                  effort_per_acceleration_[i] * (acceleration.linear + side_[i] * rim_difference);
     const double velocity = turn_per_rim_[i] * (twist.linear + side_[i] * rim_speed_difference);
     efforts[i] += damping_[i] * velocity;
-    if (friction_[i] != 0) efforts[i] += friction_[i] * std::tanh(velocity / kFrictionSpeed);  // a call of 10 ns
+    if (friction_[i] != 0)
+      efforts[i] += friction_[i] * std::tanh(velocity / kFrictionSpeed);  // A call of tanh takes 10 ns.
   }
   return efforts;
 }

@@ -7,7 +7,7 @@ namespace robot_control {
 
 GroundFriction::GroundFriction(const RobotModel& robot) noexcept
     : scrub_(robot), wheels_(std::min(robot.wheels.size(), kMaxWheels)) {
-  for (std::size_t i = 0; i < wheels_; ++i) most_ += scrub_.most(i) * scrub_.most(i);
+  for (std::size_t i = 0; i < wheels_; ++i) max_square_ += scrub_.most(i) * scrub_.most(i);
 }
 
 void GroundFriction::search(const Turn& turn, double dt) noexcept {
@@ -20,7 +20,7 @@ void GroundFriction::search(const Turn& turn, double dt) noexcept {
   state_.impulse += (turn.effort - state_.taken) * dt;
   state_.taken = (state_.impulse - turn.momentum) / kObserverTime;
   if (!state_.follows) {
-    state_.friction = std::max(state_.friction, std::min(state_.friction + kSearch * dt, kMostSearched));
+    state_.friction = std::max(state_.friction, std::min(state_.friction + kSearch * dt, kMaxSearched));
     return;
   }
   state_.found += state_.slid;
@@ -29,7 +29,7 @@ void GroundFriction::search(const Turn& turn, double dt) noexcept {
 
 double GroundFriction::raise(double by) noexcept {
   const double before = state_.friction;
-  state_.friction = std::clamp(before + by, 0.0, kMostGroundFriction);
+  state_.friction = std::clamp(before + by, 0.0, kMaxGroundFriction);
   return state_.friction - before;
 }
 

@@ -18,7 +18,7 @@ double quantisation_ripple(const WheelLoopGains& gains, const WheelLoad& load, d
   WheelLoop loop(gains, bandwidth, effort_limit, period);
   const double follows = -std::expm1(-2 * std::numbers::pi * kSlow * period);
   double angle = 0, velocity = 0;
-  double acting = 0, next = 0;  // N·m, of this cycle and the one before
+  double acting = 0, next = 0;  // N·m, in this cycle and the next one
   double slow = 0, square = 0, count = 0;
   for (std::uint64_t cycle = 0; static_cast<double>(cycle) * period < kUntil; ++cycle) {
     const double time = static_cast<double>(cycle) * period;
@@ -28,7 +28,7 @@ double quantisation_ripple(const WheelLoopGains& gains, const WheelLoad& load, d
     const double acceleration = time < kRamp ? speed / kRamp : 0;
     const double planned = time < kRamp ? acceleration * time : speed;
     next = loop.step({planned, acceleration, load.inertia * acceleration + load.damping * planned}, 1);
-    // Damping implicitly: it may be stiff against the period.
+    // Damping is integrated implicitly, because it may be stiff against the period.
     const double reached = (velocity + period * acting / load.inertia) / (1 + period * load.damping / load.inertia);
     angle += 0.5 * period * (velocity + reached);
     velocity = reached;

@@ -35,7 +35,7 @@ void WheelLoop::tune(const WheelLoopGains& gains, double bandwidth, const FeedFo
 
 void WheelLoop::move_to_feed_forward(double part) noexcept {
   integral_ = std::clamp(integral_ - part, -effort_limit_, effort_limit_);
-  // The torques under way were planned with the old feed-forward: without this the tracking loop would see a residual.
+  // The torques under way were planned with the old feed-forward. Without this the tracking loop would see a residual.
   load_ -= part;
   for (WheelPlan& plan : plans_) plan.feed_forward += part;
 }
@@ -48,7 +48,7 @@ void WheelLoop::measure(const JointSample& sample, double periods, bool driven) 
     reset_to_measured();
     return;
   }
-  // While cycles were skipped the driver held the last command.
+  // While cycles were skipped, the driver held the last command.
   if (periods > 1) {
     plans_[1] = plans_[0];
     efforts_[1] = efforts_[0];

@@ -10,14 +10,14 @@ namespace robot_control {
 
 namespace {
 
-/// After them the commands under way, the next to act first, and the integral.
+/// After these states come the commands under way, in the order in which they act, and the integral.
 enum State : Eigen::Index { kOffset, kVelocity, kResidual, kTrueVelocity, kLastEffort, kEffort, kUnderWay };
 
 using Row = Eigen::RowVectorXd;
 
-/// What a speed of 1 rad/s, or a torque of 1 N·m, makes of the wheel within `dt`.
+/// Holds the motion of the wheel within `dt` by a speed of 1 rad/s or a torque of 1 N·m.
 struct FreeWheel {
-  double speed_kept;       ///< of 1
+  double speed_kept;       ///< share of the speed
   double angle_of_speed;   ///< s
   double speed_of_effort;  ///< rad/s per N·m
   double angle_of_effort;  ///< rad per N·m
@@ -26,8 +26,8 @@ struct FreeWheel {
 FreeWheel free_wheel(const WheelLoad& load, double dt) {
   if (load.damping == 0) return {1, dt, dt / load.inertia, 0.5 * dt * dt / load.inertia};
   const double lost = -std::expm1(-load.damping / load.inertia * dt);
-  const double way = lost * load.inertia / load.damping;
-  return {1 - lost, way, lost / load.damping, (dt - way) / load.damping};
+  const double angle = lost * load.inertia / load.damping;
+  return {1 - lost, angle, lost / load.damping, (dt - angle) / load.damping};
 }
 
 Eigen::MatrixXd transition(const WheelLoopGains& gains, const WheelLoad& load, double dt, double bandwidth,
@@ -59,7 +59,7 @@ Eigen::MatrixXd transition(const WheelLoopGains& gains, const WheelLoad& load, d
   return a;
 }
 
-/// λ of all modes.
+/// Returns λ of all modes.
 Eigen::VectorXcd eigenvalues(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth,
                              unsigned delay) {
   const Eigen::MatrixXd a = transition(gains, load, period, bandwidth, delay);
@@ -79,7 +79,7 @@ double wheel_loop_spectral_radius(const WheelLoopGains& gains, const WheelLoad& 
 double wheel_loop_damping_ratio(const WheelLoopGains& gains, const WheelLoad& load, double period, double bandwidth) {
   double least = 1;
   for (const std::complex<double>& mode : eigenvalues(gains, load, period, bandwidth, 0)) {
-    if (mode == 0.0) continue;  // ends within one cycle
+    if (mode == 0.0) continue;  // The mode ends within one cycle.
     const std::complex<double> exponent = std::log(mode);
     if (exponent != 0.0) least = std::min(least, -exponent.real() / std::abs(exponent));
   }

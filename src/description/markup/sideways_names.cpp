@@ -20,7 +20,7 @@ std::string attribute_of(const TiXmlElement& element, const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// The word that the name says; empty: none.
+/// Returns the word that the name contains; empty: none.
 std::string_view word_of(const std::string& name) {
   const std::string text = lower_case(name);
   for (const std::string_view word : kWords) {

@@ -1,9 +1,9 @@
 #pragma once
-/// What a URDF calls mecanum, omni or holonomic, in any case.
+/// Finds names in a URDF that contain mecanum, omni or holonomic, in any case.
 ///
-/// Looked at are the names of the robot, of links and joints, the files of meshes and of the document that xacro
-/// expanded, and the macros that it called (expand_xacro.py). "nonholonomic" says nothing, nor does "omni" of cameras
-/// and words that only begin so ("omniverse").
+/// It checks the names of the robot, of links and joints, the files of meshes, and the document and macros that xacro
+/// expanded (expand_xacro.py). It ignores "nonholonomic", and "omni" in names of cameras and in other words
+/// ("omniverse").
 
 #include <tinyxml.h>
 
@@ -14,11 +14,11 @@ namespace robot_control {
 
 struct SidewaysName {
   std::string element;  ///< as messages name it: "<link name=\"…\">"
-  std::string word;     ///< that it says
-  std::string link;     ///< that it belongs to, of a joint its child; empty: to the whole robot
+  std::string word;     ///< word that the name contains
+  std::string link;     ///< link of the name; a joint's child; empty: the whole robot
 };
 
-/// In the order of the file, first those of the whole robot.
+/// Returns the names in the order of the file, first those of the whole robot.
 std::vector<SidewaysName> sideways_names(const TiXmlElement& robot);
 
 }  // namespace robot_control

@@ -57,7 +57,7 @@ void check_tree(const RobotDescription& description, const TiXmlElement& robot) 
              "Give each link one parent: a URDF is a tree");
     }
   }
-  // Link after link is taken down from its end; a ring has none. (urdfdom would never free one.)
+  // Links are removed from the ends of the tree upwards; a ring has no end. (urdfdom would never free one.)
   std::map<std::string, std::size_t> hanging;
   for (const auto& [link, place] : above) ++hanging[place.parent];
   std::vector<std::string> ends;
@@ -78,7 +78,7 @@ void check_tree(const RobotDescription& description, const TiXmlElement& robot) 
   }
 }
 
-/// TinyXML descends by recursion.
+/// TinyXML descends by recursion, so the depth is bounded.
 void check_depth(const RobotDescription& description) {
   const std::string& text = description.text;
   int depth = 0;
@@ -94,7 +94,7 @@ void check_depth(const RobotDescription& description) {
   }
 }
 
-/// urdfdom hands its messages, with our text in them, to printf as the format.
+/// urdfdom passes its messages, which contain text of the file, to printf as the format.
 void check_percent(const RobotDescription& description, const TiXmlElement& element) {
   for (const TiXmlAttribute* given = element.FirstAttribute(); given != nullptr; given = given->Next()) {
     const std::string text = std::string(given->Name()) + "=\"" + given->Value() + "\"";
@@ -122,9 +122,9 @@ void check_size(const RobotDescription& description, const TiXmlElement& robot) 
        link = link->NextSiblingElement("link")) {
     ++links;
   }
-  if (links <= kMostLinks) return;
+  if (links <= kMaxLinks) return;
   refuse(description.source, "<robot>", std::to_string(links) + " links",
-         "At most " + std::to_string(kMostLinks) + " are read; join those that never move against each other");
+         "At most " + std::to_string(kMaxLinks) + " are read; join those that never move against each other");
 }
 
 std::set<std::string> words(const std::string& text) {
@@ -176,7 +176,7 @@ void add_plugins_that_say(const TiXmlElement& element, const std::vector<std::st
   }
 }
 
-/// What TinyXML would read as something else, or as nothing.
+/// Refuses text that TinyXML would misread or ignore.
 void check_text(const RobotDescription& description) {
   const std::string& text = description.text;
   const std::string source = description.source;
@@ -224,7 +224,7 @@ bool three_numbers(const std::string& text) {
 
 constexpr double kRoundedTurn = 0.01;  // rad; 6.29 is a whole turn
 
-/// Of the amounts of the numbers in a text; 0: there is none.
+/// Returns the largest absolute value of the numbers in a text; 0: there is none.
 double largest_of(const std::string& text) {
   std::istringstream stream(text);
   stream.imbue(std::locale::classic());

@@ -16,12 +16,11 @@ void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sa
     channel.mean = *sample;
     if (continued && trapezoid) channel.mean = channel.last + (*sample - channel.last) * (steps / 2);
     channel.catches_up = continued && trapezoid && channel.age > dt;
-    if (channel.received && dt > channel.hold) channel.mean.reset();  // one sample is no mean of a step that long
-    // Also from a sample that was lost in between: otherwise a device slower than the short hold would be lost for
-    // ever.
+    if (channel.received && dt > channel.hold) channel.mean.reset();  // One sample is no mean of such a long step.
+    // The gap also counts if the sample before was lost. Otherwise a device slower than the hold would stay lost.
     if (channel.received && channel.age > 0) {
       channel.gap = std::min(channel.age, std::exchange(channel.last_gap, channel.age));
-      channel.hold = std::clamp(3 * channel.age, Tuning::kShortestHold, Tuning::kLongestHold);
+      channel.hold = std::clamp(3 * channel.age, Tuning::kMinHoldTime, Tuning::kMaxHoldTime);
     }
     channel.last = *sample;
     channel.received = channel.known = true;

@@ -1,14 +1,14 @@
 #pragma once
-/// The angular velocity that is published: of the gyro's samples, with less of their noise.
+/// The rate tracker smooths the gyro's samples to the angular velocity that is published.
 ///
-/// A second-order tracking loop (fading-memory α-β filter; E. Brookner, Tracking and Kalman Filtering Made Easy, 1998,
-/// section 1.2), each axis by itself:
+/// It is a second-order tracking loop (fading-memory α-β filter; E. Brookner, Tracking and Kalman Filtering Made Easy,
+/// 1998, section 1.2) for each axis:
 ///
 ///   predict  ω ← ω + a·dt,  e = measured − ω          β = exp(−2π · bandwidth · dt)
 ///   correct  ω ← ω + (1 − β²)·e,  a ← a + (1 − β)²·e/dt
 ///
-/// Two equal poles; no steady error at constant angular acceleration, at constant jerk j the lag is j/(2π·bandwidth)²:
-/// at 20 Hz and 40 rad/s³ 2.5 mrad/s. Beyond the rate of the samples it passes on what it gets.
+/// The two poles are equal. The error vanishes at constant angular acceleration. At constant jerk j the lag is
+/// j/(2π·bandwidth)², which is 2.5 mrad/s at 20 Hz and 40 rad/s³.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -18,17 +18,17 @@ namespace robot_control {
 
 class RateTracker {
  public:
-  /// Hz, s; both > 0.
+  /// `bandwidth` is in Hz, `period` in s; both are > 0.
   RateTracker(double bandwidth, double period) noexcept
       : bandwidth_(bandwidth), period_(period), period_beta_(beta(period)) {}
 
-  /// rad/s
+  /// `rate` is in rad/s.
   void reset(const Eigen::Vector3d& rate) noexcept {
     rate_ = rate;
     acceleration_.setZero();
   }
 
-  /// `measured` rad/s, `dt` > 0 s after the last one.
+  /// `measured` is in rad/s, `dt` > 0 s after the last one.
   void step(const Eigen::Vector3d& measured, double dt) noexcept {
     const double b = dt == period_ ? period_beta_ : beta(dt);
     rate_ += dt * acceleration_;
@@ -37,8 +37,8 @@ class RateTracker {
     acceleration_ += (1 - b) * (1 - b) / dt * error;
   }
 
-  /// The rate is `measured`, smoothed from the second such step in a row on where `smooth` holds: at rest, in the first
-  /// step of a motion and without a gyro there is nothing to smooth.
+  /// Follows `measured`, smoothed from the second step in a row with `smooth`. At rest, in the first step of a motion
+  /// and without a gyro there is nothing to smooth.
   void follow(const Eigen::Vector3d& measured, bool smooth, double dt) noexcept {
     if (!smooth || !following_) {
       reset(measured);
@@ -50,8 +50,8 @@ class RateTracker {
 
   const Eigen::Vector3d& rate() const noexcept { return rate_; }  ///< rad/s
 
-  /// Variance of `rate` over that of the samples of a white gyro, of which each `measured` is the mean of two
-  /// neighbours: Σ(cᵢ + cᵢ₋₁)²/4 over the loop's impulse response c. Between 0 and 1/2. Allocates nothing; some 10³
+  /// Returns the variance of `rate` over that of the samples of a white gyro, between 0 and 1/2. Each `measured` is the
+  /// mean of two neighbours, so the gain is Σ(cᵢ + cᵢ₋₁)²/4 over the loop's impulse response c. It costs some 10³
   /// steps.
   double noise_gain() const noexcept;
 

@@ -50,7 +50,7 @@ void PlanarCore::set_pose_covariance(const Eigen::Matrix3d& known) noexcept {
   covariance_.block<3, 3>(kX, kX) = known;
 }
 
-/// P ← T P Tᵀ, T = I + factor e_to e_fromᵀ.
+///   P ← T P Tᵀ, T = I + factor e_to e_fromᵀ
 void PlanarCore::add(int to, double factor, int from) noexcept {
   covariance_.row(to) += factor * covariance_.row(from);
   covariance_.col(to) += factor * covariance_.col(from);
@@ -58,7 +58,7 @@ void PlanarCore::add(int to, double factor, int from) noexcept {
   by_bias_[to] += factor * by_bias_[from];
 }
 
-/// The middle of the wheels moves sideways where the centre of rotation is not there.
+/// The middle of the wheels moves sideways if it is not the centre of rotation.
 void PlanarCore::slide(double turned) noexcept {
   if (params_.icr_deviation == 0) return;
   add(kX, turned * std::sin(state_[kYaw]), kIcr);
@@ -160,7 +160,7 @@ void PlanarCore::contradict(double angle, double distance) noexcept {
   shift(0, 0, square(angle * distance / 2));
 }
 
-/// What is held has no variance and does not walk.
+/// A held value has no variance and does not walk.
 void PlanarCore::walk(double mean, double rolled, double dt) noexcept {
   const auto grow = [&](int i, double variance) {
     if (covariance_(i, i) > 0) covariance_(i, i) += variance;
@@ -171,18 +171,18 @@ void PlanarCore::walk(double mean, double rolled, double dt) noexcept {
   grow(kBase, calibration * rolled / 2);
 }
 
-/// P ← (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, with s = hᵀ P h + r.
+///   P ← (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, with s = hᵀ P h + r
 void PlanarCore::correct(Vector gain, const Vector& ph, double s, double innovation) noexcept {
   gain.tail<kConsidered>().setZero();
   const Vector change = innovation * gain;
   (bias_known_ ? state_ : held_).segment<5>(kX) += change.segment<5>(kX);
   state_.segment<2>(kRatio) += change.segment<2>(kRatio);
-  state_[kOffset] = std::clamp(state_[kOffset] + change[kOffset], -Tuning::kLargestOffset, Tuning::kLargestOffset);
+  state_[kOffset] = std::clamp(state_[kOffset] + change[kOffset], -Tuning::kMaxOffset, Tuning::kMaxOffset);
   const Matrix half = gain * (s / 2 * gain - ph).transpose();
   covariance_ += half + half.transpose();
 }
 
-/// The Bayes factor of a bias that could be any against the one that the path was driven by.
+/// Compares an unknown bias with the bias that the path was integrated with, by their Bayes factor.
 bool PlanarCore::bias_proven() const noexcept {
   const double variance = own_bias_variance();
   return square(held_[kBias]) > variance * std::max(1.0, std::log(square(params_.gyro_bias_initial) / variance));
@@ -198,8 +198,8 @@ void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
   const bool known = std::exchange(bias_known_, keeps_pose);
   correct(gain, ph, s, mean - bias() - held_[kBias]);
   consider_rest(gain, variance);
-  const bool drove = !by_bias_.segment<4>(kX).isZero(0);
-  bias_known_ = known || keeps_pose || !drove || bias_proven();
+  const bool integrated = !by_bias_.segment<4>(kX).isZero(0);
+  bias_known_ = known || keeps_pose || !integrated || bias_proven();
   Eigen::Vector4d shift = Eigen::Vector4d::Zero();
   if (bias_known_) {
     const double change = std::exchange(held_[kBias], 0);
@@ -212,19 +212,19 @@ void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
   second_order_ *= std::min(1.0, (square(shift[kYaw - kX]) + covariance(kYaw, kYaw)) / yaw_variance);
 }
 
-/// The error of a rest's mean beyond that of the data sheet is considered: it enters kRestBias as it entered the bias.
-/// Earlier windows, too, were as noisy as is known by now, and no noisier.
+/// Moves the part of a rest's correction that exceeds the data sheet's noise to kRestBias. Earlier windows are taken to
+/// be as noisy as the gyro is known to be now.
 void PlanarCore::consider_rest(Vector gain, double variance) noexcept {
   const double beyond = square(gyro_noise_ / params_.gyro_noise) - 1;
   gain[kRestBias] = std::exchange(gain[kBias], 0);
   Matrix by = Matrix::Identity();
   by.col(kRestBias) -= gain;
   covariance_ = (by * covariance_ * by.transpose() + variance * beyond * gain * gain.transpose()).eval();
-  const double most = beyond * covariance_(kBias, kBias);
+  const double limit = beyond * covariance_(kBias, kBias);
   const double excess = covariance_(kRestBias, kRestBias);
-  if (excess <= most) return;
-  covariance_.row(kRestBias) *= std::sqrt(most / excess);
-  covariance_.col(kRestBias) *= std::sqrt(most / excess);
+  if (excess <= limit) return;
+  covariance_.row(kRestBias) *= std::sqrt(limit / excess);
+  covariance_.col(kRestBias) *= std::sqrt(limit / excess);
 }
 
 }  // namespace robot_control

@@ -1,32 +1,33 @@
 #pragma once
-/// The pose in the plane: the gyro turns the robot, the wheels move it. No accelerometer enters.
+/// The planar core estimates the pose in the plane: the gyro turns the robot, and the wheels move it.
 ///
 ///   ψ ← ψ + (1 + κ)(gyro − b) dt    (x, y) ← (x, y) + d (cos ψ̄, sin ψ̄)    d: distance of the middle of the wheels
 ///
-/// ψ̄ is the yaw halfway between two readings, τ earlier: the stamps of the wheels are late by the clock offset τ.
-/// Without gyro the wheels turn the robot. Once per block the wheels' turn is compared with the gyro's:
+/// ψ̄ is the yaw halfway between two readings of the wheels, τ before their stamps: τ is the clock offset by which the
+/// wheels are late. Without a gyro the wheels turn the robot. Once per block the turn of the wheels is compared with
+/// that of the gyro:
 ///
 ///   right − left = B (1 + β)(ψ − ψ₀ − τ (ω − ω₀)) − ε s    s = (left + right)/2, B: effective wheel base of the model
 ///
-/// State: τ, x, y, ψ, ψ₀ (yaw at the beginning of the block), b, ε (radius_ratio − 1), β (wheel_base_factor − 1).
-/// Considered and not corrected (S. F. Schmidt, 1966) are κ (gyro scale), which rolling does not distinguish from β;
-/// the part of b's error that comes from a gyro noisier than its data sheet during rests: the wheels' errors, alike for
-/// a while, would be taken for that; the mean radius of the wheels, which scales the path and
-/// which no turn shows; and x_ICR, by how far ahead of the wheels' middle the robot turns, −x_ICR dψ
-/// sideways, which wheels and gyro do not see. What the noise of such a gyro adds to the yaw enters ψ₀, too: no block
-/// sees it. An innovation pulls no harder than Huber's bound; beyond kGate deviations it is not used. The walks of ε
-/// and β are in proportion to the slip noise (wheel_noise.h).
+/// The state is τ, x, y, ψ, ψ₀ (yaw at the beginning of the block), b (gyro bias), ε (radius_ratio − 1) and β
+/// (wheel_base_factor − 1). Four further errors widen the covariance and are not corrected (S. F. Schmidt, 1966):
 ///
-/// Where wheels and gyro contradict each other, either may be wrong. The heading stays the gyro's, and
-/// its deviation is what both have turned apart since the last rest, at its largest.
+///   κ        scale of the gyro
+///   b_rest   part of b's error that a gyro noisier than its data sheet causes during rests
+///   x_ICR    centre of rotation ahead of the middle of the wheels: a turn dψ moves the middle by −x_ICR dψ sideways
+///   radius   mean radius of the wheels, relative; it scales the path
 ///
-/// Before the first rest b looks like an ε, and that of wheels which a turn drags over the floor changes with load and
-/// floor. Corrections of pose and b are held back, and P is that of a pose without them, until a rest or wheels that
-/// are not dragged prove another b than the path was driven by. The first rest corrects the pose by ∂(x, y, ψ)/∂b
-/// alone.
+/// An innovation counts with at most kHuber deviations, and beyond kGate deviations it is not used. The variances of ε
+/// and β grow in proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading
+/// follows the gyro. Its deviation is the largest angle by which both have turned apart since the last rest.
 ///
-/// Until then ψ is wrong by a large δ, in which the covariance is linear. One cause bends the path, which is off by
-/// (1 − cos δ) of its length along besides, √¾ σ_ψ² in the mean square: P_xy += q qᵀ, q = Σ min(1, √¾ σ_ψ²) (dx, dy).
+/// Until the bias is known, corrections of pose and b are held back, and P is that of the uncorrected pose. The bias is
+/// known after a rest, or once undragged wheels prove that b differs from the bias used so far. The first rest corrects
+/// the pose by ∂(x, y, ψ)/∂b alone. Until then P_xy also contains q qᵀ:
+///
+///   q = Σ min(1, √¾ σ_ψ²) (dx, dy)
+///
+/// The reasons are in docs/evidence/derivations.md.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -52,10 +53,10 @@ struct PlanarCoreParams {
   double gyro_scale = 5.8e-4;             ///< standard deviation
   double encoder = 4.4e-5;                ///< m, of one reading
   double slip_least = 8e-5;               ///< m/√m, of the best floor
-  bool drags_wheels = true;               ///< in a turn, over the floor
+  bool drags_wheels = true;               ///< A turn drags wheels over the floor.
   double ratio_deviation = 0.01;          ///< 0: held
   double wheel_base_deviation = 0.03;     ///< 0: held
-  double radius_deviation = 0;            ///< of the wheels' mean radius, relative
+  double radius_deviation = 0;            ///< relative, of the wheels' mean radius
   double icr_deviation = 0;               ///< m, of the instantaneous centre of rotation along x; 0: between two wheels
   double clock_offset = Tuning::kOffset;  ///< s, standard deviation; 0: held
 };
@@ -63,49 +64,49 @@ struct PlanarCoreParams {
 class PlanarCore {
  public:
   enum Index : int { kOffset, kX, kY, kYaw, kAnchor, kBias, kRatio, kBase, kScale, kRestBias, kIcr, kRadius, kSize };
-  static constexpr int kConsidered = 4;  ///< the last ones
+  static constexpr int kConsidered = 4;  ///< the last states, which are considered and not corrected
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   using Vector = Eigen::Matrix<double, kSize, 1>;
 
   struct Innovation {
     double nis = 0;
     bool used = false;
-    double apart = 0;  ///< rad, by which the wheels turned more than the gyro
-    double usual = 0;  ///< rad, kSignificant deviations of it
+    double apart = 0;  ///< rad by which the wheels turned more than the gyro
+    double usual = 0;  ///< rad, kSignificant deviations of `apart`
   };
 
   explicit PlanarCore(const PlanarCoreParams& params = {}) noexcept;
 
-  void place(const PlanarPose& pose) noexcept;  ///< known exactly; all else stays
+  void place(const PlanarPose& pose) noexcept;  ///< The pose is known exactly; all else stays.
   void set_bias(double bias, double deviation) noexcept;
-  /// What is held stays without deviation.
+  /// A deviation of 0 in the parameters holds its value.
   void set_calibration(const WheelCalibration& known) noexcept;
-  void set_pose_covariance(const Eigen::Matrix3d& known) noexcept;  ///< of x, y, yaw
+  void set_pose_covariance(const Eigen::Matrix3d& known) noexcept;  ///< covariance of x, y, yaw
 
   void turn_by_gyro(double angle, double dt) noexcept;          ///< rad, bias included
   void turn_by_wheels(double left, double right) noexcept;      ///< m
   double wheel_turn(double left, double right) const noexcept;  ///< rad, by the calibration
-  /// m, odom axes; while it turned at `rate` rad/s.
+  /// Moves the pose by x, y (m, odom axes) while the robot turns at `rate` rad/s.
   void roll(double x, double y, double rate) noexcept;
   void shift(double x, double y, double variance) noexcept;  ///< m, m²
   void add_yaw_variance(double variance) noexcept { covariance_(kYaw, kYaw) += variance; }
 
-  /// Until it is, corrections of pose and bias are held back, and the covariance covers them; those of clock offset and
-  /// calibration are not.
+  /// While the bias is unknown, corrections of pose and bias are held back, and the covariance includes them. Clock
+  /// offset and calibration are corrected nevertheless.
   void set_bias_known(bool known) noexcept { bias_known_ = known; }
   bool bias_known() const noexcept { return bias_known_; }
 
-  /// The travel of both sides is read: a block begins.
+  /// Begins a block when the travel of both sides has been read.
   void begin_block(double rate) noexcept;
-  /// It ends, after `left` and `right` m in `dt` s. `rate` rad/s: the gyro's at either end. `jitter` s²: variance of
-  /// the stamps of the wheels.
+  /// Ends the block after `left` and `right` m in `dt` s. `rate` (rad/s) is the gyro's at the end. `jitter` (s²) is the
+  /// variance of the stamps of the wheels.
   Innovation end_block(double left, double right, double rate, double dt, double jitter = 0) noexcept;
-  /// Wheels and gyro contradict each other by `angle` rad more, while the robot went `distance` m.
+  /// Adds a contradiction of wheels and gyro by `angle` rad, which arose while the robot travelled `distance` m.
   void contradict(double angle, double distance) noexcept;
-  /// Since the last rest, by more than kUnknownHeading.
+  /// Returns true if the contradiction since the last rest exceeded kUnknownHeading.
   bool contradicted() const noexcept { return largest_apart_ > Tuning::kUnknownHeading; }
   void end_contradiction() noexcept { apart_ = largest_apart_ = 0; }  ///< The covariance stays.
-  /// The gyro's mean at rest, rad/s. `keeps_pose`: it stays where it is.
+  /// Measures the bias by the gyro's mean at rest, rad/s. With `keeps_pose` the pose is not corrected.
   void rest(double mean, double variance, bool keeps_pose) noexcept;
   void set_gyro_noise(double density) noexcept { gyro_noise_ = density; }  ///< rad/s/√Hz, learned
   void age(double dt) noexcept { covariance_(kBias, kBias) += square(params_.gyro_bias_walk) * dt; }
@@ -122,7 +123,7 @@ class PlanarCore {
     return {1 + ratio(), 1 + base(), deviation(kRatio), deviation(kBase)};
   }
 
-  /// Of the state as it is given out: corrections that are held back included.
+  /// Covariance of the published state, including the corrections that are held back.
   Matrix covariance() const noexcept {
     Matrix all = covariance_ + held_ * held_.transpose();
     all.block<2, 2>(kX, kX) += second_order_ * second_order_.transpose();
@@ -140,19 +141,19 @@ class PlanarCore {
   void consider_rest(Vector gain, double variance) noexcept;
   void walk(double mean, double rolled, double dt) noexcept;
   bool bias_proven() const noexcept;
-  double own_bias_variance() const noexcept {  ///< without what is held back
+  double own_bias_variance() const noexcept {  ///< without the corrections that are held back
     return covariance_(kBias, kBias) + 2 * covariance_(kBias, kRestBias) + covariance_(kRestBias, kRestBias);
   }
 
   PlanarCoreParams params_;
   Vector state_ = Vector::Zero();
   Matrix covariance_ = Matrix::Zero();
-  Vector held_ = Vector::Zero();                            ///< corrections that are held back
-  Vector by_bias_ = Vector::Unit(kBias);                    ///< derivative of the pose by the bias that drove it
-  Eigen::Vector2d second_order_ = Eigen::Vector2d::Zero();  ///< m: q
+  Vector held_ = Vector::Zero();          ///< corrections that are held back
+  Vector by_bias_ = Vector::Unit(kBias);  ///< derivative of the pose by the bias that it was integrated with
+  Eigen::Vector2d second_order_ = Eigen::Vector2d::Zero();  ///< q, m
   WheelNoise noise_;
-  double apart_ = 0;          ///< rad, by contradictions since the last rest
-  double largest_apart_ = 0;  ///< rad, since then
+  double apart_ = 0;          ///< rad, sum of the contradictions since the last rest
+  double largest_apart_ = 0;  ///< rad, largest |apart_| since the last rest
   double anchor_rate_ = 0;    ///< rad/s, at the beginning of the block
   double gyro_noise_;         ///< rad/s/√Hz, learned
   bool bias_known_ = true;

@@ -1,5 +1,5 @@
 #pragma once
-/// A bias that walks and is measured directly: a Kalman filter of one state.
+/// A Kalman filter of one state estimates a bias that walks and is measured directly.
 
 namespace robot_control {
 
@@ -7,7 +7,7 @@ struct BiasEstimate {
   double value = 0;
   double variance = 0;
 
-  /// `measured` with the variance `noise`; `walk`: variance that was added since the last measurement.
+  /// Updates with `measured` of the variance `noise`. `walk` is the variance added since the last measurement.
   void measure(double measured, double noise, double walk) noexcept {
     variance += walk;
     const double gain = variance / (variance + noise);

@@ -1,6 +1,6 @@
 #pragma once
-/// What wheels and gyro measure of a robot that is taken to rest. It is not integrated, but kept until the next window
-/// is quiet, too: where one is not, it was motion.
+/// This type holds the motion that wheels and gyro measure while the robot is taken to rest. It is kept until the next
+/// window is quiet, too. If a window is not quiet, the held motion is integrated.
 
 #include <Eigen/Core>
 #include <optional>
@@ -14,7 +14,7 @@ struct HeldMotion {
   double left = 0, right = 0;                      ///< m
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< rad, base axes, gyro bias included
   Planar velocity{};                               ///< m/s, base axes, integral of the acceleration
-  bool gyro = true;                                ///< there was a gyro all the time
+  bool gyro = true;                                ///< The gyro was present all the time.
 
   void step(double dt, double left_travel, double right_travel, const std::optional<Eigen::Vector3d>& rate,
             const Planar& acceleration) noexcept {

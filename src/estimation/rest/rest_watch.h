@@ -1,16 +1,17 @@
 #pragma once
-/// Does the robot stand? Judged by wheels and gyro alone, in windows one after another: a motor's hum shakes the
-/// accelerometer of a robot that stands.
+/// The rest watch decides whether the robot stands. It uses wheels and gyro alone, in successive windows, because a
+/// motor's hum shakes the accelerometer of a standing robot.
 ///
-/// A window is quiet where no side travelled further than `tolerance` from where it was at its beginning (it ends at
-/// once otherwise). Its gyro mean is that of a robot at rest where it is the known bias within `steady` and
-/// kSignificant deviations; or, whatever it is, where it has been the same within `steady` for kConstantRate: nothing
-/// turns a robot so evenly on wheels that stand. Where no rest has shown a bias yet, a body that swings after a stop
-/// could read any: then each mean about z must have repeated the one before, within kSignificant deviations, for
-/// kBlock.
+/// A window is quiet if no side travels further than `tolerance` from its place at the beginning; otherwise the window
+/// ends at once. The gyro's mean of a quiet window belongs to a robot at rest in each of these cases:
+///   - it equals the known bias within `steady` and kSignificant deviations;
+///   - it has stayed the same within `steady` for kConstantRate: nothing turns a robot so evenly on standing wheels;
+///   - no bias is known yet, and each mean about z has repeated the one before, within kSignificant deviations, for
+///     kBlock.
+/// The third rule excludes a body that swings after a stop.
 ///
-/// The readings of wheels may be late, and a robot may begin to move before they say so: the means of a window count
-/// when the next one is quiet, too.
+/// Readings of the wheels may be late, so that the robot may move before they show it. Therefore the means of a window
+/// count only when the next one is quiet, too.
 
 #include <cstdint>
 #include <optional>
@@ -23,10 +24,10 @@ struct RestWatchParams {
   double window = 0.25;        ///< s
   double tolerance = 0.00025;  ///< m
   double steady = 0.01;        ///< rad/s
-  double turn_per_metre = 2;   ///< rad per m of right − left
+  double turn_per_metre = 2;   ///< rad per m of right minus left
 };
 
-/// Mean of samples over time.
+/// Computes the mean of samples over time.
 class TimeMean {
  public:
   void reset() noexcept { *this = {}; }
@@ -34,7 +35,9 @@ class TimeMean {
     time_ += dt;
     for (std::size_t i = 0; i < 3; ++i) sum_[i] += value[i] * dt;
   }
-  bool over(double window) const noexcept { return time_ >= window / 2; }  ///< known for half of it at least
+  bool over(double window) const noexcept {
+    return time_ >= window / 2;
+  }  ///< The samples cover half the window at least.
   Vector3 mean() const noexcept { return {sum_[0] / time_, sum_[1] / time_, sum_[2] / time_}; }
 
  private:
@@ -43,10 +46,10 @@ class TimeMean {
 };
 
 enum class RestWindow : std::uint8_t {
-  kOpen,    ///< not over
-  kBroken,  ///< a wheel moved
-  kTurned,  ///< over; the gyro reads another rate than its bias
-  kQuiet,   ///< over; at rest
+  kOpen,    ///< The window is not over.
+  kBroken,  ///< A wheel moved.
+  kTurned,  ///< The window is over; the gyro reads another rate than its bias.
+  kQuiet,   ///< The window is over; the robot is at rest.
 };
 
 class RestWatch {
@@ -60,25 +63,24 @@ class RestWatch {
     const Vector3* accelerometer = nullptr;  ///< m/s²
     double left = 0, right = 0;              ///< m, travel in this step
   };
-  /// rad/s, of the gyro.
+  /// Describes the bias of the gyro, in rad/s.
   struct Bias {
     Vector3 value{};
-    Vector3 deviation{};  ///< of a window's mean from it; where it is not known, from another window's
+    Vector3 deviation{};  ///< between a window's mean and the bias, or two means if it is unknown
     bool known = true;
   };
   RestWindow step(const Sample& sample, const Bias& bias) noexcept;
 
   void reset() noexcept;
 
-  void discard() noexcept { pending_ = {}; }  ///< of the last window: the body still rocked
+  void discard() noexcept { pending_ = {}; }  ///< Discards the last window, in which the body still rocked.
 
-  double time() const noexcept { return done_.time; }  ///< s, of the window that counts
-  const std::optional<Vector3>& gyro() const noexcept {
-    return done_.gyro;
-  }  ///< rad/s, its mean, less what the wheels turned
+  double time() const noexcept { return done_.time; }  ///< s, length of the window that counts
+  /// rad/s, mean of that window, minus the turn of the wheels.
+  const std::optional<Vector3>& gyro() const noexcept { return done_.gyro; }
   const std::optional<Vector3>& force() const noexcept { return done_.force; }          ///< m/s²
-  const std::optional<Vector3>& last_force() const noexcept { return pending_.force; }  ///< of the last window
-  bool bias_changed() const noexcept { return bias_changed_; }  ///< the bias is another one than was known
+  const std::optional<Vector3>& last_force() const noexcept { return pending_.force; }  ///< m/s², of the last window
+  bool bias_changed() const noexcept { return bias_changed_; }  ///< The bias differs from the known one.
 
  private:
   struct Window {

@@ -11,7 +11,7 @@ InertialMotion carried_on(const InertialMotion& from, double time) noexcept {
   return motion;
 }
 
-/// `part` of the time `span`, s, from `a` with derivative `a_rate` to `b`.
+/// Returns the cubic from `a` to `b` over `span` s at the share `part` of it; `a_rate` and `b_rate` are derivatives.
 template <typename Value>
 Value cubic(const Value& a, const Value& a_rate, const Value& b, const Value& b_rate, double span,
             double part) noexcept {

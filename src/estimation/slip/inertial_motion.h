@@ -1,5 +1,5 @@
 #pragma once
-/// The motion by gyro and accelerometer at one time, and between two of them.
+/// This type holds the motion by gyro and accelerometer at one time; it can be interpolated.
 
 #include "estimation/values.h"
 
@@ -14,8 +14,8 @@ struct InertialMotion {
   double yaw_rate = 0;  ///< rad/s
 };
 
-/// Path and yaw by the cubic through values and derivatives of both (Hermite), the rest by a line; outside of both at
-/// the velocities of the nearer one. `from` is not the later one.
+/// Interpolates between two motions; `from` is not the later one. Path and yaw follow the cubic through values and
+/// derivatives of both (Hermite), the rest a line. Outside of both, the nearer one is carried on at its velocities.
 InertialMotion interpolated(const InertialMotion& from, const InertialMotion& to, double time) noexcept;
 
 }  // namespace robot_control

@@ -40,7 +40,7 @@ void MotionDifference::restart_at_rest(double yaw, const Vector3& up, const Plan
   now_.inertial.velocity = velocity;
 }
 
-/// Nose up, an IMU above the contacts moves backwards.
+/// When the nose rises, an IMU above the contacts moves backwards.
 Planar MotionDifference::lever(double yaw, const Vector3& up) const noexcept {
   return rotated({params_.imu_x - params_.imu_above_ground * up[0], params_.imu_y - params_.imu_above_ground * up[1]},
                  yaw);

@@ -1,21 +1,23 @@
 #pragma once
-/// The motion by wheels and gyro minus the motion by the accelerometer, without the state of a filter.
+/// Computes the motion by wheels and gyro minus the motion by the accelerometer. It does not depend on the state of a
+/// filter.
 ///
 ///   E(t) = path by wheels and gyro + (lever of the IMU − ∬ acceleration dt²)(t − τ)   path_difference: m, odom axes
 ///   W(t) = right − left − B ψ(t − τ)                                                  turn_difference: m
 ///
-/// The path is that of the middle of the wheels; the acceleration is the IMU's, gravity removed; the lever leads from
-/// the middle of the wheels to the IMU and turns with the yaw ψ, which is the gyro's; B is the wheel base. τ is the
-/// clock offset: what wheels report with the stamp t was so at t − τ (planar/planar_core.h), and both are compared at
-/// the same moment. Compared at the same stamp, E contained −τ times the velocity, and whenever that changes by Δv the
-/// robot would seem to slip by τ Δv. While no wheel slips E is a straight line, whose slope is the speed at the
-/// beginning, which the integral does not contain, and W is a constant. Time begins at 0 when the robot was at rest and
-/// when there is no past.
+/// The path is that of the middle of the wheels. The acceleration is the IMU's without gravity. The lever leads from
+/// the middle of the wheels to the IMU and turns with the yaw ψ of the gyro. B is the wheel base.
 ///
-/// τ is learned in motion, so the points keep the two motions, and every difference is formed by the present τ: none
-/// compares two values of τ. Between two points the inertial motion is interpolated. Where the wheels are early, τ < 0,
-/// the last point is the last one for which t − τ has passed: what the IMU will report is not known. Such a
-/// point is judged when the next one is added.
+/// τ is the clock offset: a reading of the wheels with the stamp t shows the state at t − τ (planar/planar_core.h).
+/// Both motions are compared at the same moment. A comparison at the same stamp would show a slip of τ Δv after a speed
+/// change Δv.
+///
+/// While no wheel slips, E is a straight line, whose slope is the unknown speed at the beginning, and W is constant.
+/// Time begins at 0 at the end of a rest and after a restart.
+///
+/// τ is learned in motion. Therefore the points keep both motions, and every difference uses the present τ. The
+/// inertial motion is interpolated between two points. If τ < 0, the wheels are early. Then the last point is the last
+/// one for which t − τ has passed, and a newer point is judged when the next one is added.
 
 #include <array>
 #include <cstddef>
@@ -42,12 +44,12 @@ class MotionDifference {
     Planar path_difference{};    ///< m, odom axes: E
     double turn_difference = 0;  ///< m: W
     double distance = 0;         ///< m, always growing
-    double yaw = 0;              ///< rad, like all that follows at time − τ
+    double yaw = 0;              ///< rad, at time − τ as all members below
     Planar velocity{};           ///< m/s, odom axes: integral of the acceleration since the restart
     double yaw_rate = 0;         ///< rad/s
   };
 
-  /// What happened in one step.
+  /// Describes the motion of one step.
   struct Sample {
     double dt = 0;                         ///< s
     std::array<double, 2> acceleration{};  ///< m/s², base axes, without gravity
@@ -57,37 +59,38 @@ class MotionDifference {
     Planar path{};                         ///< m, odom axes, by wheels and gyro
     double right_minus_left = 0;           ///< m, by the calibration scaled to the nominal B
     double distance = 0;                   ///< m, (|left| + |right|)/2
-    bool both_sides_read = false;          ///< in this step
+    bool both_sides_read = false;          ///< The travel of both sides was read in this step.
     double yaw_rate = 0;                   ///< rad/s
   };
 
   MotionDifference() = default;
   explicit MotionDifference(const SlipParams& params) noexcept : params_(params) {}
 
-  void restart() noexcept;  ///< without any point
-  /// A slide ended: the past is laid on a straight line of E of that slope, m/s, odom axes, and on a constant W.
+  void restart() noexcept;  ///< removes all points
+  /// Continues after a slide: the past is laid on a straight line of E with that slope (m/s, odom axes) and a constant
+  /// W.
   void restart_on_line(const Planar& slope) noexcept;
-  /// The robot was at rest until a moment ago. `velocity` m/s, odom axes: what the accelerometer has integrated since.
+  /// Restarts at the end of a rest. `velocity` (m/s, odom axes) is the acceleration integrated since then.
   void restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept;
-  /// The pose was set: the path until now is not to be corrected any more.
+  /// States that the pose was set: the path before is not corrected any more.
   void begin_path() noexcept { path_begin_ = time(); }
   double path_begin() const noexcept { return path_begin_; }  ///< s
-  /// s: τ. During a slide it must not change: the slide keeps differences.
+  /// Sets τ, s. It must not change during a slide, which keeps differences.
   void set_clock_offset(double offset) noexcept { clock_offset_ = offset; }
 
-  /// True: a point was added.
+  /// Returns true if a point was added.
   bool step(const Sample& sample) noexcept;
 
   double time() const noexcept { return now_.inertial.time; }  ///< s, of the last step
   bool empty() const noexcept { return count_ == 0; }
-  /// The newest point that is known; there must be one.
+  /// Returns the newest point that is known; there must be one.
   Point last() const noexcept { return difference(record(last_index())); }
   Point before(double time) const noexcept;  ///< the newest point that is not later, else the oldest
 
  private:
   static constexpr std::size_t kPoints = 64;
 
-  /// Both motions until `inertial.time`.
+  /// Holds both motions until `inertial.time`.
   struct Record {
     InertialMotion inertial;
     Planar wheel_path{};          ///< m, odom axes
@@ -96,11 +99,11 @@ class MotionDifference {
   };
 
   Planar lever(double yaw, const Vector3& up) const noexcept;
-  bool waits() const noexcept { return clock_offset_ < 0; }  ///< for the IMU
+  bool waits() const noexcept { return clock_offset_ < 0; }  ///< True if the newest points wait for the IMU.
   const Record& record(std::size_t i) const noexcept { return records_[i % kPoints]; }
   std::size_t oldest() const noexcept { return count_ > kPoints ? count_ - kPoints : 0; }
   std::size_t last_index() const noexcept { return index_before(waits() ? time() + clock_offset_ : time()); }
-  std::size_t index_before(double time) const noexcept;  ///< of the newest record that is not later, else the oldest
+  std::size_t index_before(double time) const noexcept;  ///< newest record that is not later, else the oldest
   InertialMotion inertial_at(double time) const noexcept;
   Point difference(const Record& record) const noexcept;
 

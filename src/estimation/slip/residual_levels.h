@@ -1,15 +1,15 @@
 #pragma once
-/// How large the residuals of wheels and inertial sensors (slip_residual.h) usually are on this robot and floor.
+/// Learns how large the residuals of wheels and inertial sensors (slip_residual.h) usually are on this robot and floor.
 ///
-/// Real floors shake an accelerometer ten to forty times harder than its data sheet says. So each span T of each
-/// channel learns a level: the 90 % quantile of |residual|/σ, over that of a normal distribution, with σ by the data
-/// sheets. It moves by steps of kQuantileStep on its logarithm (H. Robbins, S. Monro, A stochastic approximation
-/// method, 1951), from the largest of the first kFirstResiduals on, and is at least 1. Before that it is kFirstLevel,
-/// that of a robot that shakes.
+/// Real floors shake an accelerometer ten to forty times harder than its data sheet states. Therefore each span T of
+/// each channel learns a level ≥ 1: the 90 % quantile of |residual|/σ, over that of a normal distribution. Here σ
+/// follows from the data sheets. The first level is the largest of kFirstResiduals residuals; before that it is
+/// kFirstLevel. Later the logarithm of the level changes by steps of kQuantileStep (H. Robbins, S. Monro, A stochastic
+/// approximation method, 1951).
 ///
-/// A robot that drives faster than usual shakes more: what exceeds the sensors' noise grows in proportion to the speed.
-/// The clock offset's uncertainty σ_τ adds (σ_τ speed change)², and (B σ_τ Δω)² in the turn: no offset bends E while
-/// the wheels keep their speed.
+/// A robot that drives faster shakes more: the excess over the sensors' noise grows in proportion to the speed. The
+/// clock offset's uncertainty σ_τ adds (σ_τ speed change)², and (B σ_τ Δω)² in the turn. It adds nothing at constant
+/// speed.
 
 #include <array>
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace robot_control {
 
-/// Of the acceleration, standard deviations.
+/// Holds standard deviations of the acceleration.
 struct AccelerationNoise {
   double white = 0;  ///< m/s²/√Hz
   double slow = 0;   ///< m/s²
@@ -34,39 +34,39 @@ class ResidualLevels {
   ResidualLevels() = default;
   explicit ResidualLevels(const SlipParams& params) noexcept : params_(params) {}
 
-  void restart() noexcept { learned_at_ = {}; }  ///< time begins at 0 again; the levels stay
+  void restart() noexcept { learned_at_ = {}; }  ///< Time begins at 0 again; the levels stay.
 
-  /// m, standard deviation of a residual, as learned.
+  /// Returns the learned standard deviation of a residual, in m.
   double deviation(std::size_t span, Channel channel, const SlipResidual& residual,
                    const SlipUncertainty& uncertainty) const noexcept;
 
-  /// The same without the clock offset: of a robot that keeps its speed.
+  /// Returns the same without the clock offset, for a robot that keeps its speed.
   double usual_deviation(std::size_t span, Channel channel, const SlipResidual& residual,
                          const SlipUncertainty& uncertainty) const noexcept;
 
-  /// At `time`, s; once per span. Where nothing was learned yet it learns although wheels may slip.
+  /// Learns at `time` (s), once per span. Slip excludes a residual, unless no level has been learned yet.
   void learn(double time, std::size_t span, const SlipResidual& residual, const SlipUncertainty& uncertainty,
              bool slip) noexcept;
 
-  /// Along, of T = 0.2 s; 0: nothing was compared yet.
+  /// Returns the level along at T = 0.2 s; 0: nothing was compared yet.
   double level() const noexcept { return level_[kLevelSpan][SlipResidual::kAlong]; }
-  /// At that speed, m/s; `variance` (m/s²)²: of gravity and bias.
+  /// Returns the noise at that speed (m/s). `variance` ((m/s²)²) is that of gravity and bias.
   AccelerationNoise acceleration_noise(double speed, double variance) const noexcept;
 
  private:
-  /// Of each span and channel.
+  /// Holds one level for each span and channel.
   using Levels = std::array<std::array<double, SlipResidual::kChannels>, kSpans>;
 
-  /// Of a level that was learned, or 0, at that speed, m/s.
+  /// Returns the level at that speed (m/s); a level of 0 is not learned yet.
   double at_speed(double level, double speed) const noexcept;
   void learn_level(std::size_t span, Channel channel, double ratio) noexcept;
 
   SlipParams params_;
   Levels level_{};    ///< 0: unknown
-  Levels largest_{};  ///< of the first residuals
+  Levels largest_{};  ///< largest of the first residuals
   std::array<std::array<std::uint64_t, SlipResidual::kChannels>, kSpans> count_{};
   std::array<double, kSpans> learned_at_{};  ///< s
-  double usual_speed_ = 0;                   ///< m/s, at which the levels are learned
+  double usual_speed_ = 0;                   ///< m/s, speed at which the levels are learned
 };
 
 }  // namespace robot_control

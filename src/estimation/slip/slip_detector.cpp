@@ -65,7 +65,7 @@ void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
   nis_[channel] = residuals[kLevel].known ? square(residuals[kLevel].value[channel] / deviation[kLevel]) : -1;
 }
 
-/// Its noise is that of the residual alone: gravity's own uncertainty is what it reduces.
+/// The deviation is that of the residual alone, because gravity's own uncertainty is what this comparison reduces.
 void SlipDetector::compare_gravity(const SlipResidual& residual, double speed_step, bool learns) noexcept {
   gravity_error_.known = false;
   const double interval = difference_.time() - gravity_compared_at_;

@@ -1,10 +1,10 @@
 #pragma once
-/// Whether wheels slip, by residuals of wheels against gyro and accelerometer (slip_residual.h) over four spans T, each
-/// measured against its usual level (residual_levels.h).
+/// Detects slip by the residuals of wheels against gyro and accelerometer (slip_residual.h) over four spans T. Each is
+/// compared with its usual level (residual_levels.h).
 ///
-/// Slip is proven where a residual exceeds kProof of its deviations and that of the next longer T kSignificant: one
-/// late time stamp is as large in every T, and σ grows with T. Without slip the mean of −D/T² along and across is the
-/// error of gravity and bias that the acceleration contains.
+/// Slip is proven if a residual exceeds kProof deviations and that of the next longer T kSignificant. The second
+/// condition excludes a late time stamp, which is as large in every T, while σ grows with T. Without slip, the mean of
+/// −D/T² along and across is the error of gravity and bias in the acceleration.
 
 #include <array>
 
@@ -19,27 +19,27 @@ class SlipDetector {
   SlipDetector() = default;
   explicit SlipDetector(const SlipParams& params) noexcept : difference_(params), levels_(params) {}
 
-  void restart() noexcept;  ///< of the differences (motion_difference.h); the levels stay
+  void restart() noexcept;  ///< restarts the differences (motion_difference.h); the levels stay
   void restart_on_line(const Planar& slope) noexcept;
   void restart_at_rest(double yaw, const Vector3& up, const Planar& velocity) noexcept;
   void begin_path() noexcept { difference_.begin_path(); }
-  void set_clock_offset(double offset) noexcept { difference_.set_clock_offset(offset); }  ///< s; not in a slide
-  /// True: a point was added, which may be judged.
+  void set_clock_offset(double offset) noexcept { difference_.set_clock_offset(offset); }  ///< s; not during a slide
+  /// Returns true if a point was added, which may be judged.
   bool step(const MotionDifference::Sample& sample) noexcept { return difference_.step(sample); }
-  /// At a point. `learns`: no slide is going on.
+  /// Judges a point. `learns` states that no slide is active.
   void judge(const SlipUncertainty& uncertainty, bool learns) noexcept;
 
   const MotionDifference& difference() const noexcept { return difference_; }
   const ResidualLevels& levels() const noexcept { return levels_; }
 
-  // Of the last judgement:
+  // The members below describe the last judgement.
   bool proven(Channel channel) const noexcept { return proven_span_[channel] > 0; }
   double shortest_proven_span() const noexcept;                         ///< s, of all channels; 0: none
-  double nis(Channel channel) const noexcept { return nis_[channel]; }  ///< at T = 0.2 s; < 0: none
-  /// m/s: deviation of the slope of E or W over T = 0.1 s.
+  double nis(Channel channel) const noexcept { return nis_[channel]; }  ///< at T = 0.2 s; < 0: unknown
+  /// Returns the deviation of the slope of E or W over T = 0.1 s, in m/s.
   double slope_deviation(Channel channel) const noexcept { return slope_deviation_[channel]; }
 
-  /// By how much gravity is larger than taken, in base axes.
+  /// Describes the excess of gravity over the value in use, in base axes.
   struct GravityError {
     bool known = false;
     double along = 0, across = 0;  ///< m/s²
@@ -48,7 +48,7 @@ class SlipDetector {
   };
   const GravityError& gravity_error() const noexcept { return gravity_error_; }
 
-  /// While it drives, as learned; `variance` (m/s²)²: of gravity and bias.
+  /// Returns the learned noise while driving. `variance` ((m/s²)²) is that of gravity and bias.
   AccelerationNoise acceleration_noise(double variance) const noexcept {
     return levels_.acceleration_noise(speed_, variance);
   }

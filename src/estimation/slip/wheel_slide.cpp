@@ -72,7 +72,7 @@ double WheelSlide::contradict(double apart, const Excess& excess, double deviati
   return contradiction_ - earlier;
 }
 
-/// Where one side rolls, it gives the speed without the accelerometer.
+/// A side that rolls gives the speed without the accelerometer.
 double WheelSlide::slipped_speed(const Excess& excess, const Input& input) const noexcept {
   if (!slips_[0] && !slips_[1]) return 0;
   const double along = slips_[0] && slips_[1] ? excess.along : (slips_[1] ? 1 : -1) * excess.turn / 2;
@@ -87,9 +87,9 @@ Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexc
   return (now.path_difference - before.path_difference) / (now.time - before.time);
 }
 
-/// A side that the other one's slip explains rolls.
+/// A side rolls if the slip of the other one explains its excess.
 void WheelSlide::judge(double time, const Excess& excess, double deviation, const Input& input) noexcept {
-  const auto significant = [](double sigma) { return std::max(Tuning::kLeastSlip, Tuning::kSignificant * sigma); };
+  const auto significant = [](double sigma) { return std::max(Tuning::kMinSlipSpeed, Tuning::kSignificant * sigma); };
   largest_ = std::max({largest_, std::abs(excess.side(0)), std::abs(excess.side(1))});
   const bool sudden = largest_ > Tuning::kSignificantTurn * line_deviation_;
   const double carried = significant(std::hypot(deviation, input.path_slope_deviation));
@@ -108,8 +108,8 @@ void WheelSlide::judge(double time, const Excess& excess, double deviation, cons
   if (sideways_) reasons_ |= kSlipSideways;
   for (const std::size_t i : {0U, 1U}) {
     if (!slips_[i]) continue;
-    const bool faster =
-        std::abs(input.side_speed[i]) > std::abs(input.side_speed[i] - excess.side(i));  // than the ground
+    // The wheels of this side are faster than the ground.
+    const bool faster = std::abs(input.side_speed[i]) > std::abs(input.side_speed[i] - excess.side(i));
     reasons_ |= faster ? kSlipSpinning : kSlipStalled;
   }
 }

@@ -21,7 +21,7 @@ void Tilt::Estimate::bound() noexcept {
   up[2] = std::sqrt(1 - up.head<2>().squaredNorm());
 }
 
-/// Gravity turns against the robot, the bias does not.
+/// Gravity turns against the robot; the bias does not.
 void Tilt::Estimate::turn(double angle) noexcept {
   const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-angle).toRotationMatrix();
   covariance.topRows<2>() = (turned * covariance.topRows<2>()).eval();
@@ -38,7 +38,7 @@ bool Tilt::Estimate::contradicts(const Eigen::Vector2d& sum, double noise) const
   return (innovation(sum).array().square() > bound.array()).any();
 }
 
-/// A Kalman update by u + β, one axis after the other.
+/// Applies a Kalman update by u + β, for one axis after the other.
 void Tilt::Estimate::update(const Eigen::Vector2d& sum, double noise) noexcept {
   for (const int axis : {0, 1}) {
     const Eigen::Vector4d ph = covariance.col(axis) + covariance.col(axis + 2);
@@ -58,7 +58,7 @@ void Tilt::turn(const Vector3& rate, double dt, bool known) noexcept {
   now_.bound();
   unreliable_ += std::max(0.0, w.head<2>().norm() - Tuning::kTipping) * dt;
   stuck_ = known && rate == last_ ? stuck_ + dt : 0;
-  if (stuck_ > Tuning::kLongestHold) unreliable_ = std::max(unreliable_, Tuning::kFloor);
+  if (stuck_ > Tuning::kMaxHoldTime) unreliable_ = std::max(unreliable_, Tuning::kFloor);
   last_ = rate;
   turned_ += rate[2] * dt;
   time_ += dt;

@@ -1,13 +1,13 @@
 #pragma once
-/// Encoder angles of one side's wheels → travel of that side, as differences to the last angles that were accepted.
+/// Converts the encoder angles of one side's wheels to the travel of that side since the last accepted angles.
 ///
 ///   travel = mean over the side's wheels of signᵢ · radiusᵢ · (qᵢ − qᵢ,last)    [m]
 ///
-/// The side's wheels are read together: one whose sample is not used rejects the reading. The first reading is the
-/// offset: no travel. A sample that is missing, not finite or impossible is not used; the next good one brings the
-/// travel of the whole gap. Impossible is a difference above 2 · velocity_limit (1000 rad/s where the robot names none)
-/// times the time passed, plus kEncoderSlack. An encoder that stays impossible for more than kMaxHeld readings was
-/// reset: then the present angles become the offset, and the travel in between is lost.
+/// The side's wheels are read together: one unused sample rejects the reading. The first reading is the offset, without
+/// travel. A sample that is missing, not finite or impossible is not used; the next good one brings the travel of the
+/// gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack. Without a limit,
+/// kFastestWheel replaces 2 · velocity_limit. If angles stay impossible for more than kMaxHeld readings, the encoder
+/// was reset. Then the present angles become the offset, and the travel in between is lost.
 
 #include <cstdint>
 
@@ -26,22 +26,22 @@ enum class EncoderReading : std::uint8_t {
 
 class SideEncoder {
  public:
-  /// At least one wheel on that side.
+  /// There must be at least one wheel on that side.
   SideEncoder(const RobotModel& robot, Side side);
 
-  /// `dt`: s since the last call.
+  /// `dt` is the time in s since the last call.
   EncoderReading step(const SensorFrame& sensors, double dt) noexcept;
 
-  /// Since the last reading that was not rejected; 0 but after kTravel. m
+  /// Returns the travel since the last reading that was not rejected, in m; 0 except after kTravel.
   double travel() const noexcept { return travel_; }
-  /// In which that travel was made. s
+  /// Returns the time in which that travel was made, in s.
   double time() const noexcept { return time_; }
-  /// A reading was accepted in the last step.
+  /// Returns true if a reading was accepted in the last step.
   bool received() const noexcept { return waiting_ == 0 && known_; }
-  bool known() const noexcept { return known_; }        ///< a reading was accepted in this run
+  bool known() const noexcept { return known_; }        ///< A reading was accepted in this run.
   double waiting() const noexcept { return waiting_; }  ///< s since a reading was accepted
-  /// s, usual gap between readings: the largest, fading by kGapFading per reading, as stamps jitter and readings come
-  /// in batches; at most kLongestGap.
+  /// Returns the usual gap between readings, in s. It is the largest gap, fading by kGapFading per reading because
+  /// stamps jitter and readings come in batches. It is at most kMaxGap.
   double gap() const noexcept { return gap_; }
 
  private:

@@ -1,12 +1,12 @@
 #pragma once
-/// The step of wheel speeds that are reported in steps: travel over time of every reading is a multiple of it.
+/// Finds the step of wheel speeds that are reported in steps, of which travel over time of every reading is a multiple.
 ///
-/// The step is the greatest common divisor of the changes from one reading to the next (Euclid), to kRounding of the
-/// speed. Speeds without steps leave nothing but that rounding. Counts of an encoder are steps of the travel, whose
-/// error does not grow; a step that the encoder's count explains is none.
+/// The step is the greatest common divisor of the changes between readings (Euclid), to kRounding of the speed. Speeds
+/// without steps leave only that rounding. An encoder's counts are steps of the travel, whose error does not grow, so
+/// that a step that the count explains is ignored.
 ///
-/// A reading is off by up to half a step, and so is each that repeats it: n equal readings in a row are off by n times
-/// as much.
+/// A reading is wrong by up to half a step. Readings that repeat it have the same error. So the travel of n equal
+/// readings in a row is wrong by n times as much.
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +18,10 @@ namespace robot_control {
 
 class SpeedQuantum {
  public:
-  /// m, of one side.
+  /// `count` is one count of a side's encoder, m.
   explicit SpeedQuantum(double count = 0) noexcept : count_(count) {}
 
-  /// The travel of a reading, m, in `time` s, > 0.
+  /// Adds the travel of a reading (m) in `time` s, > 0.
   void add(double travel, double time) noexcept {
     const double speed = travel / time;
     const double rounding = kRounding * std::max(std::abs(speed), std::abs(last_));
@@ -34,11 +34,12 @@ class SpeedQuantum {
   }
 
   double step() const noexcept { return step_ * time_ > 2 * count_ ? step_ : 0; }  ///< m/s
-  /// m², that the last reading adds to the variance of the way: of n equal ones the error is n times as large.
+  /// Returns the variance that the last reading adds to that of the travel, in m². The error of n equal readings is n
+  /// times as large.
   double travel_variance() const noexcept { return (2 * repeated_ - 1) * square(step() * time_) / 12; }
 
  private:
-  static constexpr double kRounding = 1e-3;  ///< of stamps in ms
+  static constexpr double kRounding = 1e-3;  ///< stamps in ms
 
   double count_;
   double step_ = 0;      ///< m/s

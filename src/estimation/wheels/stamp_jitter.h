@@ -1,7 +1,7 @@
 #pragma once
-/// By how much the stamps of a sensor that samples evenly come too late or too early: of three readings in a row with
-/// gaps g₁ and g₂ between them and independent errors of deviation σ, (g₂ − g₁)² is 6 σ² in the mean. A reading that
-/// was lost is none of it: the difference counts as one gap at most.
+/// Learns the errors of the stamps of a sensor that samples evenly. With gaps g₁ and g₂ between three readings and
+/// independent errors of deviation σ, the mean of (g₂ − g₁)² is 6 σ². The difference counts as one gap at most, so that
+/// a lost reading does not count as jitter.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace robot_control {
 
 class StampJitter {
  public:
-  /// s, between this reading and the one before; > 0.
+  /// Adds the gap between this reading and the one before, in s, > 0.
   void add(double gap) noexcept {
     const double difference = std::min(std::abs(gap - last_), std::min(gap, last_));
     if (last_ > 0) {

@@ -1,11 +1,11 @@
 #pragma once
-/// From the wheels' travel to the motion of base_link; wheels behind each other turn the robot about their middle.
+/// Converts the wheels' travel to the motion of base_link. Wheels behind each other turn the robot about their middle.
 ///
 ///   distance = (right + left) / 2        turn = (right − left) / wheel_base
 ///   forward  = distance + turn · axle_y  left = −turn · axle_x
 ///
-/// wheel_base is the effective one (RobotModel); left and right are the means of a side. (axle_x, axle_y) is the middle
-/// of the wheels in base axes: rigid-body motion of a point beside it. `ground` is the height of the contacts.
+/// wheel_base is the effective one (RobotModel), and left and right are the means of a side. The point (axle_x, axle_y)
+/// is the middle of the wheels in base axes. `ground` is the height of the contacts.
 
 #include "estimation/wheels/arc.h"
 #include "robot/robot_model.h"
@@ -29,7 +29,7 @@ struct WheelGeometry {
 
   double turn(double left, double right) const noexcept { return (right - left) / wheel_base; }
 
-  /// Works on travel [m, rad] as on speed [m/s, rad/s].
+  /// Converts travel (m, rad) as well as speed (m/s, rad/s).
   Motion base_motion(double distance, double turn) const noexcept {
     return {distance + turn * axle_y, -turn * axle_x, turn};
   }

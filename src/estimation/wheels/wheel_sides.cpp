@@ -93,7 +93,7 @@ double WheelSides::speed_at(double rate) const noexcept {
 }
 
 double WheelSides::unread_distance(std::size_t side) const noexcept {
-  if (received(side) || (lost(side) && !lost(1 - side))) return 0;  // the other side stands for it
+  if (received(side) || (lost(side) && !lost(1 - side))) return 0;  // The other side replaces it.
   const SideEncoder& encoder = sides_[side].encoder;
   return sides_[side].speed.speed() * std::min(encoder.waiting(), std::max(encoder.gap(), longest_held_)) / 2;
 }

@@ -1,12 +1,12 @@
 #pragma once
-/// The wheels of both sides: what they rolled since their last readings, how fast they are, and which side is lost.
+/// Tracks the wheels of both sides: their travel since the last readings, their speeds, and which side is lost.
 ///
-/// A side is lost where no reading was accepted for kMaxHeld periods and for twice the usual gap between its readings.
-/// The other side then stands for it:
+/// A side is lost if no reading was accepted for kMaxHeld periods and for twice the usual gap between its readings.
+/// Then the other side replaces it:
 ///
 ///   distance of the middle of the wheels = travel of the side ± turn · wheel_base / 2        + for the left side
 ///
-/// and what it stood for is deducted from the first reading with which the lost side comes back.
+/// The travel that was replaced is deducted from the first reading after the gap.
 
 #include <array>
 #include <cstddef>
@@ -26,28 +26,29 @@ class WheelSides {
  public:
   static constexpr std::size_t kLeft = 0, kRight = 1;
 
-  /// Of one step.
+  /// Describes the result of one step.
   struct Readings {
-    bool refused = false;    ///< a reading was not used
-    bool restarted = false;  ///< a side began from a new offset: its travel is not that of the time before
-    int lost_travels = 0;    ///< sides of which an unknown travel was lost
+    bool refused = false;    ///< A reading was not used.
+    bool restarted = false;  ///< A side began from a new offset; its travel does not continue the earlier one.
+    int lost_travels = 0;    ///< sides with an unknown travel lost
   };
 
-  /// Of the middle of the wheels.
+  /// Holds the travel of the middle of the wheels.
   struct Travel {
     double distance = 0;    ///< m
-    double turn_since = 0;  ///< rad, turned since half of it
+    double turn_since = 0;  ///< rad, turned since half of that travel
   };
 
-  /// `bandwidth` Hz of the speeds, `period` s, `count` m: of an encoder.
+  /// `bandwidth` (Hz) is that of the speeds, `period` is in s, `count` (m) is one count of an encoder.
   WheelSides(const RobotModel& robot, double bandwidth, double period, double count);
 
   Readings step(const SensorFrame& sensors, double dt) noexcept;
   void turn(double angle) noexcept;  ///< rad, of the robot in this step
-  void forget_turn() noexcept;       ///< what was turned since the last readings is accounted for
-  /// What the readings of this step make of the path. `ratio`: radius ratio − 1.
+  void forget_turn() noexcept;       ///< forgets the turn since the last readings
+  /// Returns the travels by which this step's readings move the path. `ratio` is the radius ratio − 1.
   FixedVector<Travel, 2> take_travels(double ratio) noexcept;
-  /// Once per step with a reading of both: `lateness` s, over which `recent_speed` is the mean, one gap at least.
+  /// Updates `recent_speed` over `lateness` s, at least one gap. It is called once per step with readings of both
+  /// sides.
   void average_speed(double lateness) noexcept;
   void set_speed(double speed, double rate) noexcept;  ///< m/s of the middle, rad/s
 
@@ -60,13 +61,15 @@ class WheelSides {
   double rate() const noexcept {  ///< rad/s, by the model's wheel base
     return geometry_.turn(sides_[kLeft].speed.speed(), sides_[kRight].speed.speed());
   }
-  /// m/s of the middle; of the side that is left where the other is lost, at the yaw rate `rate` rad/s.
+  /// Returns the speed of the middle, in m/s. If one side is lost, it follows from the other side and the yaw rate
+  /// `rate` (rad/s).
   double speed_at(double rate) const noexcept;
-  /// m/s, mean speed over the lateness: one reading alone is a poor speed where stamps jitter or counts are few.
+  /// Returns the mean speed over the lateness, in m/s. One reading alone is inaccurate if stamps jitter or counts are
+  /// few.
   double recent_speed() const noexcept { return recent_time_ > 0 ? recent_distance_ / recent_time_ : 0; }
-  /// m, of the middle: what a side without a reading in this step rolled since its last one, at its speed.
+  /// Returns the travel of the middle by a side without a reading in this step, at its last speed, in m.
   double unread_distance(std::size_t side) const noexcept;
-  const SpeedQuantum& quantum() const noexcept { return quantum_; }      ///< of either side
+  const SpeedQuantum& quantum() const noexcept { return quantum_; }      ///< quantum of the left side's speeds
   double stamp_variance() const noexcept { return jitter_.variance(); }  ///< s²
 
   bool received(std::size_t side) const noexcept { return sides_[side].encoder.received(); }
@@ -74,17 +77,17 @@ class WheelSides {
   bool lost(std::size_t side) const noexcept;
   bool any_lost() const noexcept { return lost(kLeft) || lost(kRight); }
   bool both_lost() const noexcept { return lost(kLeft) && lost(kRight); }
-  bool both_fell_silent() const noexcept;  ///< both are lost, and had brought readings
-  /// Readings that come much closer than usual were held up on their way: their stamps give no speed.
-  /// Once per step.
+  bool both_fell_silent() const noexcept;  ///< Both are lost and had brought readings.
+  /// Returns true if the readings came much closer than usual: they were held up, and their stamps give no speed. It
+  /// must be called once per step.
   bool in_a_batch() noexcept;
 
  private:
   struct SideState {
     SideEncoder encoder;
     SpeedTracker speed;
-    double turned = 0;    ///< rad, since its last reading
-    double credited = 0;  ///< m, that the other side stood for while this one was lost
+    double turned = 0;    ///< rad since its last reading
+    double credited = 0;  ///< m by which the other side replaced this one
   };
 
   double travel(std::size_t side) const noexcept { return sides_[side].encoder.travel(); }

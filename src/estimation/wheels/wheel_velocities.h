@@ -1,10 +1,10 @@
 #pragma once
-/// How fast each wheel turns, for joint_states: the tracking loop of the wheel loops (robot/encoders/tracking_loop.h)
-/// on every wheel's own angle, without a torque that explains its acceleration.
+/// Estimates how fast each wheel turns, for joint_states. It runs the tracking loop of the wheel loops
+/// (robot/encoders/tracking_loop.h) on each wheel's own angle, without a torque that explains its acceleration.
 ///
-/// The speed that an encoder reports is differenced over one period and jumps by a count per period: 1.5 rad/s with
-/// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastestWheel are left out;
-/// after kLongestHold without one, the next restarts.
+/// The speed that an encoder reports is a difference over one period, which jumps by a count per period: 1.5 rad/s with
+/// 4096 counts at 1 kHz. Samples that are missing, not finite or that jump by more than kFastestWheel are left out.
+/// After kMaxHoldTime without a sample, the next one restarts the loop.
 
 #include <algorithm>
 #include <array>
@@ -22,12 +22,12 @@ namespace robot_control {
 
 class WheelVelocities {
  public:
-  /// `bandwidth` Hz, `period` s.
+  /// `bandwidth` is in Hz and `period` in s.
   WheelVelocities(const RobotModel& robot, double bandwidth, double period)
       : period_(period),
         wheels_(std::min(robot.wheels.size(), kMaxWheels), Wheel{.tracking = TrackingLoop(bandwidth, period)}) {}
 
-  /// `dt` s after the last one; 0: the first, or the same again.
+  /// `dt` is the time in s since the last call; 0 in the first one and for a repeated frame.
   void step(const SensorFrame& sensors, double dt) noexcept {
     const bool valid = (sensors.valid & kValidJoints) != 0 && sensors.joint_count >= wheels_.size();
     for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].step(sensors.joints[i], valid, dt, period_);
@@ -35,7 +35,7 @@ class WheelVelocities {
       wheels_[i].tracking.assume_encoder_of(wheels_[(i + 1) % wheels_.size()].tracking);
   }
 
-  /// rad/s, in the joint's own sign; those of wheels without a sample are 0.
+  /// Writes rad/s in the joint's own sign; wheels without a sample get 0.
   void write(std::array<double, kMaxWheelVelocities>& out) const noexcept {
     out = {};
     for (std::size_t i = 0; i < wheels_.size(); ++i) out[i] = wheels_[i].known ? wheels_[i].tracking.velocity() : 0;
@@ -44,7 +44,7 @@ class WheelVelocities {
  private:
   struct Wheel {
     TrackingLoop tracking;
-    double angle = 0;  ///< rad, of the last good sample
+    double angle = 0;  ///< rad, last good sample
     double since = 0;  ///< s
     bool known = false;
 
@@ -52,7 +52,7 @@ class WheelVelocities {
       since += dt;
       if (!valid || !std::isfinite(sample.position)) return;
       const double travel = sample.position - angle;
-      if (!known || since > Tuning::kLongestHold) {
+      if (!known || since > Tuning::kMaxHoldTime) {
         tracking.restart_from(sample.position, 0);
         known = true;
       } else if (since > 0 && std::abs(travel) <= Tuning::kFastestWheel * since) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What a `<joint>` says of the motion between two bodies.
+/// Reads the motion between two bodies from a `<joint>`.
 
 #include <urdf_model/joint.h>
 
@@ -10,13 +10,13 @@
 
 namespace robot_control {
 
-/// A joint that may turn by more than this has no end: "±1e16" and the like stand for continuous.
+/// A joint that may turn by more than this, in rad, has no end: "±1e16" and similar limits mean continuous.
 inline constexpr double kEndless = 4 * 3.14159265358979323846;
 
-/// Fixed joints are the caller's. A `continuous` joint has no limits, whatever it says; ±180 is noted as degrees.
-/// Efforts and velocities that are not above zero are unknown: 0.
+/// Reads a joint that is not fixed. A `continuous` joint has no limits, even if the file gives some. A limit of ±180 is
+/// noted as degrees. Efforts and velocities that are not above zero are unknown: 0.
 ///
-/// Throws RobotError: an axis without length, numbers that are not finite, lower above upper.
+/// Throws RobotError for an axis without length, for numbers that are not finite and for lower above upper.
 BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, std::vector<RobotNote>& notes);
 
 }  // namespace robot_control

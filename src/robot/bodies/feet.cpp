@@ -16,7 +16,7 @@ struct Extent {
   double low = 0, high = 0;  ///< m
 };
 
-/// Of a shape along an axis of the root.
+/// Returns the extent of a shape along an axis of the root.
 Extent extent(const RigidBody& body, const Shape& shape, const Eigen::Vector3d& axis) {
   const Eigen::Vector3d in_body = body.in_root.linear().transpose() * axis;
   const double origin = body.in_root.translation().dot(axis);

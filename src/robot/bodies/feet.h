@@ -1,16 +1,16 @@
 #pragma once
-/// What a robot stands on beside its drive wheels, where drawings are not exact.
+/// Corrects the supports of a robot beside its drive wheels, because drawings are not exact.
 ///
 /// The floor is the mean height of the drive wheels' lowest points at the zero pose, z upwards in the root's axes.
 ///
-///   feet        A shape that slides, or a caster that rolls, whose lowest point is within kLevel of the floor is moved
-///               to the floor: a robot on rigid feet has its wheels in the air when these are 0.05 mm lower.
-///   footprints  A shape no higher than kThin and ending no higher than kThin above the floor, on the root link or one
-///               whose name says "footprint" (REP 120), where the link's origin is within kFloorTolerance of the
-///               floor and below or above the shape, and which begins no higher than kLevel above the floor: a mark
-///               of where the robot is, no part of it. It is left out.
+///   feet        a sliding shape or a rolling caster whose lowest point is within kLevel of the floor is moved to the
+///               floor, because rigid feet that are 0.05 mm lower would lift the wheels
+///   footprints  a thin shape on the floor that marks the place of the robot is left out. It is on the root link or on
+///               a link named "footprint" (REP 120), and that link's origin is within kFloorTolerance of the floor and
+///               above or below the shape. The shape begins at most kLevel above the floor, and its height and its
+///               upper end are at most kThin
 ///
-/// Both are noted, but for less than 1 µm.
+/// Both are noted, except for less than 1 µm.
 
 #include <vector>
 
@@ -21,10 +21,10 @@ namespace robot_control {
 inline constexpr double kLevel = 0.001;  ///< m
 inline constexpr double kThin = 0.02;    ///< m
 
-/// m, in the root's axes.
+/// Returns the height of the floor in the root's axes, m.
 double floor_height(const DriveTrain& train);
 
-/// As above.
+/// Corrects feet and footprints as above.
 void set_feet(RigidBodies& robot, DriveTrain& train, std::vector<RobotNote>& notes);
 
 }  // namespace robot_control

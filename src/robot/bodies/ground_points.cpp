@@ -10,7 +10,7 @@ namespace {
 constexpr int kRimPoints = 16;
 
 Eigen::Vector3d lowest(const WheelModel& wheel, const Eigen::Vector3d& axle) {
-  // Support point of the ellipsoid (r, r, w/2) about its axle towards −z.
+  // This is the support point of the ellipsoid (r, r, w/2) about its axle towards −z.
   const double half_width = wheel.width / 2;
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
   const double along = axle.dot(down);

@@ -1,6 +1,6 @@
 #pragma once
-/// Where a robot may touch level ground: the corners of its collision shapes at the zero pose, in base axes. A wheel
-/// or a rolling caster counts with its lowest point alone, whatever its body's shapes.
+/// Returns the points where a robot may touch level ground: the corners of its collision shapes at the zero pose, in
+/// base axes. A wheel or a rolling caster counts with its lowest point alone.
 
 #include <Eigen/Core>
 #include <vector>
@@ -10,16 +10,17 @@
 
 namespace robot_control {
 
-/// Rims of cylinders as 16 points each, the lowest among them; a sphere as its lowest point.
+/// Returns the points of all bodies. Rims of cylinders are 16 points each, with the lowest among them; a sphere is its
+/// lowest point.
 std::vector<Eigen::Vector3d> ground_points(const RobotModel& robot);
 
-/// Those of one body.
+/// Returns the points of one body.
 std::vector<Eigen::Vector3d> ground_points(const RobotModel& robot, const RigidBody& body);
 
-/// m, of the root frame above the plane that the lowest of them touches.
+/// Returns the height of the root frame above the plane that the lowest point touches, m.
 double standing_height(const RobotModel& robot);
 
-/// The wheel or caster that `body` is; null for all others.
+/// Returns the wheel or caster that `body` is; null for all others.
 const WheelModel* rolling_body(const RobotModel& robot, const RigidBody& body);
 
 }  // namespace robot_control

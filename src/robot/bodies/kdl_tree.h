@@ -1,5 +1,5 @@
 #pragma once
-/// The kinematic tree of a URDF, and where its links are while every joint stands at zero.
+/// Builds the kinematic tree of a URDF and finds the places of its links while every joint is at zero.
 
 #include <Eigen/Geometry>
 #include <kdl/tree.hpp>
@@ -10,11 +10,11 @@
 
 namespace robot_control {
 
-/// One KDL segment per link but the root, named after the link. Throws RobotError for joints that a KDL joint
-/// cannot say (floating, planar).
+/// Returns one KDL segment per link but the root, named after the link. Throws RobotError for joints that KDL does not
+/// have (floating, planar).
 KDL::Tree kdl_tree(const UrdfDocument& document);
 
-/// Link name → its frame in the root link's, the segments' poses chained at joint value zero. The root is identity.
+/// Returns the frame of each link in that of the root, by link name, with all joints at zero. The root is the identity.
 /// (TreeFkSolverPos_recursive does the same, but asserts on a tree without a moving joint.)
 std::map<std::string, Eigen::Isometry3d> links_at_zero(const KDL::Tree& tree);
 

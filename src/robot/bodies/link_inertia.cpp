@@ -31,7 +31,7 @@ Eigen::Isometry3d eigen_pose(const urdf::Pose& pose) {
 }
 
 Eigen::Matrix3d possible_inertia(const Eigen::Matrix3d& given, double mass) {
-  const double least = mass * kLeastGyration * kLeastGyration;
+  const double least = mass * kMinGyration * kMinGyration;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(given);
   Eigen::Vector3d principal = solver.eigenvalues();
   if (principal[2] <= 0) return 0.4 * mass * kBallRadius * kBallRadius * Eigen::Matrix3d::Identity();
@@ -48,8 +48,7 @@ Eigen::Matrix3d possible_inertia(const Eigen::Matrix3d& given, double mass) {
 bool is_possible(const Eigen::Matrix3d& given, double mass) {
   const Eigen::Vector3d principal =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(given, Eigen::EigenvaluesOnly).eigenvalues();
-  return principal[0] >= mass * kLeastGyration * kLeastGyration &&
-         principal[0] + principal[1] >= (1 - 1e-9) * principal[2];
+  return principal[0] >= mass * kMinGyration * kMinGyration && principal[0] + principal[1] >= (1 - 1e-9) * principal[2];
 }
 
 PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body, const std::string& source,

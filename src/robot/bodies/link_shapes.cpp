@@ -13,7 +13,7 @@
 namespace robot_control {
 namespace {
 
-/// A mesh that is not there.
+/// A mesh does not exist.
 class MissingMesh : public RobotError {
  public:
   using RobotError::RobotError;
@@ -26,7 +26,7 @@ std::vector<Eigen::Vector3d> mesh_points(const urdf::Mesh& mesh, const std::stri
     refuse(description.source, element, "<mesh filename=\"" + mesh.filename + "\">: its scale is empty or zero",
            "Give scale=\"1 1 1\" for a mesh in metres, \"0.001 0.001 0.001\" for one in millimetres");
   }
-  // What names the URDF itself names it once.
+  // A message that already begins with the URDF keeps it only once.
   const auto located = [&](const RobotError& error) {
     const std::string prefix = description.source + ": ";
     const std::string text = error.what();

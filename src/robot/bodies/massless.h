@@ -1,5 +1,5 @@
 #pragma once
-/// Moving bodies whose links have no <inertial>: rigid_bodies.h says what becomes of them.
+/// Gives mass to moving bodies whose links have no <inertial>, by the rule of rigid_bodies.h.
 
 #include <set>
 #include <string>
@@ -14,11 +14,11 @@ struct LumpedBodies {
   std::vector<bool> weighed;  ///< per body: one of its links has an <inertial>
 };
 
-/// The joints of those that nothing which rolls depends on.
+/// Returns the joints of massless bodies that carry nothing which rolls.
 std::set<std::string> idle_massless_joints(const LumpedBodies& lumped);
 
-/// Gives the others their share of the parent's mass; the sum stays. Throws RobotError: a base without mass on
-/// which something moves, a moving body whose <mass> is zero.
+/// Gives the other massless bodies their share of the parent's mass; the sum stays. Throws RobotError if a base without
+/// mass carries something that moves, or if the <mass> of a moving body is zero.
 void lend_mass(LumpedBodies& lumped);
 
 }  // namespace robot_control

@@ -21,12 +21,12 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kNamed = 3;         // files in a note
-constexpr std::size_t kLongestChain = 3;  // of followers
+constexpr std::size_t kNamed = 3;     // files in a note
+constexpr std::size_t kMaxChain = 3;  // number of followers in a chain
 
 class Lumper {
  public:
-  /// `largest` in m: what radius of gyration a link may have.
+  /// `largest` (m) bounds the radius of gyration of a link.
   Lumper(const UrdfDocument& document, const RobotDescription& description, const std::set<std::string>& welded,
          double largest)
       : document_(document),
@@ -115,7 +115,7 @@ class Lumper {
   }
 
   void add_shapes(const urdf::Link& link, ShapeSource which, std::size_t body, const Eigen::Isometry3d& in_body) {
-    // A wheel needs its shape; what else is missing is judged when the rest is known (tipping.h).
+    // A wheel needs its shape. Other missing shapes are judged when the rest is known (tipping.h).
     const bool needed = which == ShapeSource::kVisual || may_roll(result_.bodies[body]);
     std::vector<Shape> shapes =
         shapes_of(link, which, in_body, description_, result_.notes, needed ? nullptr : &result_.missing_meshes);
@@ -163,7 +163,7 @@ class Lumper {
     }
   }
 
-  /// What RViz would draw. Wheels may get their shapes from there, so it is noted before they are measured.
+  /// Notes the missing files that RViz would draw, before wheels are measured, because wheels may use these shapes.
   void note_missing_visuals() {
     if (missing_visuals_.empty()) return;
     std::string files;
@@ -176,7 +176,7 @@ class Lumper {
   }
 
   void check_mimics() {
-    for (std::size_t round = 0; round < kLongestChain; ++round) {
+    for (std::size_t round = 0; round < kMaxChain; ++round) {
       for (RigidBody& body : result_.bodies) {
         const RigidBody* leader = result_.moved_by(body.joint.mimicked);
         if (leader != nullptr && leader->joint.driven) body.joint.driven = true;
@@ -207,7 +207,7 @@ class Lumper {
 
 template <typename Matrix>
 bool of_this_world(const Matrix& m) {
-  return (m.array().abs() < kBeyondRobots).all();  // false for what is not a number, too
+  return (m.array().abs() < kBeyondRobots).all();  // also false for not-a-number
 }
 
 bool of_this_world(const RigidBody& body) {

@@ -1,11 +1,12 @@
 #pragma once
-/// How far a shape reaches.
+/// Computes how far a shape reaches.
 
 #include "robot/bodies/rigid_bodies.h"
 
 namespace robot_control {
 
-/// m, along the unit vector `u` of the body's axes, from the body's origin; −∞ for a mesh without points.
+/// Returns the reach along the unit vector `u` of the body's axes from the body's origin, m; −∞ for a mesh without
+/// points.
 double support(const Shape& shape, const Eigen::Vector3d& u);
 
 }  // namespace robot_control

@@ -6,16 +6,16 @@
 namespace robot_control {
 
 bool EncoderQuantum::refine(double turned) noexcept {
-  constexpr double kExact = 1e-4;  // rad
-  constexpr double kLeast = 1e-9;  // rad: below, a difference is rounding
+  constexpr double kExact = 1e-4;    // rad
+  constexpr double kMinStep = 1e-9;  // rad, below which a difference is rounding
   const double before = value_;
-  if (!changed_ && std::abs(turned) > kLeast) {
+  if (!changed_ && std::abs(turned) > kMinStep) {
     changed_ = true;
-    value_ = kCoarsest;  // what another wheel's encoder has shown no longer counts
+    value_ = kCoarsest;  // The value of another wheel's encoder counts no longer.
   }
   for (const double step : {turned, turned - last_}) {
     const double size = std::abs(step);
-    if (size > kLeast && size < value_) value_ = size < kExact ? 0 : size;
+    if (size > kMinStep && size < value_) value_ = size < kExact ? 0 : size;
   }
   last_ = turned;
   return value_ != before;

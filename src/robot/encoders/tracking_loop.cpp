@@ -8,18 +8,18 @@ namespace robot_control {
 
 namespace {
 
-constexpr double kInside = 0.2;                         // of the bandwidth: largest f_in
+constexpr double kInside = 0.2;                         // largest f_in over the bandwidth
 constexpr double kCounts = 40;                          // counts in 1/f_in
-constexpr double kLeast = 0.1;                          // of the bandwidth: smallest f
+constexpr double kMinPart = 0.1;                        // smallest f over the bandwidth
 constexpr double kQuick = 1.5;                          // rad/s
-constexpr double kDoubt = 0.25;                         // of q'
-constexpr double kCoarse = 2 * std::numbers::pi / 512;  // rad, of a count
+constexpr double kDoubt = 0.25;                         // share of q'
+constexpr double kCoarse = 2 * std::numbers::pi / 512;  // rad, size of a count
 
 double pole(double bandwidth, double dt) noexcept {
   return std::exp(-2 * std::numbers::pi * bandwidth * dt);
 }
 
-/// The same to (2π·bandwidth·dt)³/6, without a call.
+/// Approximates the pole to (2π·bandwidth·dt)³/6 without a function call.
 double cheap_pole(double bandwidth, double dt) noexcept {
   const double x = 2 * std::numbers::pi * bandwidth * dt;
   return 1 / (1 + x + 0.5 * x * x);
@@ -71,9 +71,9 @@ double TrackingLoop::part_of_bandwidth(double pace, double beyond, double silent
   const double quantum = quantum_.value();
   const double quick = std::max(kQuick, std::abs(velocity_));       // rad/s
   const double loud = 2 * std::numbers::pi * bandwidth_ * quantum;  // rad/s
-  const double most = loud > quick ? quick / loud : 1;              // m of the header
+  const double limit = loud > quick ? quick / loud : 1;             // m of the header
   const double evidence = beyond < doubt_ ? beyond / doubt_ : 1;
-  return std::max({pace, most * evidence, silent, kLeast});
+  return std::max({pace, limit * evidence, silent, kMinPart});
 }
 
 void TrackingLoop::step(double position_measured, double known_acceleration, double periods) noexcept {
@@ -87,18 +87,18 @@ void TrackingLoop::step(double position_measured, double known_acceleration, dou
   if (quantum_.refine(turned)) derive();
   travelled_ = turned == 0 ? travelled_ + velocity_ * dt : 0;
   const double half = 0.5 * quantum_.value();
-  // The last cell, moved on, may miss this one where the velocity is wrong: then its nearer edge is all that is known.
-  const double least = position_measured - half, most = position_measured + half;
+  // If the velocity is wrong, the last cell, moved on, may miss this one. Then only its nearer edge is known.
+  const double lower = position_measured - half, upper = position_measured + half;
   const double came_from = measured_ + velocity_ * dt;
-  const double low = std::clamp(came_from - half, least, most);
-  const double high = std::clamp(came_from + half, least, most);
+  const double low = std::clamp(came_from - half, lower, upper);
+  const double high = std::clamp(came_from + half, lower, upper);
   measured_ = position_measured;
   const double inside = std::clamp(position_, low, high);
   const double beyond = inside - position_;
   const double centre = 0.5 * (low + high) - inside;
 
-  const double pace =
-      std::abs(velocity_) < slowest_ ? std::abs(velocity_) / slowest_ : 1;  // f_in, of its largest value
+  // The pace is f_in over its largest value.
+  const double pace = std::abs(velocity_) < slowest_ ? std::abs(velocity_) / slowest_ : 1;
   const double silent = pace < 1 ? std::clamp(std::abs(travelled_) / quantum_.value() - 1, 0.0, 1.0) : 0;
   const double part = pace < 1 ? part_of_bandwidth(pace, std::abs(beyond), silent) : 1;
   const double ratio = pace < 1 ? kInside * pace / part : kInside;  // κ

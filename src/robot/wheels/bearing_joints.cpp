@@ -16,25 +16,25 @@
 namespace robot_control {
 namespace {
 
-constexpr double kShort = 0.5;        // of the drive wheels' radius
-constexpr double kSuspension = 2;     // of the drive wheels' radius
+constexpr double kShort = 0.5;        // share of the drive wheels' radius
+constexpr double kSuspension = 2;     // share of the drive wheels' radius
 constexpr double kAside = 0.005;      // m, on either side of a balanced joint's axis
-constexpr double kWorthNaming = 0.1;  // of what is too far
-constexpr int kSteps = 64;            // of a turn, for the highest place on it
+constexpr double kWorthNaming = 0.1;  // share of the allowed depth
+constexpr int kSteps = 64;            // steps of a turn, to find its highest place
 
-/// What the robot stands on, as seen from the body that is looked at.
+/// Describes a support of the robot, as seen from the body in question.
 struct Support {
-  std::size_t body = 0;               ///< that touches the floor
-  Eigen::Vector3d point;              ///< m, root axes
-  double sink = 0;                    ///< m, by which the joints below let the body down
-  std::vector<std::size_t> way = {};  ///< these joints, by the bodies that they move
+  std::size_t body = 0;                  ///< body that touches the floor
+  Eigen::Vector3d point;                 ///< m, root axes
+  double sink = 0;                       ///< m by which the joints below let the body down
+  std::vector<std::size_t> joints = {};  ///< these joints, by the bodies that they move
 };
 
 Eigen::Vector3d axis_of(const RigidBody& body) {
   return body.in_root.linear() * body.joint.axis;
 }
 
-/// m, by which a joint can lift the lowest of the points above its place at zero.
+/// Returns the height by which a joint can lift the lowest of the points above its place at zero, m.
 double lift(const RigidBody& body, const std::vector<Eigen::Vector3d>& points) {
   const BodyJoint& joint = body.joint;
   const Eigen::Vector3d axis = axis_of(body), at = body.in_root.translation();
@@ -78,14 +78,14 @@ class Load {
     }
   }
 
-  /// Those of the root that give way.
+  /// Returns the supports of the root that give way.
   std::vector<Support> sinking() const {
     std::vector<Support> sinking;
     std::ranges::copy_if(supports_[0], std::back_inserter(sinking), [&](const Support& each) { return sinks(each); });
     return sinking;
   }
 
-  /// Seen from the centre of gravity's foot, the others leave no half-plane empty.
+  /// Returns true if the other supports leave no half-plane empty, as seen from the centre of gravity's foot.
   bool stands_without_them() const {
     std::vector<double> directions;
     for (const Support& support : supports_[0]) {
@@ -102,10 +102,10 @@ class Load {
 
   double allowed() const { return kShort * radius_; }
 
-  /// Joints on the way of a support that let it down by a part that matters.
+  /// Returns the joints of these supports that let the body down by a relevant part.
   std::vector<std::string> names(const std::vector<Support>& sinking) const {
     std::set<std::size_t> found;
-    for (const Support& support : sinking) found.insert(support.way.begin(), support.way.end());
+    for (const Support& support : sinking) found.insert(support.joints.begin(), support.joints.end());
     std::vector<std::string> names;
     for (const std::size_t i : found) names.push_back(bodies_[i].joint.name);
     return names;
@@ -127,16 +127,16 @@ class Load {
     if (body.joint.type == JointType::kPrismatic) return pass_slide(index);
     if (is_swivel(body)) return;
     const Eigen::Vector3d axis = axis_of(body), at = body.in_root.translation();
-    double least = std::numeric_limits<double>::infinity(), most = -least, reach = 0;
+    double least = std::numeric_limits<double>::infinity(), largest = -least, reach = 0;
     for (const Support& support : supports) {
       const Eigen::Vector3d arm = support.point - at;
       const double lever = arm.cross(Eigen::Vector3d::UnitZ()).dot(axis);
       least = std::min(least, lever);
-      most = std::max(most, lever);
+      largest = std::max(largest, lever);
       reach = std::max(reach, arm.cross(axis).norm());
     }
     if (is_held(body, reach)) return;
-    const bool balanced = least < -kAside && most > kAside;
+    const bool balanced = least < -kAside && largest > kAside;
     for (Support& support : supports) {
       if (balanced) {
         support.point = at + axis * axis.dot(support.point - at);
@@ -153,18 +153,18 @@ class Load {
     for (Support& support : supports_[index]) give_way(support, index);
   }
 
-  /// A body that itself stands on the floor comes down on what is its lowest part then: one that is round stays up.
+  /// A body that stands on the floor itself comes down on its lowest part, so that a round one stays up.
   void give_way(Support& support, std::size_t index) const {
     const RigidBody& body = bodies_[index];
     const double distance =
         lift(body, support.body == index ? ground_points(robot_, body) : std::vector<Eigen::Vector3d>{support.point});
     support.sink += distance;
-    if (distance > kWorthNaming * allowed()) support.way.push_back(index);
+    if (distance > kWorthNaming * allowed()) support.joints.push_back(index);
   }
 
   const RobotModel& robot_;
   const std::vector<RigidBody>& bodies_;
-  std::vector<std::vector<Support>> supports_;  // of each body
+  std::vector<std::vector<Support>> supports_;  // supports of each body
   double radius_;
 };
 

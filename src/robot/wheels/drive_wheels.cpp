@@ -19,7 +19,7 @@
 namespace robot_control {
 namespace {
 
-constexpr int kBisections = 60;  // to the last bit
+constexpr int kBisections = 60;  // down to the last bit
 
 double lowest_point(const WheelModel& wheel) {
   return wheel.centre_base[2] - wheel.radius;
@@ -51,7 +51,8 @@ class Search {
     drop_those_on_the_middle_line();
   }
 
-  /// What has the size of the drive wheels and does not reach as low is not driven, which hardly is meant.
+  /// Notes wheels with the size of the drive wheels that do not reach the floor: they are not driven, probably by
+  /// mistake.
   void note_hanging(const std::vector<RollingBody>& wheels, std::vector<RobotNote>& notes) const {
     const WheelModel& wheel = wheels.front().wheel;
     for (const RollingBody& hanging : hanging_) {
@@ -96,7 +97,7 @@ class Search {
   }
 
  private:
-  /// Rollers are named first: who reads of pairs that do not match would look for another fault.
+  /// Rollers are named first, because a message about pairs would lead to another fault.
   [[noreturn]] void refuse_unclear(const std::string& text) const {
     if (!roller_wheel_) refuse(robot_.source, "<robot>", text, remedy());
     const auto& [index, rollers] = *roller_wheel_;
@@ -110,7 +111,7 @@ class Search {
     return names;
   }
 
-  /// A wheel that follows another one drives as that does.
+  /// Returns true if the body follows another wheel, which makes it a drive wheel, too.
   bool follows_a_wheel(const RigidBody& body) const {
     const RigidBody* leader = robot_.moved_by(body.joint.mimicked);
     if (leader == nullptr || swivel_of(robot_, static_cast<std::size_t>(leader - robot_.bodies.data())) != nullptr) {
@@ -170,7 +171,7 @@ class Search {
     });
   }
 
-  /// Smaller wheels whose hubs are level with those of the drive wheels.
+  /// Returns the objection to smaller wheels whose hubs are level with those of the drive wheels.
   std::string hanging_objection(const std::vector<RollingBody>& wheels) const {
     for (const RollingBody& hanging : hanging_) {
       for (const RollingBody& wheel : wheels) {
@@ -204,13 +205,13 @@ class Search {
 
   const RigidBodies& robot_;
   std::vector<RollingBody> candidates_;
-  std::vector<RollingBody> hanging_;  // above the floor
-  std::size_t rolling_ = 0;           // candidates at any height
+  std::vector<RollingBody> hanging_;  // candidates above the floor
+  std::size_t rolling_ = 0;           // number of candidates at any height
   std::string rejected_;
-  std::optional<std::pair<std::size_t, std::size_t>> roller_wheel_;  // the first one's body, and its rollers
+  std::optional<std::pair<std::size_t, std::size_t>> roller_wheel_;  // body of the first one, and number of its rollers
 };
 
-/// A wheel's angle counts from the body that it hangs on: from another wheel it would be the sum of both.
+/// A wheel's angle is relative to the body that carries it. On another wheel it would be the sum of both angles.
 void refuse_wheels_on_wheels(const RigidBodies& robot, const std::vector<RollingBody>& wheels) {
   for (const RollingBody& wheel : wheels) {
     for (std::size_t i = robot.bodies[wheel.body].parent; i != 0; i = robot.bodies[i].parent) {
@@ -240,7 +241,7 @@ void note_out_of_round(const RigidBodies& robot, const RollingBody& wheel, std::
                        " m is taken"});
 }
 
-/// Whether it rolls, sets `omni`.
+/// Returns whether the wheel rolls, and sets `omni`.
 bool judge_swivel(const RigidBodies& robot, std::size_t body, RollingMeasure& measure, std::vector<RobotNote>& notes) {
   const RigidBody* swivel = swivel_of(robot, body);
   measure.wheel.omni = swivel == nullptr;
@@ -320,20 +321,20 @@ double scrub_multiplier(const std::vector<RollingBody>& wheels) {
   const double base = wheel_base_of(wheels);
   double mean = 0;
   for (const RollingBody& wheel : wheels) mean += wheel.wheel.centre_base[0] / static_cast<double>(wheels.size());
-  double least = 0, most = 0;
+  double least = 0, largest = 0;
   for (const RollingBody& wheel : wheels) {
-    most = std::max(most, 2 * std::pow(wheel.wheel.centre_base[0] - mean, 2) / base);
+    largest = std::max(largest, 2 * std::pow(wheel.wheel.centre_base[0] - mean, 2) / base);
   }
   for (int i = 0; i < kBisections; ++i) {
-    const double slip = (least + most) / 2;
+    const double slip = (least + largest) / 2;
     double moment = 0;
     for (const RollingBody& wheel : wheels) {
       const double x = wheel.wheel.centre_base[0] - mean;
       moment += (base * slip / 2 - x * x) / std::hypot(slip, x);
     }
-    (moment < 0 ? least : most) = slip;
+    (moment < 0 ? least : largest) = slip;
   }
-  return 1 + (least + most) / base;
+  return 1 + (least + largest) / base;
 }
 
 }  // namespace robot_control

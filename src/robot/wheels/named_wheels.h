@@ -1,5 +1,5 @@
 #pragma once
-/// The drive wheels that the `robot:` block names.
+/// Reads the drive wheels that the `robot:` block names.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace robot_control {
 
-/// In the order of DriveTrain. Throws RobotError (drive_wheels.h).
+/// Returns them in the order of DriveTrain. Throws RobotError (drive_wheels.h).
 std::vector<RollingBody> named_wheels(const RigidBodies& robot, const RobotParameters& parameters);
 
 }  // namespace robot_control

@@ -15,7 +15,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kCrosswise = 5 * M_PI / 180;
-constexpr double kAlike = 0.1;  // of the radius
+constexpr double kAlike = 0.1;  // share of the radius
 
 const char* const kRemedy =
     "Only differential and skid-steer drives are supported; to drive it as one all the same, name the wheels by "
@@ -89,7 +89,7 @@ class Judge {
                         [this](const RollingBody& wheel) { return robot_.bodies[wheel.body].joint.driven; });
   }
 
-  /// A passive omni wheel is a caster. It stands as high above the floor as its radius.
+  /// A passive omni wheel is a caster. Its height above the floor is its radius.
   void judge_rollers(const RigidBody& body, std::size_t rollers) {
     const double radius = train_.wheels.front().wheel.radius;
     const double height = body.in_root.translation().z() - floor_height(train_);
@@ -101,9 +101,9 @@ class Judge {
     }
   }
 
-  /// What the wheel's own names say, and not that of the whole robot.
+  /// Checks the wheel's own names, and not that of the whole robot.
   void judge_names() {
-    if (named_) return;  // note_sideways_names says it
+    if (named_) return;  // note_sideways_names reports it.
     for (const RollingBody& wheel : train_.wheels) {
       const RigidBody& body = robot_.bodies[wheel.body];
       for (const std::string word : {"mecanum", "omni"}) {
@@ -147,8 +147,8 @@ void note_plugins(const RigidBodies& robot, std::vector<RobotNote>& notes) {
   }
 }
 
-/// A caster may be an omni wheel, and a part that rolls nowhere may be called so. Two wheels are no such base, unless
-/// their own names say it.
+/// A caster may be an omni wheel, and a part that does not roll may be called so. Two wheels are no omni drive, unless
+/// their own names say so.
 bool is_of_the_drive(const RigidBodies& robot, const DriveTrain& train, const SidewaysName& name) {
   const std::size_t body = name.link.empty() ? 0 : robot.links.at(name.link).body;
   if (std::ranges::find(train.wheels, body, &RollingBody::body) != train.wheels.end()) return true;

@@ -1,18 +1,18 @@
 #pragma once
-/// Machines that look like a differential drive and are none.
+/// Refuses machines that look like a differential drive and are none.
 ///
-/// Of all that rolls on the floor beside the drive wheels:
-///   steered     (swivel.h) refused, unless the user named the drive wheels: then noted, it slides without friction
-///   crosswise   a wheel, no ball, that turns about a level axle more than 5° off the lateral one and that drives:
-///               the file says so, or names no drive at all and the wheel has the drive wheels' radius within 10 %;
-///               likewise
-///   driven      that the file drives, and that is none of the drive wheels: on the middle line refused, as a tricycle
-///               has it, where the user named no wheels; else noted
-///   rollers     (rollers.h) refused where the file drives the wheel, or names no drive at all and the wheel stands as
-///               high above the floor as the drive wheels do, within 10 % of their radius; likewise
-/// A drive wheel whose joint or link is called mecanum or omni, where the robot and its root are not, is refused where
-/// the user named no wheels. What moves the robot sideways or steers it, by the names of its plugins, is noted; so are
-/// other names of the drive that say mecanum, omni or holonomic (sideways_names.h), all in one note.
+/// The checks apply to all wheels on the floor beside the drive wheels. A machine that is refused is noted instead if
+/// the user named the drive wheels.
+///   steered     (swivel.h) refused; if noted, it slides without friction
+///   crosswise   refused: a wheel, no ball, with a level axle more than 5° off the lateral one that drives: the file
+///               says so, or drives no wheel at all and this one has the drive wheels' radius within 10 %
+///   driven      a wheel that the file drives and that is no drive wheel: refused on the middle line, as in a tricycle;
+///               else noted
+///   rollers     (rollers.h) refused if the file drives the wheel, or drives none at all and the height of this wheel
+///               is that of the drive wheels within 10 % of their radius
+/// A drive wheel whose joint or link is called mecanum or omni is refused, unless the user named the wheels. It is
+/// accepted if the robot or its root is called so, too. Plugins whose names mean sideways motion or steering are noted.
+/// One note lists other names of the drive that contain mecanum, omni or holonomic (sideways_names.h).
 
 #include <vector>
 
@@ -20,7 +20,7 @@
 
 namespace robot_control {
 
-/// Throws RobotError as above. `named`: the user named the drive wheels.
+/// Throws RobotError as above. `named` states that the user named the drive wheels.
 void judge_other_drives(const RigidBodies& robot, const DriveTrain& train, bool named, std::vector<RobotNote>& notes);
 
 }  // namespace robot_control

@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::size_t kNone = 0;  // the root is no rocker
+constexpr std::size_t kNone = 0;  // The root is no rocker.
 
 Eigen::Vector3d axis_in_root(const RigidBody& body) {
   return body.in_root.linear() * body.joint.axis;
@@ -19,7 +19,7 @@ bool pitches(const RigidBody& body) {
   return turns_upright(body) && std::abs(axis_in_root(body).y()) > std::cos(kAxleTolerance);
 }
 
-/// The one body directly below which all drive wheels of a side hang, if it pitches; else kNone.
+/// Returns the one body that directly carries all drive wheels of a side, if it pitches; else kNone.
 std::size_t rocker_of(const RigidBodies& robot, const DriveTrain& train, Side side) {
   std::size_t rocker = kNone;
   std::size_t wheels = 0;

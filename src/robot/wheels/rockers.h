@@ -1,11 +1,11 @@
 #pragma once
-/// Rockers: arms that carry the wheels of one side each and pitch about a lateral axis. Such machines have a
-/// differential between the two, a bar or a gear that turns one down when the other goes up, which keeps the chassis
-/// at the mean of both. A URDF often leaves it out, and its chassis would tip until it meets the joints' stops.
+/// Finds rockers: arms that each carry the wheels of one side and pitch about a lateral axis. Such machines have a
+/// differential, a bar or a gear that turns one rocker down when the other goes up. It keeps the chassis at the mean of
+/// both. A URDF often leaves it out, and its chassis would tip until it meets the joints' stops.
 ///
-/// Assumed where exactly two such joints hang on one body, each above two or more drive wheels, one above all the left
-/// ones and one above all the right ones, and neither has a <mimic> of its own: the right one follows the left one the
-/// other way round in base axes.
+/// A differential is assumed if exactly two such joints hang on one body and have no <mimic>. One must be above all
+/// left and one above all right drive wheels, at least two each. The right joint follows the left one with the opposite
+/// sign in base axes.
 
 #include <vector>
 

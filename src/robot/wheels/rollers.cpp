@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAcross = 0.985;  // cos 10°
 constexpr double kAlongRim = 0.5;  // cos 60°
-constexpr double kBeside = 0.5;    // of the reach
+constexpr double kBeside = 0.5;    // share of the reach
 constexpr double kToTheRim = 0.9;
 
 double distance(const Eigen::Vector3d& point, const Eigen::Vector3d& axle) {
@@ -58,7 +58,7 @@ std::size_t rollers_of(const RigidBodies& robot, std::size_t index) {
     const Eigen::Vector3d axis = in_body.linear() * child.joint.axis;
     rollers += std::abs(axis.dot(axle)) < kAcross && distance(in_body.translation(), axle) > kBeside * reach;
   }
-  return rollers < kLeastRollers ? 0 : rollers;
+  return rollers < kMinRollers ? 0 : rollers;
 }
 
 std::string rollers_objection(std::size_t rollers) {

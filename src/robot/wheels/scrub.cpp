@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSlidingSlip = 0.05;  // κ
 constexpr double kBlend = 0.005;       // m/s, ε
-constexpr double kRelaxation = 0.1;    // of a radius
+constexpr double kRelaxation = 0.1;    // share of a radius
 
 }  // namespace
 
@@ -31,7 +31,7 @@ Scrub::Scrub(const RobotModel& robot) noexcept
                   .side = side,
                   .turn = side * wheel.sign,
                   .rim = 2 * wheel.sign * wheel.radius / count,
-                  .way = kSlidingSlip * kRelaxation * wheel.radius};
+                  .distance = kSlidingSlip * kRelaxation * wheel.radius};
     if (!(square > 0) || !(along > 0)) continue;
     const double load = robot.mass * kGravity / count * std::max(0.0, 1 + ahead * x / square);
     wheels_[i].effort = wheel.radius * load * along / wheels_[i].lever;
@@ -51,17 +51,17 @@ std::array<double, kMaxWheels> Scrub::efforts(double linear, double angular) con
 }
 
 double Scrub::strain(std::array<double, kMaxWheels>& efforts, double linear, double angular, double dt) const noexcept {
-  double way = 0;
+  double slid = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Wheel& wheel = wheels_[i];
     if (wheel.effort == 0) continue;
     const double slide = dt * angular * wheel.lever;
     const double rolling = dt * kSlidingSlip * (linear + wheel.side * half_base_ * angular);
     const double relaxed = std::sqrt(slide * slide + rolling * rolling);
-    efforts[i] = (wheel.way * efforts[i] + wheel.turn * wheel.effort * slide) / (wheel.way + relaxed);
-    way += relaxed;
+    efforts[i] = (wheel.distance * efforts[i] + wheel.turn * wheel.effort * slide) / (wheel.distance + relaxed);
+    slid += relaxed;
   }
-  return way / static_cast<double>(count_);
+  return slid / static_cast<double>(count_);
 }
 
 std::array<double, kMaxWheels> Scrub::efforts(const std::array<double, kMaxWheels>& speeds) const noexcept {

@@ -26,7 +26,7 @@ bool trails(const RigidBody& swivel, const RollingMeasure& wheel) {
   const Eigen::Vector3d rolling = wheel.axle_in_root.cross(axis).normalized();
   const Eigen::Vector3d centre(wheel.wheel.centre_base[0], wheel.wheel.centre_base[1], wheel.wheel.centre_base[2]);
   const double trail = std::abs((centre - swivel.in_root.translation()).dot(rolling));
-  return trail >= kLeastTrail * wheel.wheel.radius;
+  return trail >= kMinTrail * wheel.wheel.radius;
 }
 
 bool is_steered(const RigidBody& swivel, const RigidBody& body, const RollingMeasure& wheel) {

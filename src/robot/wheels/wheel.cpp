@@ -22,9 +22,9 @@ double angle_between_lines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 struct Profile {
   std::vector<double> heights;  ///< m, support in each direction across the axle
-  double reach = 0;             ///< m, of the farthest point from the axle
-  double radius = 0;            ///< m, as wheel.h says
-  double first = 0, last = 0;   ///< m along the axle, of what touches the ground
+  double reach = 0;             ///< m, farthest point from the axle
+  double radius = 0;            ///< m (wheel.h)
+  double first = 0, last = 0;   ///< m along the axle, part that touches the ground
 };
 
 bool around(const Shape& shape, const Eigen::Vector3d& axle) {
@@ -49,7 +49,7 @@ void measure_rim(const Shape& shape, const Eigen::Vector3d& axle, Profile& profi
   }
 }
 
-/// m, from the axle: of the corner of a mesh that reaches farthest along `u`.
+/// Returns the distance from the axle, in m, of the corner of a mesh that reaches farthest along `u`.
 double corner_distance(const Shape& mesh, const Eigen::Vector3d& u, const Eigen::Vector3d& axle) {
   const Eigen::Vector3d local = mesh.in_body.linear().transpose() * u;
   const auto farthest =
@@ -101,19 +101,19 @@ Profile profile_of(const Shape& shape, const Eigen::Vector3d& axle) {
 
 bool is_round(const std::vector<const Profile*>& profiles) {
   double least = std::numeric_limits<double>::infinity();
-  double most = 0;
+  double largest = 0;
   for (std::size_t i = 0; i < kDirections; ++i) {
     double height = -std::numeric_limits<double>::infinity();
     for (const Profile* profile : profiles) height = std::max(height, profile->heights[i]);
     least = std::min(least, height);
-    most = std::max(most, height);
+    largest = std::max(largest, height);
   }
-  if (!(most > 0)) return false;
-  const double few = std::min(kOutOfRound, kMostOutOfRound * most);
-  return most - least <= std::max((1 - kRoundness) * most, few);
+  if (!(largest > 0)) return false;
+  const double few = std::min(kOutOfRound, kMaxOutOfRound * largest);
+  return largest - least <= std::max((1 - kRoundness) * largest, few);
 }
 
-/// Those that touch the ground; empty when they are not round.
+/// Returns the profiles that touch the ground; empty if they are not round.
 std::vector<const Profile*> tyre_of(const std::vector<Profile>& profiles, double reach) {
   std::vector<const Profile*> tyre;
   const Profile* round = nullptr;

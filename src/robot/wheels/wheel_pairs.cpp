@@ -8,14 +8,14 @@
 namespace robot_control {
 namespace {
 
-constexpr double kLeastTolerance = 0.002;  // m: what drawings of one robot differ by
+constexpr double kMinTolerance = 0.002;  // m, difference between drawings of one robot
 
 std::string pair_objection(const RigidBodies& robot, const RollingBody& left, const RollingBody& right, double middle) {
   const auto& a = left.wheel;
   const auto& b = right.wheel;
   const std::string names = robot.bodies[left.body].joint.name + " and " + robot.bodies[right.body].joint.name;
   const double base = a.centre_base[1] - b.centre_base[1];
-  const double tolerance = std::max(kLeastTolerance, kPairTolerance * base);
+  const double tolerance = std::max(kMinTolerance, kPairTolerance * base);
   if (std::abs(a.centre_base[0] - b.centre_base[0]) > tolerance) {
     return names + " do not stand on one axle: x is " + number(a.centre_base[0]) + " and " + number(b.centre_base[0]) +
            " m";
@@ -29,11 +29,11 @@ std::string pair_objection(const RigidBodies& robot, const RollingBody& left, co
 
 std::string radius_objection(const RigidBodies& robot, const std::vector<RollingBody>& wheels) {
   const auto by_radius = [](const RollingBody& a, const RollingBody& b) { return a.wheel.radius < b.wheel.radius; };
-  const auto [least, most] = std::minmax_element(wheels.begin(), wheels.end(), by_radius);
-  const double unsure = std::max(least->out_of_round, most->out_of_round);
-  const double tolerance = std::max(kPairTolerance * most->wheel.radius, unsure);
-  if (most->wheel.radius - least->wheel.radius <= tolerance) return "";
-  return "their radii differ by more than 1 %: " + described(robot, *least) + " and " + described(robot, *most);
+  const auto [least, largest] = std::minmax_element(wheels.begin(), wheels.end(), by_radius);
+  const double unsure = std::max(least->out_of_round, largest->out_of_round);
+  const double tolerance = std::max(kPairTolerance * largest->wheel.radius, unsure);
+  if (largest->wheel.radius - least->wheel.radius <= tolerance) return "";
+  return "their radii differ by more than 1 %: " + described(robot, *least) + " and " + described(robot, *largest);
 }
 
 }  // namespace
