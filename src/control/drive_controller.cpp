@@ -246,7 +246,7 @@ void DriveController::search_ground_friction(const PlanarTwist& twist) noexcept 
 }
 
 void DriveController::learn_ground_friction() noexcept {
-  const double more = ground_friction_.take([&](std::size_t wheel) { return loops_[wheel].integral(); });
+  const double more = ground_friction_.learn([&](std::size_t wheel) { return loops_[wheel].integral(); });
   if (more == 0) return;
   for (std::size_t i = 0; i < loops_.size(); ++i) loops_[i].move_to_feed_forward(more * ground_friction_.strain(i));
 }

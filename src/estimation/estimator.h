@@ -113,12 +113,12 @@ class Estimator : private EstimatorState {
   std::array<double, 2> tyres_creep(double distance) const noexcept;
   void watch_slip(double dt, double turned) noexcept;
   void end_slide() noexcept;
-  void judge_slip() noexcept;
+  void evaluate_slip() noexcept;
   void correct(const WheelSlide::Correction& correction) noexcept;
   WheelSlide::Input slide_input() const noexcept;
   void compare_turns(double dt) noexcept;
   void begin_comparison() noexcept;
-  void note(SensorIndex sensor, double nis, double dt) noexcept;
+  void smooth_nis(SensorIndex sensor, double nis, double dt) noexcept;
 
   // estimator_output.cpp
   void fill(StateFrame& out) const noexcept;

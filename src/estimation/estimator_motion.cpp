@@ -100,7 +100,7 @@ void Estimator::watch_slip(double dt, double turned) noexcept {
                            .distance = (std::abs(left) + std::abs(right)) / 2,
                            .both_sides_read = wheels_.both_received(),
                            .yaw_rate = yaw_rate_});
-  if (point && !slip_detector_.difference().empty()) judge_slip();
+  if (point && !slip_detector_.difference().empty()) evaluate_slip();
 }
 
 void Estimator::end_slide() noexcept {
@@ -108,18 +108,18 @@ void Estimator::end_slide() noexcept {
   slip_detector_.restart();
 }
 
-void Estimator::judge_slip() noexcept {
+void Estimator::evaluate_slip() noexcept {
   const bool learns = !slide_.active();
   if (learns) slip_detector_.set_clock_offset(core_.offset());
-  slip_detector_.judge({.acceleration_variance = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
-                        .wheel_base = core_.deviation(PlanarCore::kBase),
-                        .clock_offset = core_.deviation(PlanarCore::kOffset),
-                        .gyro_bias = std::sqrt(core_.bias_variance()),
-                        .speed_step = wheels_.quantum().step()},
-                       learns);
-  note(kAccelerometer, slip_detector_.nis(SlipResidual::kAlong), Tuning::kPointInterval);
-  note(kLateralContact, slip_detector_.nis(SlipResidual::kAcross), Tuning::kPointInterval);
-  note(kGyro, slip_detector_.nis(SlipResidual::kTurn), Tuning::kPointInterval);
+  slip_detector_.evaluate({.acceleration_variance = {tilt_.acceleration_variance(0), tilt_.acceleration_variance(1)},
+                           .wheel_base = core_.deviation(PlanarCore::kBase),
+                           .clock_offset = core_.deviation(PlanarCore::kOffset),
+                           .gyro_bias = std::sqrt(core_.bias_variance()),
+                           .speed_step = wheels_.quantum().step()},
+                          learns);
+  smooth_nis(kAccelerometer, slip_detector_.nis(SlipResidual::kAlong), Tuning::kPointInterval);
+  smooth_nis(kLateralContact, slip_detector_.nis(SlipResidual::kAcross), Tuning::kPointInterval);
+  smooth_nis(kGyro, slip_detector_.nis(SlipResidual::kTurn), Tuning::kPointInterval);
   if (slide_.active()) {
     correct(slide_.step(slip_detector_.difference(), slide_input()));
     if (!slide_.active()) slip_detector_.restart_on_line(slide_.rolling_slope(slip_detector_.difference()));
@@ -164,7 +164,7 @@ void Estimator::compare_turns(double dt) noexcept {
     const auto [nis, used, apart, usual] = core_.end_block(comparison_.left, comparison_.right, rate_.rate().z(),
                                                            comparison_.time, wheels_.stamp_variance());
     for (const SensorIndex sensor : {kLeftEncoder, kRightEncoder}) {
-      note(sensor, nis, comparison_.time);
+      smooth_nis(sensor, nis, comparison_.time);
       if (!used) ++rejected_[sensor];
     }
     const double explained = comparison_.stuck ? 0 : std::copysign(usual, apart);
@@ -180,7 +180,7 @@ void Estimator::begin_comparison() noexcept {
   comparison_ = {.open = true};
 }
 
-void Estimator::note(SensorIndex sensor, double nis, double dt) noexcept {
+void Estimator::smooth_nis(SensorIndex sensor, double nis, double dt) noexcept {
   if (!(nis >= 0)) return;  // A sensor of this comparison is lost.
   double& smoothed = nis_[sensor];
   smoothed += dt / (Tuning::kBlock + dt) * (std::min(nis, Tuning::kMaxNis) - smoothed);

@@ -26,7 +26,7 @@ py::list wheel_loops(const Parameters& parameters, const RobotModel& robot) {
         "radius"_a = wheel.radius, "wheels_beside"_a = std::ranges::count(robot.wheels, wheel.side, &WheelModel::side),
         "effort_limit"_a = joint.effort_limit, "velocity_limit"_a = joint.velocity_limit, "damping"_a = joint.damping,
         "friction"_a = joint.friction, "lifted"_a = wheel.inertia, "turning"_a = turning_inertia(measured, wheel),
-        "straight"_a = straight_inertia(measured, wheel), "scrub"_a = scrub.most(i), "kp"_a = gains.kp,
+        "straight"_a = straight_inertia(measured, wheel), "scrub"_a = scrub.max_effort(i), "kp"_a = gains.kp,
         "ki"_a = gains.ki, "kd"_a = gains.kd, "model_inertia"_a = gains.model_inertia,
         "bandwidth"_a = tracking_bandwidth(parameters.controller, period), "period"_a = period));
   }

@@ -23,7 +23,7 @@ class GroundFrictionTest : public testing::Test {
 
   /// One cycle of learning, as the controller does it.
   double learn() {
-    const double more = law_.take([&](std::size_t wheel) { return integral_[wheel]; });
+    const double more = law_.learn([&](std::size_t wheel) { return integral_[wheel]; });
     for (std::size_t i = 0; i < integral_.size(); ++i) integral_[i] -= more * law_.strain(i);
     return more;
   }

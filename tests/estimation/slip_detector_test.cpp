@@ -270,7 +270,7 @@ TEST(SlipDetector, GarbageLeavesItFinite) {
                                             .distance = std::abs(pick()),
                                             .both_sides_read = random() % 2 == 0,
                                             .yaw_rate = pick()};
-      if (detector.step(sample)) detector.judge({.acceleration_variance = {1e-3, 1e-3}}, random() % 2 == 0);
+      if (detector.step(sample)) detector.evaluate({.acceleration_variance = {1e-3, 1e-3}}, random() % 2 == 0);
       for (const auto channel : SlipResidual::kEach) {
         ASSERT_TRUE(std::isfinite(detector.nis(channel))) << seed << ' ' << i;
         ASSERT_TRUE(std::isfinite(detector.slope_deviation(channel))) << seed << ' ' << i;

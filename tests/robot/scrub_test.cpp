@@ -39,7 +39,7 @@ TEST(Scrub, OnTheSpotIsCoulombFrictionOfTheTreads) {
       EXPECT_EQ(scrub.efforts(0, -angular)[i], -efforts[i]);
     }
   }
-  EXPECT_NEAR(scrub.most(0), kTorque, 1e-3 * kTorque);
+  EXPECT_NEAR(scrub.max_effort(0), kTorque, 1e-3 * kTorque);
 }
 
 TEST(Scrub, VanishesWithTheTurnWithoutAJump) {
@@ -115,8 +115,8 @@ TEST(Scrub, FollowsTheLoadOfEachAxle) {
   RobotModel robot = skid_steer();
   robot.centre_of_gravity_base[0] = 0.1;  // three quarters on the front axle
   const Scrub scrub(robot);
-  EXPECT_NEAR(scrub.most(0), 1.5 * kTorque, 2e-3 * kTorque);
-  EXPECT_NEAR(scrub.most(1), 0.5 * kTorque, 2e-3 * kTorque);
+  EXPECT_NEAR(scrub.max_effort(0), 1.5 * kTorque, 2e-3 * kTorque);
+  EXPECT_NEAR(scrub.max_effort(1), 0.5 * kTorque, 2e-3 * kTorque);
 }
 
 TEST(Scrub, IsNoneOfOneWheelASide) {
@@ -125,7 +125,7 @@ TEST(Scrub, IsNoneOfOneWheelASide) {
   robot.wheel_base_multiplier = 1.05;  // by calibration: broad tyres
   const Scrub scrub(robot);
   EXPECT_EQ(scrub.efforts(0.1, 1)[0], 0);
-  EXPECT_EQ(scrub.most(1), 0);
+  EXPECT_EQ(scrub.max_effort(1), 0);
 }
 
 }  // namespace

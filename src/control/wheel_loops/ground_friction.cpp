@@ -7,7 +7,7 @@ namespace robot_control {
 
 GroundFriction::GroundFriction(const RobotModel& robot) noexcept
     : scrub_(robot), wheels_(std::min(robot.wheels.size(), kMaxWheels)) {
-  for (std::size_t i = 0; i < wheels_; ++i) max_square_ += scrub_.most(i) * scrub_.most(i);
+  for (std::size_t i = 0; i < wheels_; ++i) max_square_ += scrub_.max_effort(i) * scrub_.max_effort(i);
 }
 
 void GroundFriction::search(const Turn& turn, double dt) noexcept {

@@ -84,15 +84,15 @@ class GroundFriction {
   template <class Effort>
   void rest(Effort effort) noexcept {
     double held = 0;
-    for (std::size_t i = 0; i < wheels_; ++i) held += scrub_.most_to_left(i) * effort(i);
+    for (std::size_t i = 0; i < wheels_; ++i) held += scrub_.max_effort_to_left(i) * effort(i);
     const double limit = std::max(state_.friction, kMinFriction) * max_square_;
     for (std::size_t i = 0; i < wheels_; ++i)
-      state_.strain[i] = std::clamp(held / limit, -1.0, 1.0) * scrub_.most_to_left(i);
+      state_.strain[i] = std::clamp(held / limit, -1.0, 1.0) * scrub_.max_effort_to_left(i);
   }
 
   /// Returns Δ; the caller moves Δ·z from the integrators to the feed-forward. `integral(i)` is Iᵢ, N·m.
   template <class Integral>
-  double take(Integral integral) noexcept {
+  double learn(Integral integral) noexcept {
     const double square = strain_square();
     if (turns(square) <= 0) return 0;
     return raise(std::min(1.0, state_.slid / kLearningWay) * turns(square) * sum_along(integral) / square);

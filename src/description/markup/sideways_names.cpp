@@ -57,7 +57,7 @@ class Search {
     }
   }
 
-  std::vector<SidewaysName> take() { return std::move(names_); }
+  std::vector<SidewaysName> names() { return std::move(names_); }
 
  private:
   void add(const std::string& element, const std::string& name, const std::string& link) {
@@ -97,7 +97,7 @@ class Search {
 }  // namespace
 
 std::vector<SidewaysName> sideways_names(const TiXmlElement& robot) {
-  return Search(robot).take();
+  return Search(robot).names();
 }
 
 }  // namespace robot_control

@@ -5,8 +5,8 @@
 
 namespace robot_control {
 
-void ImuSamples::take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
-                      bool trapezoid) noexcept {
+void ImuSamples::accept(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
+                        bool trapezoid) noexcept {
   channel.age += dt;
   channel.fresh = sample.has_value();
   channel.catches_up = false;
@@ -45,10 +45,10 @@ void ImuSamples::step(const SensorFrame& sensors, const Eigen::Matrix3d& base_fr
     return Eigen::Vector3d(base_from_imu * vector);
   };
   const Eigen::Vector3d before = gyro_.last;
-  take(gyro_, sample(kValidGyro, sensors.imu.angular_velocity, Tuning::kGyroRange), dt, true);
+  accept(gyro_, sample(kValidGyro, sensors.imu.angular_velocity, Tuning::kGyroRange), dt, true);
   gyro_unchanged_ = gyro_.last == before ? gyro_unchanged_ + dt : 0;
-  take(accelerometer_, sample(kValidAccelerometer, sensors.imu.linear_acceleration, Tuning::kAccelerometerRange), dt,
-       false);
+  accept(accelerometer_, sample(kValidAccelerometer, sensors.imu.linear_acceleration, Tuning::kAccelerometerRange), dt,
+         false);
 }
 
 }  // namespace robot_control

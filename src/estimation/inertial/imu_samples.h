@@ -50,7 +50,8 @@ class ImuSamples {
     double hold = Tuning::kMinHoldTime;
   };
 
-  static void take(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt, bool trapezoid) noexcept;
+  static void accept(Channel& channel, const std::optional<Eigen::Vector3d>& sample, double dt,
+                     bool trapezoid) noexcept;
 
   Channel gyro_;
   double gyro_unchanged_ = 0;  ///< s

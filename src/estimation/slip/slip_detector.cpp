@@ -28,22 +28,22 @@ void SlipDetector::restart_at_rest(double yaw, const Vector3& up, const Planar& 
   forget_judgement();
 }
 
-void SlipDetector::judge(const SlipUncertainty& uncertainty, bool learns) noexcept {
+void SlipDetector::evaluate(const SlipUncertainty& uncertainty, bool learns) noexcept {
   Residuals residuals;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     residuals[i] = slip_residual(difference_, Tuning::kResidualSpans[i]);
   }
   const SlipResidual& tilt = residuals[ResidualLevels::kTiltSpan];
   if (tilt.known) speed_ = tilt.speed();
-  for (const Channel channel : SlipResidual::kEach) judge_channel(channel, residuals, uncertainty);
+  for (const Channel channel : SlipResidual::kEach) evaluate_channel(channel, residuals, uncertainty);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     levels_.learn(difference_.time(), i, residuals[i], uncertainty, !learns);
   }
   compare_gravity(tilt, uncertainty.speed_step, learns);
 }
 
-void SlipDetector::judge_channel(Channel channel, const Residuals& residuals,
-                                 const SlipUncertainty& uncertainty) noexcept {
+void SlipDetector::evaluate_channel(Channel channel, const Residuals& residuals,
+                                    const SlipUncertainty& uncertainty) noexcept {
   std::array<double, ResidualLevels::kSpans> deviation{};
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (residuals[i].known) deviation[i] = levels_.deviation(i, channel, residuals[i], uncertainty);

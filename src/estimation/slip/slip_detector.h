@@ -27,7 +27,7 @@ class SlipDetector {
   /// Returns true if a point was added, which may be judged.
   bool step(const MotionDifference::Sample& sample) noexcept { return difference_.step(sample); }
   /// Judges a point. `learns` states that no slide is active.
-  void judge(const SlipUncertainty& uncertainty, bool learns) noexcept;
+  void evaluate(const SlipUncertainty& uncertainty, bool learns) noexcept;
 
   const MotionDifference& difference() const noexcept { return difference_; }
   const ResidualLevels& levels() const noexcept { return levels_; }
@@ -57,7 +57,7 @@ class SlipDetector {
   using Residuals = std::array<SlipResidual, ResidualLevels::kSpans>;
 
   void forget_judgement() noexcept;
-  void judge_channel(Channel channel, const Residuals& residuals, const SlipUncertainty& uncertainty) noexcept;
+  void evaluate_channel(Channel channel, const Residuals& residuals, const SlipUncertainty& uncertainty) noexcept;
   void compare_gravity(const SlipResidual& residual, double speed_step, bool learns) noexcept;
 
   MotionDifference difference_;

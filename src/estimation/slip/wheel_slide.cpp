@@ -39,7 +39,7 @@ WheelSlide::Correction WheelSlide::step(const MotionDifference& difference, cons
   const Point before = difference.before(now.time - 2 * Tuning::kPointInterval * (1 - 1e-9));
   if (!(now.time > before.time)) return {};
   const double deviation = line_deviation(now.time, input.noise);
-  judge(now.time, excess(before, now), deviation, input);
+  evaluate(now.time, excess(before, now), deviation, input);
   const double dt = now.time - corrected_.time;
   if (!(dt > 0)) return {};
   const double yaw = (now.yaw + corrected_.yaw) / 2;
@@ -88,7 +88,7 @@ Planar WheelSlide::rolling_slope(const MotionDifference& difference) const noexc
 }
 
 /// A side rolls if the slip of the other one explains its excess.
-void WheelSlide::judge(double time, const Excess& excess, double deviation, const Input& input) noexcept {
+void WheelSlide::evaluate(double time, const Excess& excess, double deviation, const Input& input) noexcept {
   const auto significant = [](double sigma) { return std::max(Tuning::kMinSlipSpeed, Tuning::kSignificant * sigma); };
   largest_ = std::max({largest_, std::abs(excess.side(0)), std::abs(excess.side(1))});
   const bool sudden = largest_ > Tuning::kSignificantTurn * line_deviation_;

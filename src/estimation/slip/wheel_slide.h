@@ -82,7 +82,7 @@ class WheelSlide {
   double slipped_speed(const Excess& excess, const Input& input) const noexcept;  ///< m/s, wheels minus ground
   double contradict(double apart, const Excess& excess, double deviation, const Input& input) noexcept;  ///< rad
   double line_deviation(double time, const AccelerationNoise& noise) const noexcept;                     ///< m/s: σ_u
-  void judge(double time, const Excess& excess, double deviation, const Input& input) noexcept;
+  void evaluate(double time, const Excess& excess, double deviation, const Input& input) noexcept;
 
   bool active_ = false;
   Planar line_;                ///< m/s, odom axes, slope of E before the onset

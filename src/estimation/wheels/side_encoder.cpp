@@ -22,7 +22,7 @@ bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time) cons
   return std::abs(sensors.joints[joint].position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
 }
 
-double SideEncoder::Wheel::take(const SensorFrame& sensors) noexcept {
+double SideEncoder::Wheel::accept(const SensorFrame& sensors) noexcept {
   const double position = sensors.joints[joint].position;
   const double travel = metres_per_radian * (position - angle);
   angle = position;
@@ -49,7 +49,7 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
     reading = EncoderReading::kLost;
   }
   double sum = 0;
-  for (Wheel& wheel : wheels_) sum += wheel.take(sensors);
+  for (Wheel& wheel : wheels_) sum += wheel.accept(sensors);
   if (reading == EncoderReading::kTravel) travel_ = sum / static_cast<double>(wheels_.size());
   time_ = waiting_;
   gap_ = std::min(std::max(waiting_, Tuning::kGapFading * gap_), Tuning::kMaxGap);

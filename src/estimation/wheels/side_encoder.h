@@ -54,7 +54,7 @@ class SideEncoder {
     Wheel(const WheelModel& wheel, const RobotModel& robot) noexcept;
     bool measured(const SensorFrame& sensors) const noexcept;
     bool plausible(const SensorFrame& sensors, double time) const noexcept;
-    double take(const SensorFrame& sensors) noexcept;  ///< m, travel
+    double accept(const SensorFrame& sensors) noexcept;  ///< m, travel
   };
 
   FixedVector<Wheel, kMaxWheels> wheels_;

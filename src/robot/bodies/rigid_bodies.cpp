@@ -46,7 +46,8 @@ class Lumper {
     const auto& links = document.model->links_;
     const auto has_collision = [](const auto& link) { return !link.second->collision_array.empty(); };
     collides_ = std::any_of(links.begin(), links.end(), has_collision);
-    if (!collides_) note(RobotNote::Kind::kAssumed, "<robot>", "no <collision> anywhere: the <visual> shapes are used");
+    if (!collides_)
+      add_note(RobotNote::Kind::kAssumed, "<robot>", "no <collision> anywhere: the <visual> shapes are used");
   }
 
   LumpedBodies lump() {
@@ -63,7 +64,7 @@ class Lumper {
   }
 
  private:
-  void note(RobotNote::Kind kind, const std::string& element, const std::string& text) {
+  void add_note(RobotNote::Kind kind, const std::string& element, const std::string& text) {
     result_.notes.push_back({kind, element, text});
   }
 
@@ -104,9 +105,9 @@ class Lumper {
     const double gyration = gyration_radius(link);
     if (gyration > largest_) {
       part.inertia *= std::pow(largest_ / gyration, 2);
-      note(RobotNote::Kind::kRepaired, link_element(link.name),
-           "a radius of gyration of " + number(gyration) + " m, the whole robot measures " + number(largest_) +
-               " m: inertia scaled down to that");
+      add_note(RobotNote::Kind::kRepaired, link_element(link.name),
+               "a radius of gyration of " + number(gyration) + " m, the whole robot measures " + number(largest_) +
+                   " m: inertia scaled down to that");
     }
     const PointInertia both = sum({target.mass, target.centre_of_gravity, target.inertia}, part);
     target.mass = both.mass;
@@ -141,13 +142,13 @@ class Lumper {
         }
       }
     } catch (const RobotError& error) {
-      note(RobotNote::Kind::kIgnored, link_element(body.name),
-           std::string("no <collision>, and its <visual> cannot serve: ") + error.what());
+      add_note(RobotNote::Kind::kIgnored, link_element(body.name),
+               std::string("no <collision>, and its <visual> cannot serve: ") + error.what());
       body.shapes.clear();
     }
     if (body.shapes.empty()) return;
     if (measure_wheel(body).objection.empty()) {
-      note(RobotNote::Kind::kAssumed, link_element(body.name), "no <collision>: the wheel has its <visual> shape");
+      add_note(RobotNote::Kind::kAssumed, link_element(body.name), "no <collision>: the wheel has its <visual> shape");
     } else {
       body.shapes.clear();
     }
@@ -155,8 +156,8 @@ class Lumper {
 
   void note_turned_origins() {
     for (const auto& [element, rpy] : document_.turned_origins) {
-      note(RobotNote::Kind::kSuspicious, element,
-           "<origin rpy=\"" + rpy + "\"> is more than a whole turn: is it in degrees? A URDF's angles are radians");
+      add_note(RobotNote::Kind::kSuspicious, element,
+               "<origin rpy=\"" + rpy + "\"> is more than a whole turn: is it in degrees? A URDF's angles are radians");
     }
     for (const std::string& name : document_.joint_order) {
       if (document_.turned_origins.contains(joint_element(name))) result_.turned_joints.insert(name);
@@ -171,8 +172,8 @@ class Lumper {
       files += (i == 0 ? "" : ", ") + missing_visuals_[i].second;
     }
     if (missing_visuals_.size() > kNamed) files += " and " + std::to_string(missing_visuals_.size() - kNamed) + " more";
-    note(RobotNote::Kind::kSuspicious, link_element(missing_visuals_.front().first),
-         "<visual>: no such file, nothing is drawn there: " + files);
+    add_note(RobotNote::Kind::kSuspicious, link_element(missing_visuals_.front().first),
+             "<visual>: no such file, nothing is drawn there: " + files);
   }
 
   void check_mimics() {
@@ -187,9 +188,9 @@ class Lumper {
       if (joint.mimicked.empty()) continue;
       const RigidBody* leader = result_.moved_by(joint.mimicked);
       if (leader != nullptr && leader->joint.mimicked.empty()) continue;
-      note(RobotNote::Kind::kIgnored, joint_element(joint.name),
-           "<mimic joint=\"" + joint.mimicked +
-               (leader == nullptr ? "\">: no joint of that name moves" : "\">: that joint is a follower itself"));
+      add_note(RobotNote::Kind::kIgnored, joint_element(joint.name),
+               "<mimic joint=\"" + joint.mimicked +
+                   (leader == nullptr ? "\">: no joint of that name moves" : "\">: that joint is a follower itself"));
       joint.mimicked.clear();
     }
   }

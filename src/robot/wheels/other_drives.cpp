@@ -29,7 +29,7 @@ class Judge {
   Judge(const RigidBodies& robot, const DriveTrain& train, bool named, std::vector<RobotNote>& notes)
       : robot_(robot), train_(train), named_(named), notes_(notes) {
     for (std::size_t i = 1; i < robot.bodies.size(); ++i) {
-      if (!is_drive_wheel(i)) judge(i);
+      if (!is_drive_wheel(i)) check(i);
     }
     judge_names();
   }
@@ -47,7 +47,7 @@ class Judge {
     return false;
   }
 
-  void judge(std::size_t index) {
+  void check(std::size_t index) {
     const RigidBody& body = robot_.bodies[index];
     if (rollers_of(robot_, body.parent) > 0) return;
     if (const std::size_t rollers = rollers_of(robot_, index); rollers > 0) return judge_rollers(body, rollers);

@@ -45,10 +45,10 @@ class Scrub {
   double strain(std::array<double, kMaxWheels>& efforts, double linear, double angular, double dt) const noexcept;
 
   /// Returns the largest torque of any turn at friction 1, N·m, without sign.
-  double most(std::size_t wheel) const noexcept { return wheels_[wheel].effort; }
+  double max_effort(std::size_t wheel) const noexcept { return wheels_[wheel].effort; }
 
   /// Returns the largest torque of a turn to the left, in the joint's own sign.
-  double most_to_left(std::size_t wheel) const noexcept { return wheels_[wheel].turn * wheels_[wheel].effort; }
+  double max_effort_to_left(std::size_t wheel) const noexcept { return wheels_[wheel].turn * wheels_[wheel].effort; }
 
  private:
   struct Wheel {

@@ -22,10 +22,10 @@ WheelFollowing::WheelFollowing(const SafetyParameters& parameters, const RobotMo
                        {.watch = ConditionWatch(kCauseWrongDirection, parameters.wrong_direction, period)}),
       planned_(robot),
       scrub_(robot),
-      scrubs_(!robot.wheels.empty() && scrub_.most(0) > 0) {
+      scrubs_(!robot.wheels.empty() && scrub_.max_effort(0) > 0) {
   for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
     const JointModel& joint = robot.joints[robot.wheels[i].joint];
-    const double friction = kFrictions * (joint.friction + scrub_.most(i));
+    const double friction = kFrictions * (joint.friction + scrub_.max_effort(i));
     pushed_[i] = std::max(kPushedPart * joint.effort_limit, std::min(kLargePart * joint.effort_limit, friction));
     friction_[i] = joint.friction;
     if (joint.velocity_limit > 0) fastest_[i] = joint.velocity_limit;
