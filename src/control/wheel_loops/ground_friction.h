@@ -7,12 +7,12 @@
 /// Therefore the part that they hold along z moves to the estimate in every cycle:
 ///
 ///   Δ = w·Σ Iᵢ·zᵢ/Σ zᵢ²     μ̂ = μ̂ + Δ     Iᵢ = Iᵢ − Δ·zᵢ     0 ≤ μ̂ ≤ kMaxGroundFriction
-///   w = min(1, s/kLearningWay)·clamp(2·Σ zᵢ²/Σ z²_most − 1, 0, 1)     s = ρ·dt, by which treads slid (scrub.h)
+///   w = min(1, s/kLearningWay)·clamp(2·Σ zᵢ²/Σ z²_most − 1, 0, 1)     s = ρ·dt
 ///
-/// s = ρ·dt is the distance by which treads slid (scrub.h). The total torque stays. From then on that part of it
-/// follows the treads. Slopes and masses stay with the integrators: they load both sides alike, while scrub loads them
-/// against each other. The weight w excludes two cases. Near straight z is small, and a load on one side would look
-/// like a huge friction. Treads that rest show nothing about the friction.
+/// The distance s is that by which treads slid (scrub.h). The total torque stays. From then on that part of it follows
+/// the treads. Slopes and masses stay with the integrators: they load both sides alike, while scrub loads them against
+/// each other. The weight w excludes two cases. Near straight z is small, and a load on one side would look like a huge
+/// friction. Treads that rest show nothing about the friction.
 ///
 /// A torque that is too much for the floor would throw the robot into its first turn. Therefore μ̂ begins with
 /// kInitialGroundFriction, which most floors exceed. It rises with kSearch, up to kMaxSearched, while the planned

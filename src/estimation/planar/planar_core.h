@@ -17,8 +17,8 @@
 ///   x_ICR    centre of rotation ahead of the middle of the wheels: a turn dψ moves the middle by −x_ICR dψ sideways
 ///   radius   mean radius of the wheels, relative; it scales the path
 ///
-/// An innovation counts with at most kHuber deviations, and beyond kGate deviations it is not used. The variances of ε
-/// and β grow in proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading
+/// An innovation counts with at most kHuber deviations, and beyond kGate deviations it is not used. The values of ε and
+/// β walk in proportion to the slip noise (wheel_noise.h). If wheels and gyro contradict each other, the heading
 /// follows the gyro. Its deviation is the largest angle by which both have turned apart since the last rest.
 ///
 /// Until the bias is known, corrections of pose and b are held back, and P is that of the uncorrected pose. The bias is

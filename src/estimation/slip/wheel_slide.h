@@ -68,8 +68,7 @@ class WheelSlide {
   double speed_deviation() const noexcept { return speed_deviation_; }  ///< m/s, of the path's speed
 
  private:
-  static constexpr double kRolls =
-      2 * Tuning::kResidualSpans[1];  ///< s, in which two residuals show that the wheels roll
+  static constexpr double kRolls = 2 * Tuning::kResidualSpans[1];  ///< s, in which two residuals show rolling
   using Point = MotionDifference::Point;
 
   /// Holds the slopes of E beyond the line and of W, in m/s, base axes.
