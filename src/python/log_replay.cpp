@@ -149,7 +149,6 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     reader.read({.message = [&](const TraceRow& row, const BagMessage& message) {
       replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
     }});
-    replay.finish();
   }
   py::dict result = described(replay.report());
   result["varied"] = columns.arrays();

@@ -30,7 +30,6 @@ void LoopReplay::check() {
 
 py::dict LoopReplay::report() {
   check();
-  replay_.finish();
   return described(replay_.report());
 }
 

@@ -54,9 +54,6 @@ class Continuity {
   LawName law() const noexcept { return law_; }
   bool known() const noexcept { return known_; }
 
-  /// Is this the row that follows the last one?
-  bool follows(const LawRow& row) const noexcept { return known_ && row.process == process_ && row.number == next_; }
-
   /// From here on the state is unknown, until a snapshot.
   void lose(const std::string& reason) {
     known_ = false;

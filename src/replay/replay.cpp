@@ -1,6 +1,5 @@
 #include "replay/replay.h"
 
-#include <deque>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -11,7 +10,6 @@
 #include "replay/owned_row.h"
 #include "replay/replicas.h"
 #include "replay/row_check.h"
-#include "runtime/cycles/monitor_cycle.h"
 #include "runtime/gate_setup.h"
 #include "runtime/safety_limits.h"
 #include "signals/gate_digest.h"
@@ -55,22 +53,14 @@ struct Replay::Parts {
         monitor{SafetyMonitor(safety_limits(parameters, robot), robot, parameters.loop.period()),
                 Continuity(LawName::kMonitor, report),
                 {},
-                {},
-                {},
-                {},
                 {}} {}
 
-  void add(const OwnedRow& row);
-  void work_on(OwnedRow& row);
+  void add(OwnedRow row);
   void run(const OwnedRow& row, DriverTrace& driver);
   void run(const OwnedRow& row, EstimatorTrace& trace);
   void run(const OwnedRow& row, ControllerTrace& trace);
   void run(const OwnedRow& row, MonitorTrace& trace);
   std::string gate_input(const DriverTrace& driver, GateInput& input) const;
-  void apply(const OwnedRow& row, const MonitorTrace& trace);
-  void apply(const OwnedRow& row, const MonitorEvent& event);
-  void apply_early();
-  void judge_again(const OwnedRow& row, const MonitorEvent& event);
 
   template <class Replica>
   StateBefore before(Replica& replica, const LawRow& row) {
@@ -97,7 +87,6 @@ struct Replay::Parts {
   EstimatorReplica estimator;
   ControllerReplica controller;
   MonitorReplica monitor;
-  std::deque<OwnedRow> rows;
   std::unique_ptr<Variant> variant;
   std::function<void(const VariedRow&)> watch;
 };
@@ -123,24 +112,12 @@ void Replay::add(const TraceRow& row, std::string_view message, std::int64_t tim
   parts_->add(OwnedRow(row, message, time_ns));
 }
 
-void Replay::finish() {
-  for (; !parts_->rows.empty(); parts_->rows.pop_front()) parts_->work_on(parts_->rows.front());
-}
-
 const ReplayReport& Replay::report() const noexcept {
   return parts_->report;
 }
 
-void Replay::Parts::add(const OwnedRow& row) {
-  rows.push_back(row);
-  if (rows.size() <= kAhead) return;
-  work_on(rows.front());
-  rows.pop_front();
-}
-
 /// Afterwards the row holds what was computed.
-void Replay::Parts::work_on(OwnedRow& row) {
-  apply_early();
+void Replay::Parts::add(OwnedRow row) {
   if (row.driver() != nullptr) run(row, *row.driver());
   if (row.estimator() != nullptr) run(row, *row.estimator());
   if (row.controller() != nullptr) run(row, *row.controller());
@@ -290,100 +267,32 @@ void Replay::Parts::run(const OwnedRow& row, ControllerTrace& trace) {
 
 void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
   MonitorCalls& calls = trace.calls;
-  const bool applied = monitor.applied_process == calls.law.process && monitor.applied_number == calls.law.number + 1;
   const StateBefore state = before(monitor, calls.law);
-  if (state == StateBefore::kContinued && !applied) apply(row, trace);
-  const bool has_sensors = sensors_of(frames.sensors, trace.permit.head, calls.law.sensors, monitor.sensors);
+  SensorFrame sensors;
+  const bool framed = calls.law.sensors != 0;
   const bool commanded = calls.command.found == Lookup::kFrame;
-  const CommandFrame* command = commanded ? frames.command.find(calls.command.checksum) : nullptr;
-  const std::string missing = unknown(
-      {{"sensor frame", has_sensors, row.cycle()}, {"command", !commanded || command != nullptr, calls.command.cycle}});
-  if (monitor.continuity.known() && !missing.empty()) monitor.continuity.lose(missing);
+  const bool has_sensors = !framed || sensors_of(frames.sensors, trace.permit.head, calls.law.sensors, sensors);
+  const MonitorInput input{.sensors = framed ? &sensors : nullptr,
+                           .silence = calls.silence,
+                           .command = commanded ? frames.command.find(calls.command.checksum) : nullptr,
+                           .state_seen = calls.state_seen != 0,
+                           .state_first_cycle = calls.state_first_cycle,
+                           .corrupt = calls.corrupt,
+                           .operator_input = calls.operator_input};
+  const std::string missing = unknown({{"sensor frame", has_sensors, row.cycle()},
+                                       {"command", !commanded || input.command != nullptr, calls.command.cycle}});
+  if (state != StateBefore::kUnknown && !missing.empty()) monitor.continuity.lose(missing);
   if (!monitor.continuity.known()) {
     publish<Permit>(calls.law, trace.permit, nullptr, frames.permit);
     return pass_over(row, monitor);
   }
-  if (commanded) monitor.command = *command;
-  monitor.input = {.sensors = &monitor.sensors,
-                   .command = commanded ? &monitor.command : nullptr,
-                   .state_seen = calls.state_seen != 0,
-                   .state_first_cycle = calls.state_first_cycle,
-                   .corrupt = calls.corrupt != 0,
-                   .operator_input = calls.operator_input};
-  monitor.head = own_head(trace.permit.head);
-  const Permit* varied = variant == nullptr ? nullptr : variant->step(calls, monitor.input);
-  monitor.law.step(monitor.input, monitor.output);
-  compare(row, monitor, calls.law, trace.permit, fault_of(monitor.sensors.injected, FaultComponent::kMonitor),
-          frames.permit);
-  calls.command = used(calls.command.found, monitor.command);
+  const Permit* varied = variant == nullptr ? nullptr : variant->step(calls, input);
+  monitor.law.step(input, monitor.output);
+  if (framed) monitor.injected = sensors.injected;
+  compare(row, monitor, calls.law, trace.permit, fault_of(monitor.injected, FaultComponent::kMonitor), frames.permit);
+  calls.command = commanded ? used(Lookup::kFrame, *input.command) : UsedFrame{.found = calls.command.found};
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .permit = &monitor.output, .varied_permit = varied});
-}
-
-/// What happened between two rows of the monitor stands in the second one: it is looked for among those to come.
-void Replay::Parts::apply_early() {
-  if (!monitor.continuity.known()) return;
-  for (const OwnedRow& row : rows) {
-    if (row.monitor() == nullptr) continue;
-    const LawRow& law = row.monitor()->calls.law;
-    if (monitor.applied_process == law.process && monitor.applied_number == law.number + 1) return;
-    if (!monitor.continuity.follows(law)) continue;
-    apply(row, *row.monitor());
-    return;
-  }
-}
-
-void Replay::Parts::apply(const OwnedRow& row, const MonitorTrace& trace) {
-  const MonitorCalls& calls = trace.calls;
-  monitor.applied_process = calls.law.process;
-  monitor.applied_number = calls.law.number + 1;
-  if (calls.events_lost != 0) return monitor.continuity.lose("more happened between two cycles than a row holds");
-  for (std::size_t i = 0; i < calls.event_count && i < kMonitorEvents; ++i) apply(row, calls.events[i]);
-}
-
-void Replay::Parts::apply(const OwnedRow& row, const MonitorEvent& event) {
-  SafetyMonitor& law = monitor.law;
-  switch (event.call) {
-    case MonitorCall::kEnterRun:
-      return law.enter_run(event.operator_input);
-    case MonitorCall::kBegin:
-      return law.begin(event.argument);
-    case MonitorCall::kDriverLost:
-      return law.driver_lost();
-    case MonitorCall::kDriverEnded:
-      return law.driver_ended();
-    case MonitorCall::kSensorsCorrupt:
-      return law.sensors_corrupt();
-    case MonitorCall::kEmergencyStop:
-      law.note_emergency_stop(event.operator_input);
-      return;
-    case MonitorCall::kRefuseReset:
-      return law.refuse_reset(event.operator_input, static_cast<ResetRefusal>(event.argument));
-    case MonitorCall::kStepAgain:
-    case MonitorCall::kStepWithoutSensors:
-      return judge_again(row, event);
-  }
-}
-
-/// A permit that was published once more.
-void Replay::Parts::judge_again(const OwnedRow& row, const MonitorEvent& event) {
-  Permit& permit = monitor.output;
-  if (event.call == MonitorCall::kStepAgain) {
-    monitor.sensors.driver_state = static_cast<DriverState>(event.argument);
-    monitor.input.operator_input = event.operator_input;
-    monitor.law.step(monitor.input, permit);
-    permit.head = monitor.head;
-  } else {
-    monitor.law.step_without_sensors(event.operator_input, permit);
-    permit.head = {.run = MonitorCycle::kRunBeforeDriver};
-  }
-  seal(permit);
-  if (permit.head.checksum != event.output) {
-    differ(
-        row, LawName::kMonitor,
-        {{"digest of a permit published again", std::to_string(event.output), std::to_string(permit.head.checksum)}});
-  }
-  frames.permit.add(event.output, permit);
 }
 
 }  // namespace robot_control

@@ -14,8 +14,6 @@
 /// What was published instead of a law's output, because a fault was injected, is in the log, and is what the others
 /// used.
 ///
-/// The permit that a monitor publishes again while the driver stands is an event in its next row. Therefore rows are
-/// worked on kAhead rows late, and the events of the monitor's next row as soon as its last step is done.
 
 #include <array>
 #include <cstdint>
@@ -35,8 +33,6 @@ namespace robot_control {
 
 class Replay {
  public:
-  static constexpr std::size_t kAhead = 8;  ///< rows; no law uses a permit that is older
-
   /// `parameters` and `robot` of the log. Throws as the laws do.
   Replay(const Parameters& parameters, const RobotModel& robot);
   ~Replay();
@@ -52,9 +48,6 @@ class Replay {
 
   /// In the order of the log, with its message and the time under which that stands: every field is compared as well.
   void add(const TraceRow& row, std::string_view message, std::int64_t time_ns);
-
-  /// After the last row.
-  void finish();
 
   const ReplayReport& report() const noexcept;
 

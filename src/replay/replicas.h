@@ -59,12 +59,7 @@ struct MonitorReplica {
   SafetyMonitor law;
   Continuity continuity;
   Permit output;
-  SensorFrame sensors;  ///< of the last step
-  CommandFrame command;
-  MonitorInput input;
-  FrameHead head;                     ///< of the last step
-  std::uint64_t applied_process = 0;  ///< of the row whose events are applied ahead of its step
-  std::uint64_t applied_number = 0;   ///< its number, plus 1
+  InjectedFaults injected{};  ///< SensorFrame::injected of the last step with a frame
 };
 
 }  // namespace robot_control

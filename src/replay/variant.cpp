@@ -42,11 +42,7 @@ const CommandFrame* Variant::step(const ControllerCalls& calls, const ControlInp
 }
 
 const Permit* Variant::step(const MonitorCalls& calls, const MonitorInput& input) noexcept {
-  if (calls.law.new_run != 0) {
-    monitor_.enter_run(calls.operator_input);
-    if (!monitors_) monitor_.begin(input.sensors->head.cycle);
-    monitors_ = true;
-  }
+  monitors_ = monitors_ || calls.law.new_run != 0;
   if (!monitors_) return nullptr;
   monitor_.step(input, permit_);
   return &permit_;

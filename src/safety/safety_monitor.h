@@ -13,10 +13,9 @@
 ///   body_conditions.h                                    does the gate obey, does the driver report a fault, does the
 ///                                                        body tilt, fall or collide
 ///
-/// Calls: after construction `restore` where an earlier permit or a latch file is there, and `enter_run` at the
-/// start of every run; `begin` with the cycle of the first frame; `step` once per cycle with that cycle's sensors. In
-/// between, what does not come from a sensor frame: `driver_lost`, `driver_ended`, `sensors_corrupt`,
-/// `note_emergency_stop`, `refuse_reset` (runtime/cycles/monitor_cycle.h).
+/// One `step` is made per cycle with that cycle's sensor frame. A step without a frame is made when the driver is
+/// silent and something else happened (SensorSilence, a corrupt frame, a request of the operator). It evaluates no
+/// condition on sensors, refuses resets and latches emergency stops. An equal step after it latches nothing.
 ///
 /// States: INIT until sensors, state and command of this run were each received once and motion is released
 /// (motion_release.h). READY and DRIVE permit motion until a node is restarted or a cause latches a stop
@@ -78,65 +77,20 @@ class SafetyMonitor {
   /// Throws std::invalid_argument for parameters that parameter_check.h refuses.
   SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
-  /// A new run: counters and "was received" flags restart; latched causes stay. `operator_input` is the current inbox:
-  /// heartbeats in it are dropped, resets are refused (kRefusalInit); emergency stops that were not yet processed are
-  /// kept.
-  void enter_run(const OperatorInput& operator_input) noexcept;
-
-  /// After a restart of the monitor: `last` is the permit that the channel still holds. Its causes are latched at once,
-  /// and an `e_stop` topic that was true counts as true until it sends false. kCauseMonitorRestarted is added at the
-  /// first step if the driver instance that `last` was issued for still runs, and, with or without `restore`, if the
-  /// gate has already used a permit of this run.
-  void restore(const Permit& last) noexcept;
-
-  /// Latches `causes` at once, as read from another record of an earlier stop (latch_file). Without a permit in the
-  /// channel, an `e_stop` topic that was a cause counts as true until it sends false: whether it still was is unknown.
-  void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept;
-
-  /// This monitor was started in this cycle of a run that was already going on. Before the first step of that run.
-  void begin(std::uint64_t cycle) noexcept { first_cycle_ = cycle; }
-
-  /// No current sensor frame has come for loss_cycles periods (wall clock only): latches kCauseDriverLost from the next
-  /// step on. No effect before the first step (a driver that never ran is missing, not lost) or while the driver's last
-  /// frame reported that it is paused or has ended.
-  void driver_lost() noexcept;
-
-  /// The driver reported its end: it is missing until a new run.
-  void driver_ended() noexcept;
-
-  /// FrameConditions::kPersistence sensor frames in a row were corrupt: latches kCauseCorruptFrame from the next step
-  /// on.
-  void sensors_corrupt() noexcept;
-
-  /// While no sensor frame arrives no condition can be evaluated: a reset that is requested meanwhile is refused with
-  /// `why`, and has no effect later.
-  void refuse_reset(const OperatorInput& operator_input, ResetRefusal why = kRefusalSilent) noexcept;
-
-  /// While no sensor frame arrives an emergency stop may still be requested. It latches with the next step. True: one
-  /// that was not active yet.
-  bool note_emergency_stop(const OperatorInput& operator_input) noexcept;
-
-  /// Fills everything but `out.head`. A second step in the same cycle evaluates no condition and answers no reset; it
-  /// only adds causes reported since.
+  /// Fills everything but `out.head`. The first frame of another run restarts the counters and "was received" flags:
+  /// heartbeats and resets that were requested before it have no effect (kRefusalInit), emergency stops do.
   void step(const MonitorInput& input, Permit& out) noexcept;
 
-  /// The same before the first sensor frame: latches pending causes, evaluates no condition.
-  void step_without_sensors(const OperatorInput& operator_input, Permit& out) noexcept;
-
-  /// After `restore`: the topic `e_stop` counts as true until its next message.
-  bool e_stop_held() const noexcept { return operator_conditions_.e_stop_held(); }
-
-  /// Latched causes.
-  std::uint64_t causes() const noexcept { return supervisor_.causes(); }
-
  private:
-  void write(std::uint64_t cycle, std::uint64_t driver_instance, Permit& out) const noexcept;
-  void detect_monitor_restart(const SensorFrame& sensors) noexcept;
-  void check_driver_instance(const SensorFrame& sensors) noexcept;
+  void restore(const InheritedLatch& latch) noexcept;
+  void enter_run(const MonitorInput& input) noexcept;
+  void evaluate_frame(const MonitorInput& input) noexcept;
+  void evaluate_silence(const MonitorInput& input) noexcept;
+  void end_run(bool driver_ended) noexcept;
   void evaluate_conditions(const MonitorInput& input) noexcept;
   void evaluate_motion(const MonitorInput& input, std::uint64_t elapsed) noexcept;
-  void add_pending() noexcept;
-  void supervise(const MonitorInput& input, bool repeated) noexcept;
+  void supervise(const MonitorInput& input) noexcept;
+  void write(Permit& out) const noexcept;
   double speed_limit(const OperatorInput& operator_input) const noexcept;
 
   double slow_speed_;
@@ -161,15 +115,14 @@ class SafetyMonitor {
   Evidence evidence_;
   Supervisor supervisor_;
   MotionRelease release_;
-  std::optional<std::uint64_t>
-      earlier_driver_instance_;               ///< Permit::driver_instance of an earlier monitor, until the first step
-  std::optional<std::uint64_t> first_cycle_;  ///< see `begin`, until the first step
-  std::optional<std::uint64_t> cycle_;        ///< of the last step in this run
+  std::optional<std::uint64_t> earlier_driver_instance_;  ///< Permit::driver_instance of an earlier monitor
+  std::uint64_t earlier_withdrawals_ = 0;                 ///< those of an earlier monitor, and its end
+  std::optional<std::uint64_t> driver_;                   ///< SensorFrame::driver_instance of the last frame
+  std::uint64_t run_ = 0;                                 ///< of the last frame
+  std::optional<std::uint64_t> cycle_;                    ///< of the last frame
+  bool driver_ended_ = false;
+  bool motion_requested_ = false;  ///< by the command of the last frame
   double last_speed_limit_ = kNoSpeedLimit;
-  std::uint64_t earlier_withdrawals_ = 0;  ///< those of an earlier monitor, and its end
-  std::uint64_t pending_ = 0;              ///< causes that were reported between two steps
-  std::optional<std::uint64_t> driver_;    ///< SensorFrame::driver_instance of the last step
-  bool driver_silence_expected_ = false;
   std::uint64_t resets_handled_ = 0;
   std::uint64_t reset_refusal_ = 0;
 };

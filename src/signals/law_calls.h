@@ -6,8 +6,6 @@
 /// its place. If an injected fault changed a frame, `LawRow::output` belongs to the healthy frame, and the row holds
 /// the published one.
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "signals/frame_head.h"
@@ -62,35 +60,19 @@ struct ControllerCalls {
   UsedFrame permit;
 };
 
-/// The further calls of the monitor.
-enum class MonitorCall : std::uint64_t {
-  kEnterRun = 1,            ///< enter_run(operator_input)
-  kBegin = 2,               ///< begin(argument)
-  kStepAgain = 3,           ///< step with the inputs of the step before, but DriverState(argument) and operator_input
-  kDriverLost = 4,          ///< driver_lost()
-  kDriverEnded = 5,         ///< driver_ended()
-  kSensorsCorrupt = 6,      ///< sensors_corrupt()
-  kEmergencyStop = 7,       ///< note_emergency_stop(operator_input), with anything new on e-stop topic or service
-  kRefuseReset = 8,         ///< refuse_reset(operator_input, ResetRefusal(argument))
-  kStepWithoutSensors = 9,  ///< step_without_sensors(operator_input)
+/// Why the monitor made a step without a sensor frame.
+enum class SensorSilence : std::uint64_t {
+  kNone = 0,      ///< the step has a sensor frame, or the next one is not due yet
+  kPaused = 1,    ///< the driver reported that it is paused
+  kEnded = 2,     ///< the driver reported its end
+  kTimedOut = 3,  ///< wall clock: no current frame for loss_cycles periods, from a driver that reported neither
 };
 
-struct MonitorEvent {
-  MonitorCall call{};
-  std::uint64_t argument = 0;
-  std::uint64_t output = 0;  ///< of a step: as LawRow::output
-  OperatorInput operator_input;
-};
-
-/// Room for a new run in a monitor's first row, and for two requests in a pause.
-inline constexpr std::size_t kMonitorEvents = 8;
-
-/// The events come first, in their order, then the step of this cycle.
+/// A step of the monitor has a sensor frame, or LawRow::sensors is 0 and the head of the permit is that of the step
+/// before.
 struct MonitorCalls {
   LawRow law;
-  std::uint64_t event_count = 0;
-  std::uint64_t events_lost = 0;  ///< events that did not fit
-  std::array<MonitorEvent, kMonitorEvents> events{};
+  SensorSilence silence = SensorSilence::kNone;
   UsedFrame command;  ///< of the cycle before
   std::uint64_t state_seen = 0;
   std::uint64_t state_first_cycle = 0;

@@ -47,7 +47,7 @@ void Join::add_to(const Row& row) {
     if (!repeats<Node>(row)) ++counts_.late[Node];
     return;
   }
-  newest_[Node] = {row.calls.law.process, head.run, head.cycle};
+  newest_[Node] = {row.calls.law.process, row.calls.law.number, head.run, head.cycle};
   queue.push_back(row);
   drain(false);
 }
@@ -56,8 +56,11 @@ template <std::size_t Node, class Row>
 bool Join::repeats(const Row& row) {
   const FrameHead& head = head_of(row);
   Newest& newest = newest_[Node];
-  if (head.run != newest.run || head.cycle != newest.cycle || row.calls.law.process == newest.process) return false;
-  newest.process = row.calls.law.process;
+  const LawRow& law = row.calls.law;
+  if (head.run != newest.run || head.cycle != newest.cycle) return false;
+  if (law.process == newest.process && law.number <= newest.number) return false;
+  newest.process = law.process;
+  newest.number = law.number;
   std::get<Node>(repeated_).push_back(row);
   give_repeated();
   return true;

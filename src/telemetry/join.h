@@ -5,8 +5,8 @@
 /// as soon as every node has given its row k or has moved past k, to a later cycle or a later run. A run is over
 /// when every node has left it; of the runs that follow, the one whose sensor stamp is earliest comes next. A
 /// dead or missing node would hold that up for ever: once another one is `window` rows ahead, its cells stay
-/// empty. What it delivers for cycles already emitted is late: dropped and counted. The first row of a node that was
-/// started again may answer a cycle that its predecessor had answered: it is given on by itself (JoinedRow::repeats).
+/// empty. What it delivers for cycles already emitted is late: dropped and counted. A later row
+/// of a node may answer the same cycle again: it is emitted by itself (JoinedRow::repeats).
 
 #include <array>
 #include <cstdint>
@@ -68,6 +68,7 @@ class Join {
   std::vector<std::uint64_t> finished_runs_;
   struct Newest {
     std::uint64_t process = 0;
+    std::uint64_t number = 0;
     std::uint64_t run = 0;
     std::uint64_t cycle = 0;
   };

@@ -26,8 +26,8 @@ struct JoinedRow {
   };
   Laws laws{};
 
-  /// A node that was started again answered a cycle that its predecessor had answered: of its row alone, in `laws`, and
-  /// no row of the run.
+  /// A node answered a cycle again: one that was started again, or the monitor, without a new sensor frame. The row
+  /// holds that node alone, in `laws`, and is no row of the run.
   bool repeats = false;
 
   /// Fills in the rows of the laws, and of them those whose frame was published; where it `repeats`, the former alone.

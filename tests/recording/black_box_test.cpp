@@ -51,7 +51,6 @@ TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirst
                      replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
                    },
                .snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
-  replay.finish();
   EXPECT_EQ(replay.report().different_rows, 0u);
   for (const LawReport& law : replay.report().laws) {
     EXPECT_EQ(law.different, 0u);

@@ -38,7 +38,6 @@ struct AReplayedLog : testing::Test {
                        replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
                      },
                  .snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
-    replay.finish();
     EXPECT_EQ(replay.report().rows, log->rows());
     EXPECT_EQ(replay.report().different_rows, 0u);
     for (const LawReport& law : replay.report().laws) {

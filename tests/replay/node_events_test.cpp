@@ -51,7 +51,6 @@ class RandomNodes {
     });
     for (const LawSnapshot& snapshot : recording.snapshots) again.add(snapshot);
     for (const RecordedRow& row : recording.rows) again.add(row.joined());
-    again.finish();
     return otherwise;
   }
 
@@ -73,6 +72,10 @@ class RandomNodes {
   void step_monitor_again() {
     const MonitorTrace* permit = loop_.step_monitor();
     if (permit != nullptr) add(loop_.monitor->snapshot(), *permit);
+  }
+
+  void add_silence(bool has_row) {
+    if (has_row) add(loop_.monitor->snapshot(), loop_.monitor->trace());
   }
 
   bool chance(double probability) { return std::uniform_real_distribution<>()(random_) < probability; }
@@ -104,7 +107,7 @@ class RandomNodes {
       case 6:
         return pause();
       case 7:
-        loop_.monitor->silence();
+        add_silence(loop_.monitor->time_out());
         return ask();
       case 8:
         return corrupt();
@@ -127,7 +130,7 @@ class RandomNodes {
       ++requests_.resets;
     }
     loop_.monitor->inbox().store(requests_);
-    if (chance(0.5)) loop_.monitor->idle();
+    if (chance(0.5)) add_silence(loop_.monitor->idle());
   }
 
   void pause() {

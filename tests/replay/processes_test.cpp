@@ -68,7 +68,6 @@ TEST_F(ReplayedProcesses, FromTheLogOfATelemetryThatWasKilled) {
   log.read({.message = [&](const TraceRow& row, const BagMessage& message) {
     replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
   }});
-  replay.finish();
   EXPECT_TRUE(replay.report().exact()) << text_of(replay.report());
   for (const LawReport& law : replay.report().laws) EXPECT_GT(law.compared, 500u) << text_of(replay.report());
 }

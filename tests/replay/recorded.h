@@ -78,7 +78,6 @@ struct Recording {
     Replay again(parameters, robot);
     for (const LawSnapshot& snapshot : snapshots) again.add(snapshot);
     for (const RecordedRow& row : rows) again.add(row.joined());
-    again.finish();
     return again.report();
   }
 };
@@ -106,7 +105,6 @@ inline ReplayReport replay(const std::vector<LoggedMessage>& messages, const std
     kDecoder.decode(message.bytes, row);
     again.add(row, message.bytes, message.time_ns);
   }
-  again.finish();
   return again.report();
 }
 

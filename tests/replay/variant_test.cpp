@@ -24,7 +24,6 @@ struct VariedDrive : testing::Test {
     again.vary(varied, loop.robot(), watch);
     for (const LawSnapshot& snapshot : recording.snapshots) again.add(snapshot);
     for (const RecordedRow& row : recording.rows) again.add(row.joined());
-    again.finish();
     return again.report();
   }
 

@@ -93,7 +93,7 @@ TEST_F(BlindMonitor, IsNotBlindToADriverThatIsPaused) {
     clock_ns += 100 * kPeriodNs;
     loop.driver.publish_paused();
     loop.monitor->step();
-    loop.monitor->silence();
+    loop.monitor->time_out();
   }
   EXPECT_EQ(causes(), 0u);
 }
@@ -106,7 +106,7 @@ TEST_F(BlindMonitor, ADriverThatEndedIsMissingAndNotLost) {
   EXPECT_EQ(loop.newest_permit().action, PermitAction::kBrake);
   EXPECT_NE(loop.newest_permit().missing & kMissingSensors, 0u);
   clock_ns += 1000 * kPeriodNs;
-  loop.monitor->silence();
+  loop.monitor->time_out();
   EXPECT_EQ(causes(), 0u);
 }
 
@@ -144,7 +144,7 @@ TEST_F(MonitorWithoutDriver, AnEmergencyStopOutlivesTheMonitor) {
   e_stop();
   loop.monitor->idle();
   loop.monitor = make_monitor();
-  EXPECT_EQ(loop.monitor->causes(), std::uint64_t{kCauseEmergencyStopService});
+  EXPECT_EQ(loop.monitor->permit().causes, std::uint64_t{kCauseEmergencyStopService});
 }
 
 TEST_F(MonitorWithoutDriver, RefusesAReset) {

@@ -183,7 +183,7 @@ TEST_F(RunningLoop, CountsATokenAsAMissingCommand) {
 }
 
 TEST_F(RunningLoop, LatchesTheLossOfTheDriverOnceItIsSilent) {
-  loop.monitor->silence();
+  loop.monitor->time_out();
   EXPECT_NE(loop.newest_permit().causes & kCauseDriverLost, 0u);
   loop.steps(5);
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
@@ -201,9 +201,9 @@ TEST_F(RunningLoop, LatchesTheLossOfADriverThatIsBackBeforeItsSilenceIsNoticed) 
 TEST_F(RunningLoop, AResetAskedForDuringSilenceReleasesNothingLater) {
   loop.controller->inbox().store({.twist = {}, .count = 2});
   loop.steps(20);
-  loop.monitor->silence();
+  loop.monitor->time_out();
   loop.monitor->inbox().store({.resets = 1});
-  loop.monitor->silence();
+  loop.monitor->time_out();
   EXPECT_EQ(loop.newest_permit().resets_handled, 1u);
   EXPECT_EQ(loop.newest_permit().reset_refusal, std::uint64_t{kRefusalSilent});
   loop.steps(20);

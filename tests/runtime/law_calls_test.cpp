@@ -80,28 +80,19 @@ TEST_F(LawCalls, NoteAPoseAndANewRunOnce) {
   EXPECT_EQ(estimator().law.new_run, 0u);
 }
 
-TEST_F(LawCalls, ListWhatTheMonitorWasToldBetweenTwoCycles) {
-  loop.monitor->silence();
+TEST_F(LawCalls, HaveARowForEachStepOfTheMonitorWithoutAFrame) {
+  EXPECT_NE(monitor().law.sensors, 0u);
+  ASSERT_TRUE(loop.monitor->time_out());
+  EXPECT_EQ(monitor().law.number, 10u);
+  EXPECT_EQ(monitor().law.sensors, 0u);
+  EXPECT_EQ(monitor().silence, SensorSilence::kTimedOut);
+  EXPECT_EQ(monitor().law.output, loop.newest_permit().head.checksum);
+  EXPECT_EQ(loop.monitor->trace().permit.head.cycle, loop.driver.trace().sensors.head.cycle);
+  EXPECT_FALSE(loop.monitor->time_out()) << "nothing has happened since";
   loop.monitor->inbox().store({.resets = 1});
-  loop.monitor->silence();
-  loop.step();
-  ASSERT_EQ(monitor().event_count, 4u);
-  EXPECT_EQ(monitor().events[0].call, MonitorCall::kDriverLost);
-  EXPECT_EQ(monitor().events[1].call, MonitorCall::kStepAgain);
-  EXPECT_EQ(monitor().events[2].call, MonitorCall::kRefuseReset);
-  EXPECT_EQ(monitor().events[3].call, MonitorCall::kStepAgain);
-  EXPECT_NE(monitor().events[1].output, monitor().events[3].output);
-}
-
-TEST_F(LawCalls, CountEventsForWhichThereIsNoRoom) {
-  constexpr std::uint64_t kResets = kMonitorEvents;  // two events each
-  for (std::uint64_t resets = 1; resets <= kResets; ++resets) {
-    loop.monitor->inbox().store({.resets = resets});
-    loop.monitor->idle();
-  }
-  loop.step();
-  EXPECT_EQ(monitor().event_count, kMonitorEvents);
-  EXPECT_EQ(monitor().events_lost, 2 * kResets - kMonitorEvents);
+  EXPECT_TRUE(loop.monitor->time_out());
+  EXPECT_EQ(monitor().law.number, 11u);
+  EXPECT_EQ(monitor().operator_input.resets, 1u);
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ class Sequence {
             nullptr);
         operator_input_ = {};
         levels_ = {};
-        if (monitor_->e_stop_held()) levels_.hold();
+        if ((monitor_->permit().active & kCauseEmergencyStopTopic) != 0) levels_.hold();
         operator_input_.e_stop_level = levels_.stopped() ? 1 : 0;
         for (Button& button : buttons_) button.withdrawn = false;
         buttons_heard_.clear();

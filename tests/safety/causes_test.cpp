@@ -158,35 +158,31 @@ TEST_F(CausesTest, ACommandThatIsNotFiniteStopsInTheThirdCycleInARow) {
 }
 
 TEST_F(CausesTest, ASilentDriverIsLost) {
-  monitor_.driver_lost();
-  monitor_.step(input_, permit_);  // published again for display: the same cycle
+  wait(SensorSilence::kTimedOut);
   expect_stop(SupervisorState::kStopped, kCauseDriverLost);
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
   EXPECT_EQ(permit_.active, 0u);
 }
 
-TEST_F(CausesTest, APausedDriverIsNotLost) {
-  sensors_.driver_state = DriverState::kPaused;
-  step();
-  monitor_.driver_lost();
-  step();
-  expect_driving();
-}
-
 TEST_F(CausesTest, ADriverThatWasNeverThereIsNotLost) {
   SafetyMonitor monitor(parameters(), robot(), kPeriod);
-  sensors_.gate = {};
-  monitor.driver_lost();
-  monitor.step(input_, permit_);
+  monitor.step({.silence = SensorSilence::kTimedOut}, permit_);
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-TEST_F(CausesTest, TheSameCycleAgainCountsNothingTwice) {
+TEST_F(CausesTest, AStepWithoutAFrameCountsNoCycle) {
   input_.command = nullptr;
   steps(kLoss - 1);
-  for (int i = 0; i < 10; ++i) monitor_.step(input_, permit_);
+  for (int i = 0; i < 10; ++i) wait();
   expect_driving();
+}
+
+TEST_F(CausesTest, CorruptSensorFramesInARowStopWithoutAnother) {
+  wait(SensorSilence::kNone, FrameConditions::kPersistence - 1);
+  expect_driving();
+  wait(SensorSilence::kNone, FrameConditions::kPersistence);
+  expect_stop(SupervisorState::kStopped, kCauseCorruptFrame);
 }
 
 // Category 1.
@@ -395,10 +391,10 @@ TEST_F(CausesTest, StepsWithoutAllocating) {
   step();
   request_reset();
   step();
-  monitor_.enter_run(input_.operator_input);
-  monitor_.restore(permit_);
-  monitor_.driver_lost();
+  new_run();
+  inherit({.permit = &permit_});
   step();
+  wait(SensorSilence::kTimedOut);
   EXPECT_EQ(guard.count(), 0u);
 }
 

@@ -111,9 +111,7 @@ TEST_F(EvidenceTest, OutlivesARestartOfTheMonitor) {
   const Permit last = permit_;
   input_.command = &command_;
   input_.operator_input = {};
-  monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-  monitor_.restore(last);
-  monitor_.enter_run({});
+  restart_monitor();
   step();
   EXPECT_EQ(reported(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseMonitorRestarted}));
   EXPECT_EQ(permit_.evidence[0].cycle, last.evidence[0].cycle);

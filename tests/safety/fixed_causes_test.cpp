@@ -35,7 +35,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<Fixed
         sensors_.digital_inputs = kInputEmergencyStop;
         return 1;
       case kCauseDriverLost:
-        monitor_.driver_lost();
+        ++sensors_.driver_instance;
         return 1;
       case kCauseDriverFault:
         sensors_.faults = kFaultDrive;
@@ -49,9 +49,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<Fixed
       case kCauseHeartbeatLost:
         return kHeartbeat + 1;
       case kCauseMonitorRestarted:
-        monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-        monitor_.restore(permit_);
-        monitor_.enter_run(input_.operator_input);
+        restart_monitor();
         return 1;
       case kCauseCorruptFrame:
         input_.corrupt = true;
@@ -73,7 +71,7 @@ class FixedCauses : public MonitorTest, public testing::WithParamInterface<Fixed
         skip(kPermitLife + 2);
         return 1;
       case kCauseLatchUnreadable:
-        monitor_.restore(kCauseLatchUnreadable, kCauseLatchUnreadable);
+        inherit({.causes = kCauseLatchUnreadable, .first_cause = kCauseLatchUnreadable});
         return 1;
       default:
         return 0;

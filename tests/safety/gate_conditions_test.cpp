@@ -105,10 +105,7 @@ TEST_F(GateConditionsTest, ThePermitOnItsWayIsNoDisobedience) {
 }
 
 TEST_F(GateConditionsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
-  const Permit last = permit_;
-  monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-  monitor_.restore(last);
-  monitor_.enter_run({});
+  restart_monitor();
   steps(10);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});
 }

@@ -90,12 +90,7 @@ class HealthyDriving : public testing::TestWithParam<Machine> {
     command_.head.cycle = command_.state_cycle = cycle_ == 0 ? 0 : cycle_ - 1;
     command_.twist_requested.linear[0] = request(static_cast<double>(cycle_) / GetParam().rate);
     command_.zero_requests = 1;  // the run begins with a zero request
-    input_ = {.sensors = &sensors_,
-              .command = &command_,
-              .state_seen = true,
-              .state_first_cycle = 0,
-              .corrupt = false,
-              .operator_input = {}};
+    input_ = {.sensors = &sensors_, .command = &command_, .state_seen = true, .operator_input = {}};
   }
 
   const RobotModel robot_ = two_wheels();

@@ -114,6 +114,7 @@ class MonitorTest : public testing::Test {
     while (next_tick_ < cycle) tick(given);
     sensors_.gate = reported_by(gate_.report());
     monitor_.step(input_, permit_);
+    input_.inherited = nullptr;
     given_head_ = sensors_.head;
     tick(given);
   }
@@ -127,7 +128,20 @@ class MonitorTest : public testing::Test {
     sensors_.head.cycle = 0;
     begun_ = false;
     command_.zero_requests = command_.first_cycle = input_.state_first_cycle = 0;
-    monitor_.enter_run(input_.operator_input);
+  }
+  /// Another monitor, which inherits the last permit in its next step.
+  void restart_monitor() {
+    last_permit_ = permit_;
+    monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
+    inherit({.permit = &last_permit_});
+  }
+  void inherit(const InheritedLatch& latch) {
+    inherited_ = latch;
+    input_.inherited = &inherited_;
+  }
+  /// A step without a sensor frame.
+  void wait(SensorSilence silence = SensorSilence::kNone, std::uint64_t corrupt = 0) {
+    monitor_.step({.silence = silence, .corrupt = corrupt, .operator_input = input_.operator_input}, permit_);
   }
   /// `linear` m/s requested, and the wheels' targets; 0: the brake holds.
   void ask_for(double linear) {
@@ -174,6 +188,8 @@ class MonitorTest : public testing::Test {
   SensorFrame sensors_;
   CommandFrame command_;
   MonitorInput input_;
+  InheritedLatch inherited_;
+  Permit last_permit_;  ///< that an earlier monitor left
   SafetyMonitor monitor_{parameters(), robot(), kPeriod};
   Permit permit_;
   double quantum_ = kQuantum;  ///< rad, of the encoders

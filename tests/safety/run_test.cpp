@@ -215,11 +215,8 @@ TEST_F(RunTest, ANewRunOfTheSameDriverIsNoLoss) {
 class RestartTest : public RunTest {
  protected:
   void restart() {
-    const Permit last = permit_;
     input_.operator_input = {};
-    monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-    monitor_.restore(last);
-    monitor_.enter_run(input_.operator_input);
+    restart_monitor();
   }
 };
 
@@ -297,7 +294,6 @@ TEST_F(RestartTest, WithoutItsLastPermitTheGateIsTheWitness) {
   drive();
   sensors_.gate.permit_cycle = cycle();
   monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-  monitor_.enter_run(input_.operator_input);
   step();
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseMonitorRestarted});
@@ -315,24 +311,54 @@ TEST_F(RestartTest, ATopicThatSaidTrueIsTrueUntilItsNextMessage) {
 
 TEST_F(RestartTest, ATopicThatStoppedIsTrueUntilItsNextMessageWhereNoPermitSaysOtherwise) {
   for (const std::uint64_t cause : {kCauseEmergencyStopTopic, kCauseStall}) {
-    monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-    monitor_.restore(cause, cause);
-    EXPECT_EQ(monitor_.e_stop_held(), cause != kCauseStall);
+    Permit first;
+    const InheritedLatch latch{.causes = cause, .first_cause = cause};
+    SafetyMonitor(parameters(), robot(), kPeriod).step({.inherited = &latch}, first);
+    EXPECT_EQ(first.active, cause & kCauseEmergencyStopTopic);
+    EXPECT_EQ(first.causes, cause);
   }
   input_.operator_input.e_stop_level = input_.operator_input.e_stop_messages = 1;
   stand();
   input_.operator_input.e_stop_level = 0;
   stand();
   restart();
-  monitor_.restore(permit_.causes, permit_.first_cause);
-  EXPECT_FALSE(monitor_.e_stop_held()) << "the last permit says that it was false again";
+  inherit({.permit = &last_permit_, .causes = permit_.causes, .first_cause = permit_.first_cause});
+  step();
+  EXPECT_EQ(permit_.active & kCauseEmergencyStopTopic, 0u) << "the last permit says that it was false again";
 }
 
 TEST_F(RestartTest, ATopicThatIsTrueStaysActiveWithoutSensors) {
   input_.operator_input.e_stop_level = input_.operator_input.e_stop_messages = 1;
   for (int i = 0; i < 3; ++i) {
-    monitor_.step_without_sensors(input_.operator_input, permit_);
+    wait();
     EXPECT_EQ(permit_.active, std::uint64_t{kCauseEmergencyStopTopic}) << "step " << i;
+  }
+}
+
+TEST_F(RestartTest, ADriverThatEndedIsMissingAndItsRunGivesNoPermit) {
+  drive();
+  for (int i = 0; i < 2; ++i) {
+    wait(SensorSilence::kEnded);
+    EXPECT_EQ(permit_.state, SupervisorState::kInit);
+    EXPECT_EQ(permit_.missing, kMissingSensors | kMissingState | kMissingCommand);
+    EXPECT_EQ(permit_.causes, 0u);
+  }
+}
+
+TEST_F(RestartTest, ALastFrameThatIsTheFirstToReportTheEndIsAnEnd) {
+  drive();
+  sensors_.driver_state = DriverState::kEnded;
+  step();
+  EXPECT_EQ(permit_.state, SupervisorState::kInit);
+  EXPECT_EQ(permit_.action, PermitAction::kBrake);
+}
+
+TEST_F(RestartTest, ARequestWithoutAFrameIsAnsweredOnce) {
+  request_reset();
+  for (const SensorSilence silence : {SensorSilence::kPaused, SensorSilence::kNone}) {
+    wait(silence);
+    EXPECT_EQ(permit_.resets_handled, input_.operator_input.resets);
+    EXPECT_EQ(permit_.reset_refusal, std::uint64_t{kRefusalPaused}) << "the second step has no new request";
   }
 }
 

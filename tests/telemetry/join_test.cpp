@@ -158,6 +158,20 @@ TEST_F(JoinTest, GivesTheRowOfARestartedNodeThatAnswersACycleAgainAfterThatCycle
   EXPECT_EQ(each.counts().late[2], 0u);
 }
 
+TEST_F(JoinTest, GivesTheRowsOfAMonitorThatStepsAgainWithoutAFrame) {
+  std::vector<std::string> given;
+  Join each(kPeriod, [&](const JoinedRow& row) {
+    given.push_back(std::to_string(row.laws.monitor->calls.law.number) + (row.repeats ? " again" : ""));
+  });
+  MonitorTrace row = monitor_row(1, 0);
+  for (row.calls.law.number = 0; row.calls.law.number < 3; ++row.calls.law.number) each.add(row);
+  each.add(driver_row(1, 0));
+  each.add(estimator_row(1, 0));
+  each.add(controller_row(1, 0));
+  EXPECT_THAT(given, ElementsAre("0", "1 again", "2 again"));
+  EXPECT_EQ(each.counts().late[3], 0u);
+}
+
 TEST_F(JoinTest, NumbersRunsInTheirOrder) {
   cycle(50, 0);
   cycle(50, 1);

@@ -74,31 +74,6 @@ void add_operator(TraceFields& to, const std::string& name, Get) {
 #undef OF
 }
 
-std::size_t events_of(const M* monitor) {
-  return monitor == nullptr ? 0 : std::min<std::size_t>(monitor->calls.event_count, kMonitorEvents);
-}
-
-void add_events(TraceFields& to) {
-  static constexpr auto kSize = [](const M* monitor, std::size_t) { return events_of(monitor); };
-  const auto number = [&](const char* name, const char* comment, auto get) {
-    to.push_back(list<M, u64, kMonitorEvents>(name, comment, kSize, get));
-  };
-  to.push_back(field<M, u64>("event_count", "calls on the monitor before its step", MEMBER(calls.event_count)));
-  to.push_back(field<M, u64>("events_lost", "for which there was no room", MEMBER(calls.events_lost)));
-  to.push_back(list<M, u8, kMonitorEvents>("event_call", "MonitorCall", kSize, ELEMENT(calls.events[i].call)));
-  number("event_argument", "", ELEMENT(calls.events[i].argument));
-  number("event_output", "checksum of what it computed", ELEMENT(calls.events[i].output));
-  number("event_e_stop_level", "", ELEMENT(calls.events[i].operator_input.e_stop_level));
-  number("event_e_stop_messages", "", ELEMENT(calls.events[i].operator_input.e_stop_messages));
-  number("event_e_stop_triggers", "", ELEMENT(calls.events[i].operator_input.e_stop_triggers));
-  number("event_e_stop_services", "", ELEMENT(calls.events[i].operator_input.e_stop_services));
-  number("event_resets", "", ELEMENT(calls.events[i].operator_input.resets));
-  number("event_heartbeats", "", ELEMENT(calls.events[i].operator_input.heartbeats));
-  number("event_clearances", "", ELEMENT(calls.events[i].operator_input.clearances));
-  to.push_back(
-      list<M, f64, kMonitorEvents>("event_clearance", "m", kSize, ELEMENT(calls.events[i].operator_input.clearance)));
-}
-
 template <class Frame>
 using Words = std::array<u64, kFrameWords<Frame>>;
 
@@ -155,11 +130,11 @@ void add_calls(TraceFields& to) {
   to.push_back(field<C, u64>("controller_tuned", "1: tuned before this step", MEMBER(calls.tuned)));
   add_velocity(to, "request", MEMBER(calls.request));
   add_velocity(to, "inbox", MEMBER(calls.inbox));
+  to.push_back(field<M, u8>("monitor_silence", "SensorSilence, where it used no sensors", MEMBER(calls.silence)));
   to.push_back(field<M, u64>("monitor_state_seen", "", MEMBER(calls.state_seen)));
   to.push_back(field<M, u64>("monitor_state_first_cycle", "", MEMBER(calls.state_first_cycle)));
   to.push_back(field<M, u64>("monitor_corrupt", "", MEMBER(calls.corrupt)));
   add_operator(to, "operator", MEMBER(calls.operator_input));
-  add_events(to);
   to.push_back(whole_frame<E, StateFrame>("whole_state", MEMBER(state)));
   to.push_back(whole_frame<C, CommandFrame>("whole_command", MEMBER(command)));
   to.push_back(whole_frame<M, Permit>("whole_permit", MEMBER(permit)));

@@ -67,7 +67,7 @@ void add_row(TraceFields& to) {
       [](R r, u8 value) { r.published = value; }));
   to.push_back(of_row<u8>(
       "repeats",
-      "1: a node that was started again answered a cycle that its predecessor had answered; no row of the run",
+      "1: a node answered a cycle again (started again, or the monitor without a new sensor frame); no row of the run",
       [](S s) { return s.row.repeats; }, [](R r, u8 value) { r.repeats = value != 0; }));
   to.push_back(of_row<u64>(
       "lost",

@@ -1,12 +1,13 @@
 #include "runtime/cycles/monitor_cycle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace robot_control {
 
 MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period,
-                           const Channels& channels, CommandScript script, Now now)
+                           const Channels& channels, CommandScript script, Now now, InheritedLatch latch)
     : monitor_(parameters, robot, period),
       clock_(now),
       channels_(channels),
@@ -14,37 +15,18 @@ MonitorCycle::MonitorCycle(const SafetyParameters& parameters, const RobotModel&
       robot_hash_(robot.hash),
       loss_ns_(std::llround(static_cast<double>(parameters.loss_cycles) * period * 1e9)),
       snapshots_(LawName::kMonitor) {
-  restore_last_permit();
+  inherit(latch);
 }
 
-void MonitorCycle::restore_last_permit() noexcept {
+void MonitorCycle::inherit(InheritedLatch latch) noexcept {
   Permit last;
   const Lookup found = FrameReader<Permit>(channels_.permit.memory()).last_whole(last);
-  if (found == Lookup::kFrame) monitor_.restore(last);
-  if (found == Lookup::kCorrupt) monitor_.restore(kCauseLatchUnreadable, kCauseLatchUnreadable);
-}
-
-void MonitorCycle::enter_run() noexcept {
-  script_.rewind();
-  if (const auto last = published_before(channels_.permit, sensors_.head.run)) script_.advance(*last);
-  receive_messages();
-  calls_.law.new_run = 1;
-  note(MonitorCall::kEnterRun, operator_input_);
-  monitor_.enter_run(operator_input_);
-}
-
-/// What is called between two rows; `output` follows where it is a step.
-void MonitorCycle::note(MonitorCall call, const OperatorInput& operator_input, std::uint64_t argument) noexcept {
-  if (calls_.event_count == kMonitorEvents) {
-    ++calls_.events_lost;
-    return;
+  if (found == Lookup::kFrame) latch.permit = &last;
+  if (found == Lookup::kCorrupt) {
+    latch.causes |= kCauseLatchUnreadable;
+    latch.first_cause = kCauseLatchUnreadable;
   }
-  calls_.events[calls_.event_count++] = {.call = call, .argument = argument, .operator_input = operator_input};
-}
-
-/// The last event was a step.
-void MonitorCycle::note_output(std::uint64_t output) noexcept {
-  if (calls_.events_lost == 0) calls_.events[calls_.event_count - 1].output = output;
+  monitor_.step({.inherited = &latch}, trace_.permit);
 }
 
 void MonitorCycle::receive_messages() noexcept {
@@ -61,163 +43,122 @@ void MonitorCycle::receive_messages() noexcept {
   received_ = arrived;
 }
 
-void MonitorCycle::receive(std::uint64_t cycle) noexcept {
-  receive_messages();
-  const ScriptEvents events = script_.advance(cycle);
+void MonitorCycle::advance_script() noexcept {
+  if (calls_.law.new_run != 0) {
+    script_.rewind();
+    if (const auto last = published_before(channels_.permit, sensors_.head.run)) script_.advance(*last);
+  }
+  const ScriptEvents events = script_.advance(sensors_.head.cycle);
   operator_input_.e_stop_services += events.e_stops;
   operator_input_.resets += events.resets;
 }
 
 bool MonitorCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
-  const bool first_look = !std::exchange(looked_, true);
   const Lookup found = channels_.sensors->newest(arrived_);
-  if (found == Lookup::kCorrupt) note_corrupt_sensors();
-  if (found != Lookup::kFrame) return wake_without_sensors(woke_ns);
-  if (!current(*channels_.sensors, arrived_.head, robot_hash_)) return wake_without_sensors(woke_ns);
+  if (found == Lookup::kCorrupt) ++corrupt_sensors_;
+  if (found != Lookup::kFrame || !current(*channels_.sensors, arrived_.head, robot_hash_)) {
+    const bool timed_out = woke_ns != 0 && current_ns_ != 0 && woke_ns - current_ns_ >= loss_ns_;
+    return (timed_out || corrupt_sensors_ == FrameConditions::kPersistence) && step_without_frame(timed_out);
+  }
   const Arrival arrival = clock_.judge(arrived_.head);
   current_ns_ = woke_ns;
-  if (arrival == Arrival::kOld) {
-    note_pause();
-    return false;
-  }
+  if (arrival == Arrival::kOld) return republished() && step_without_frame(false);
   sensors_ = arrived_;
-  if (arrival == Arrival::kNewRun) enter_run();
-  if (first_look) {
-    note(MonitorCall::kBegin, {}, sensors_.head.cycle);
-    monitor_.begin(sensors_.head.cycle);
-  }
   clock_.accept(sensors_.head);
-  silent_ = false;
-
-  const std::uint64_t run = sensors_.head.run;
-  const std::uint64_t cycle = sensors_.head.cycle;
-  receive(cycle);
-  input_ = {.sensors = &sensors_, .corrupt = corrupt_sensors_ > 0, .operator_input = operator_input_};
-  corrupt_sensors_ = 0;
-  if (cycle > 0) {
-    const Lookup command_found = channels_.command->at(run, cycle - 1, command_);
-    const Lookup state_found = channels_.state->at(run, cycle - 1, state_);
-    input_.command = command_found == Lookup::kFrame ? &command_ : nullptr;
-    calls_.command = used(command_found, command_);
-    input_.state_seen = state_found == Lookup::kFrame;
-    input_.state_first_cycle = input_.state_seen ? state_.first_cycle : 0;
-    input_.corrupt = input_.corrupt || command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt;
-  }
-  snapshots_.look(monitor_, calls_.law, sensors_.head);
-  monitor_.step(input_, trace_.permit);
-  published_run_.store(run, std::memory_order_release);
-  publish();
-  trace_.timing = clock_.timing(woke_ns, sensors_);
-  close_row();
+  calls_.law.new_run = arrival == Arrival::kNewRun ? 1 : 0;
+  receive_messages();
+  advance_script();
+  read_inputs();
+  step_law(woke_ns);
   return true;
 }
 
-void MonitorCycle::note_corrupt_sensors() noexcept {
-  if (++corrupt_sensors_ != FrameConditions::kPersistence || input_.sensors == nullptr) return;
-  note(MonitorCall::kSensorsCorrupt);
-  monitor_.sensors_corrupt();
-  publish_again();
+void MonitorCycle::read_inputs() noexcept {
+  input_ = {.sensors = &sensors_, .corrupt = corrupt_sensors_ > 0 ? 1U : 0U, .operator_input = operator_input_};
+  corrupt_sensors_ = 0;
+  const std::uint64_t run = sensors_.head.run;
+  const std::uint64_t cycle = sensors_.head.cycle;
+  if (cycle == 0) return;
+  const Lookup command_found = channels_.command->at(run, cycle - 1, command_);
+  const Lookup state_found = channels_.state->at(run, cycle - 1, state_);
+  input_.command = command_found == Lookup::kFrame ? &command_ : nullptr;
+  calls_.command = used(command_found, command_);
+  input_.state_seen = state_found == Lookup::kFrame;
+  input_.state_first_cycle = input_.state_seen ? state_.first_cycle : 0;
+  if (command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt) input_.corrupt = 1;
 }
 
-void MonitorCycle::close_row() noexcept {
-  calls_.state_seen = input_.state_seen ? 1 : 0;
-  calls_.state_first_cycle = input_.state_first_cycle;
-  calls_.corrupt = input_.corrupt ? 1 : 0;
-  calls_.operator_input = noted_ = input_.operator_input;
-  robot_control::close_row(calls_, sensors_.head.checksum, trace_.permit.head.checksum, trace_.calls);
+/// A driver that pauses or ends publishes its last frame again. It contains nothing else that is new, but no other
+/// frame will come, and a paused driver publishes it ten times a second: an operator's request is answered meanwhile.
+bool MonitorCycle::republished() noexcept {
+  const bool ends = arrived_.driver_state == DriverState::kPaused || arrived_.driver_state == DriverState::kEnded;
+  if (!ends || arrived_.head.cycle != clock_.cycle()) return false;
+  sensors_.driver_state = arrived_.driver_state;
+  return true;
 }
 
-bool MonitorCycle::wake_without_sensors(std::int64_t woke_ns) noexcept {
-  const bool wall_clock = woke_ns != 0;
-  if (wall_clock && current_ns_ != 0 && woke_ns - current_ns_ >= loss_ns_) silence();
+bool MonitorCycle::time_out() noexcept {
+  return step_without_frame(true);
+}
+
+bool MonitorCycle::idle() noexcept {
+  return step_without_frame(false);
+}
+
+SensorSilence MonitorCycle::silence(bool timed_out) const noexcept {
+  if (clock_.run() == 0) return SensorSilence::kNone;
+  if (sensors_.driver_state == DriverState::kPaused) return SensorSilence::kPaused;
+  if (sensors_.driver_state == DriverState::kEnded) return SensorSilence::kEnded;
+  return timed_out ? SensorSilence::kTimedOut : SensorSilence::kNone;
+}
+
+/// `input` holds a fact that the last step did not. A pause alone is none.
+bool MonitorCycle::happened(const MonitorInput& input) const noexcept {
+  const OperatorInput& now = input.operator_input;
+  const OperatorInput& before = input_.operator_input;
+  const bool requested = now.resets != before.resets || now.e_stop_services != before.e_stop_services ||
+                         now.e_stop_messages != before.e_stop_messages || now.e_stop_level != before.e_stop_level;
+  const bool restored = published_run() == 0 && permit().causes != 0;
+  const bool corrupt = clock_.run() != 0 && input.corrupt == FrameConditions::kPersistence;
+  const bool silent = input.silence == SensorSilence::kTimedOut || input.silence == SensorSilence::kEnded;
+  return requested || restored || (corrupt && input_.corrupt != input.corrupt) ||
+         (silent && input_.silence != input.silence);
+}
+
+bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
+  receive_messages();
+  const MonitorInput input{.silence = silence(timed_out),
+                           .corrupt = std::min(corrupt_sensors_, FrameConditions::kPersistence),
+                           .operator_input = operator_input_};
+  if (!happened(input)) return false;
+  input_ = input;
+  if (clock_.run() != 0) {
+    step_law(clock_.now());
+    return true;
+  }
+  monitor_.step(input_, trace_.permit);
+  publish(kRunBeforeDriver);
   return false;
 }
 
-/// A driver that pauses or ends publishes its last frame again. Nothing in it is judged twice, but no other one will
-/// come, and from a paused driver it comes ten times a second: an operator shall not wait for an answer meanwhile.
-void MonitorCycle::note_pause() noexcept {
-  if (arrived_.head.cycle != clock_.cycle()) return;
-  if (arrived_.driver_state == DriverState::kEnded && sensors_.driver_state != DriverState::kEnded) {
-    sensors_.driver_state = arrived_.driver_state;
-    if (input_.sensors != nullptr) {
-      note(MonitorCall::kDriverEnded);
-      monitor_.driver_ended();
-      publish_again();
-    }
-  }
-  if (arrived_.driver_state != DriverState::kPaused) return;
-  sensors_.driver_state = arrived_.driver_state;
-  idle();
-}
-
-void MonitorCycle::silence() noexcept {
-  const bool expected = sensors_.driver_state == DriverState::kPaused || sensors_.driver_state == DriverState::kEnded;
-  if (!silent_ && input_.sensors != nullptr && !expected) {
-    silent_ = true;
-    note(MonitorCall::kDriverLost);
-    monitor_.driver_lost();
-    publish_again();
-  }
-  idle();
-}
-
-void MonitorCycle::idle_without_driver() noexcept {
-  const OperatorInput before = operator_input_;
-  receive_messages();
-  const bool reset = operator_input_.resets != before.resets;
-  const bool stopped = note_emergency_stop();
-  const bool restored = published_run() == 0 && monitor_.causes() != 0;
-  if (!reset && !stopped && !restored) return;
-  if (reset) refuse_reset(kRefusalSilent);
-  note(MonitorCall::kStepWithoutSensors, operator_input_);
-  monitor_.step_without_sensors(operator_input_, trace_.permit);
-  trace_.permit.head = {.run = kRunBeforeDriver};
-  published_run_.store(kRunBeforeDriver, std::memory_order_release);
-  channels_.permit.publish(trace_.permit);
-  note_output(trace_.permit.head.checksum);
-}
-
-/// Ten times a second while time stands still: what repeats itself is not noted.
-bool MonitorCycle::note_emergency_stop() noexcept {
-  const bool news = operator_input_.e_stop_messages != noted_.e_stop_messages ||
-                    operator_input_.e_stop_services != noted_.e_stop_services;
-  const bool stopped = monitor_.note_emergency_stop(operator_input_);
-  if (news || stopped) note(MonitorCall::kEmergencyStop, operator_input_);
-  noted_ = operator_input_;
-  return stopped;
-}
-
-void MonitorCycle::refuse_reset(ResetRefusal why) noexcept {
-  note(MonitorCall::kRefuseReset, operator_input_, why);
-  monitor_.refuse_reset(operator_input_, why);
-}
-
-void MonitorCycle::idle() noexcept {
-  if (input_.sensors == nullptr) {
-    idle_without_driver();
-    return;
-  }
-  const std::uint64_t resets = operator_input_.resets;
-  receive_messages();
-  const bool reset = operator_input_.resets != resets;
-  const bool stopped = note_emergency_stop();
-  if (!reset && !stopped) return;
-  input_.operator_input = operator_input_;
-  const bool paused = sensors_.driver_state == DriverState::kPaused;
-  if (reset) refuse_reset(paused ? kRefusalPaused : kRefusalSilent);
-  publish_again();
-}
-
-void MonitorCycle::publish_again() noexcept {
-  note(MonitorCall::kStepAgain, input_.operator_input, static_cast<std::uint64_t>(sensors_.driver_state));
+void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
+  snapshots_.look(monitor_, calls_.law, sensors_.head);
   monitor_.step(input_, trace_.permit);
-  publish();
-  note_output(trace_.permit.head.checksum);
+  publish(clock_.run());
+  trace_.timing = clock_.timing(woke_ns, sensors_);
+  calls_.silence = input_.silence;
+  calls_.state_seen = input_.state_seen ? 1 : 0;
+  calls_.state_first_cycle = input_.state_first_cycle;
+  calls_.corrupt = input_.corrupt;
+  calls_.operator_input = input_.operator_input;
+  const std::uint64_t sensors = input_.sensors != nullptr ? sensors_.head.checksum : 0;
+  close_row(calls_, sensors, trace_.permit.head.checksum, trace_.calls);
 }
 
-void MonitorCycle::publish() noexcept {
-  trace_.permit.head = {.run = clock_.run(), .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+void MonitorCycle::publish(std::uint64_t run) noexcept {
+  trace_.permit.head = {.run = run, .cycle = clock_.cycle(), .stamp_ns = sensors_.head.stamp_ns};
+  published_run_.store(run, std::memory_order_release);
   channels_.permit.publish(trace_.permit);
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 /// The monitor's duty in one cycle: sensors k (which woke it), command k-1, head of state k-1 → permit k.
 ///
-/// Wall clock: a step that finds no current sensor frame (none, corrupt, of another run or robot than the channel's
-/// head announces) counts as silence once the last current frame is loss_cycles periods old, whatever woke the step.
+/// Every step of the law has one row of the trace. A step without a new sensor frame repeats the run, cycle and stamp
+/// of the last one in its permit. Before the first frame it has no row: the snapshot in the first row covers it.
+///
+/// Wall clock: a wake-up that finds no current sensor frame (none, corrupt, of another run or robot than the channel's
+/// head announces) counts as silence once the last current frame is loss_cycles periods old.
 
 #include <atomic>
 #include <cstdint>
@@ -28,8 +31,9 @@ class MonitorCycle {
     FrameWriter<Permit> permit;
   };
 
+  /// Takes over what the permit in the channel and `latch`, another record of an earlier stop, say was latched.
   MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period, const Channels& channels,
-               CommandScript script, Now now);
+               CommandScript script, Now now, InheritedLatch latch = {});
 
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
@@ -37,27 +41,20 @@ class MonitorCycle {
   /// Random number of this process, in every row.
   void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
 
-  /// True when there was a new sensor frame of the driver's current run, and a permit was computed from it and
-  /// published.
+  /// Something woke the monitor. True: a permit was published, and `trace` is its row.
   bool step() noexcept;
 
-  /// Wall clock: no current sensor frame has come for loss_cycles periods. Unless the driver's last frame reported that
-  /// it is paused or has ended, that latches kCauseDriverLost, and the last permit is published again with it. Then as
-  /// `idle`.
-  void silence() noexcept;
+  /// Wall clock: nothing woke the monitor for loss_cycles periods. Unless the driver's last frame reported that it is
+  /// paused or has ended, that latches kCauseDriverLost. True: as in `step`.
+  bool time_out() noexcept;
 
-  /// No frame has come for a while: answers resets, with a refusal, and emergency stops, with the latch. Before the
-  /// first frame the permit goes out as one of kRunBeforeDriver, which no gate uses.
-  void idle() noexcept;
+  /// Nothing woke the monitor for a while, which means nothing: answers resets, with a refusal, and emergency stops,
+  /// with the latch. Before the first frame the permit is one of kRunBeforeDriver, which no gate uses. True: as in
+  /// `step`.
+  bool idle() noexcept;
 
-  /// What an earlier monitor had latched beyond what the channel still holds; before the first step.
-  void restore(std::uint64_t causes, std::uint64_t first_cause) noexcept { monitor_.restore(causes, first_cause); }
-
-  /// Before the first step: the topic `e_stop` was true when an earlier monitor ended, or may have been.
-  bool e_stop_held() const noexcept { return monitor_.e_stop_held(); }
-
-  /// What was latched when this monitor started.
-  std::uint64_t causes() const noexcept { return monitor_.causes(); }
+  /// The last permit computed, before the first step that with what was latched when this monitor started.
+  const Permit& permit() const noexcept { return trace_.permit; }
 
   /// Any thread: run of the permits that this process publishes; 0: none yet.
   std::uint64_t published_run() const noexcept { return published_run_.load(std::memory_order_acquire); }
@@ -72,21 +69,16 @@ class MonitorCycle {
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
-  void enter_run() noexcept;
+  void inherit(InheritedLatch latch) noexcept;
   void receive_messages() noexcept;
-  void note_corrupt_sensors() noexcept;
-  void note_pause() noexcept;
-  void receive(std::uint64_t cycle) noexcept;
-  void publish_again() noexcept;
-  void restore_last_permit() noexcept;
-  bool wake_without_sensors(std::int64_t woke_ns) noexcept;
-  void idle_without_driver() noexcept;
-  void note(MonitorCall call, const OperatorInput& operator_input = {}, std::uint64_t argument = 0) noexcept;
-  void note_output(std::uint64_t output) noexcept;
-  void close_row() noexcept;
-  bool note_emergency_stop() noexcept;
-  void refuse_reset(ResetRefusal why) noexcept;
-  void publish() noexcept;
+  void advance_script() noexcept;
+  void read_inputs() noexcept;
+  bool step_without_frame(bool timed_out) noexcept;
+  bool republished() noexcept;
+  SensorSilence silence(bool timed_out) const noexcept;
+  bool happened(const MonitorInput& input) const noexcept;
+  void step_law(std::int64_t woke_ns) noexcept;
+  void publish(std::uint64_t run) noexcept;
 
   SafetyMonitor monitor_;
   CycleClock clock_;
@@ -94,21 +86,18 @@ class MonitorCycle {
   CommandScript script_;
   std::uint64_t robot_hash_;
   std::int64_t loss_ns_;         ///< loss_cycles periods
-  std::int64_t current_ns_ = 0;  ///< wall clock, when the last current frame was looked at
-  bool looked_ = false;          ///< the first step is over
+  std::int64_t current_ns_ = 0;  ///< wall clock of the last wake-up that found a current frame
   std::atomic<std::uint64_t> published_run_{0};
   LatestValue<OperatorInput> inbox_;
-  OperatorInput received_;        ///< what the inbox held when last looked at
-  OperatorInput operator_input_;  ///< inbox and script added up
-  OperatorInput noted_;           ///< of the last row or note
-  bool silent_ = false;
-  std::uint64_t corrupt_sensors_ = 0;  ///< in a row
+  OperatorInput received_;             ///< content of the inbox when it was last read
+  OperatorInput operator_input_;       ///< sum of inbox and script
+  std::uint64_t corrupt_sensors_ = 0;  ///< attempts in a row that read a corrupt frame
   SensorFrame arrived_;                ///< as read, not yet checked
-  SensorFrame sensors_;                ///< of the last step
+  SensorFrame sensors_;                ///< of the last step with a frame, with the newest driver state
   StateFrame state_;
   CommandFrame command_;
-  MonitorInput input_;
-  MonitorCalls calls_ = first_row<MonitorCalls>();  ///< since the last row
+  MonitorInput input_;                              ///< of the last step
+  MonitorCalls calls_ = first_row<MonitorCalls>();  ///< of the next row
   Snapshots snapshots_;
   MonitorTrace trace_;
 };

@@ -69,16 +69,17 @@ class ConsumerProcess : public Process {
 
   bool ready() override { return robot_agrees_ && !waits_for_telemetry(); }
 
-  /// The loop: the frame that is there first, then one step per wake. `silence` is called when nothing woke it for
-  /// `wait_ns`; a driver that starts, or an object that is mapped again, wakes it and restarts the wait. So silence
-  /// alone does not show whether the driver was interrupted.
+  /// The loop: the frame that is there first, then one step per wake-up. `silence` is called when nothing woke it for
+  /// `wait_ns`; like a step, it returns whether there is a row. A driver that starts, or an object that is mapped
+  /// again, wakes the loop and restarts the wait: silence alone does not show whether the driver was interrupted.
   template <class Cycle, class Waking, class Silence>
   void consume(Cycle& cycle, const FrameReader<Waking>& wake, std::int64_t wait_ns, Silence silence) noexcept {
+    const auto append = [&] { trace_.append(cycle.trace(), cycle.snapshot(), stopping()); };
     while (!stopping().load(std::memory_order_relaxed)) {
       const std::uint32_t seen = wake.sequence();
       attach();
-      if (cycle.step()) trace_.append(cycle.trace(), cycle.snapshot(), stopping());
-      if (!wake.wait(seen, wait_ns)) silence();
+      if (cycle.step()) append();
+      if (!wake.wait(seen, wait_ns) && silence()) append();
     }
   }
 

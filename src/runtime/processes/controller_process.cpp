@@ -35,7 +35,7 @@ bool ControllerProcess::ready() {
 }
 
 void ControllerProcess::loop() noexcept {
-  consume(cycle_, state_.reader, kStopCheck, [] {});
+  consume(cycle_, state_.reader, kStopCheck, [] { return false; });
 }
 
 }  // namespace robot_control

@@ -17,7 +17,7 @@ std::vector<std::string> EstimatorProcess::missing() const {
 }
 
 void EstimatorProcess::loop() noexcept {
-  consume(cycle_, sensors_.reader, kStopCheck, [] {});
+  consume(cycle_, sensors_.reader, kStopCheck, [] { return false; });
 }
 
 }  // namespace robot_control

@@ -14,15 +14,15 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const RobotModel& r
       latch_file_(parameters.latch_file),
       cycle_(safety_limits(parameters, robot_), robot_, parameters.loop.period(),
              {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
-             load_script(parameters.loop.command_script), clock_of(parameters.loop)),
+             load_script(parameters.loop.command_script), clock_of(parameters.loop),
+             {.causes = latch_file_.found().causes, .first_cause = latch_file_.found().first_cause}),
+      inherited_(cycle_.permit()),
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()) {
   cycle_.set_process(mint_number());
-  const LatchRecord& found = latch_file_.found();
-  if (found.causes != 0) cycle_.restore(found.causes, found.first_cause);
-  e_stop_restored_ = cycle_.e_stop_held();
-  if (cycle_.causes() == 0) return;
-  restored_ = "latched since " + (found.since.empty() ? "before this start" : found.since) + ": " +
-              names_of(kStopCauseNames, cycle_.causes(), ", ") +
+  if (inherited_.causes == 0) return;
+  const std::string& since = latch_file_.found().since;
+  restored_ = "latched since " + (since.empty() ? "before this start" : since) + ": " +
+              names_of(kStopCauseNames, inherited_.causes, ", ") +
               "; the robot brakes until e_stop_reset is called (rosservice call e_stop_reset)";
 }
 
@@ -37,7 +37,7 @@ void MonitorProcess::with_latched(Keep keep) const {
   Permit permit;
   const std::uint64_t run = cycle_.published_run();
   if (run == 0) {
-    keep(cycle_.causes(), latch_file_.found().first_cause);  // the real-time thread has published nothing yet
+    keep(inherited_.causes, inherited_.first_cause);  // the real-time thread has published nothing yet
   } else if (output_.reader.newest(permit) == Lookup::kFrame && permit.head.run == run) {
     keep(permit.causes, permit.first_cause);
   }
@@ -67,9 +67,9 @@ bool MonitorProcess::ready() {
 
 void MonitorProcess::loop() noexcept {
   if (lockstep()) {
-    consume(cycle_, sensors_.reader, kStopCheck, [this] { cycle_.idle(); });
+    consume(cycle_, sensors_.reader, kStopCheck, [this] { return cycle_.idle(); });
   } else {
-    consume(cycle_, sensors_.reader, loss_ns_, [this] { cycle_.silence(); });
+    consume(cycle_, sensors_.reader, loss_ns_, [this] { return cycle_.time_out(); });
   }
 }
 

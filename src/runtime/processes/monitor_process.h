@@ -23,7 +23,7 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
   const std::string& restored() const noexcept { return restored_; }
 
   /// When this process started, the topic `e_stop` counted as true.
-  bool e_stop_restored() const noexcept { return e_stop_restored_; }
+  bool e_stop_restored() const noexcept { return (inherited_.active & kCauseEmergencyStopTopic) != 0; }
 
   /// Why latch_file does not hold what is latched; empty: it does, or there is none. Only for the thread that polls.
   const std::string& latch_file_problem() const noexcept { return latch_file_.problem(); }
@@ -39,8 +39,8 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
   Input<CommandFrame> command_;
   LatchFile latch_file_;
   MonitorCycle cycle_;
+  Permit inherited_;  ///< what was latched when this process started
   std::string restored_;
-  bool e_stop_restored_ = false;
   std::int64_t loss_ns_;
 };
 

@@ -17,7 +17,8 @@ void judge(StopCause cause, std::uint64_t cycles, std::uint64_t joint, ActiveCau
 }  // namespace
 
 void FrameConditions::step(const MonitorInput& input, ActiveCauses& out) noexcept {
-  corrupt_ = input.corrupt ? corrupt_ + 1 : 0;
+  if (input.sensors == nullptr) return judge(kCauseCorruptFrame, input.corrupt, kMaxJoints, out);
+  corrupt_ = input.corrupt != 0 ? corrupt_ + 1 : 0;
   const bool numbers_finite = finite(*input.sensors) && (input.command == nullptr || finite(*input.command));
   not_finite_ = numbers_finite ? 0 : not_finite_ + 1;
   judge(kCauseCorruptFrame, corrupt_, kMaxJoints, out);

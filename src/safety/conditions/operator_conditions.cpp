@@ -24,6 +24,7 @@ void OperatorConditions::step(const MonitorInput& input, bool driving, ActiveCau
   const std::uint64_t stops = emergency_stops(input.operator_input);
   if ((stops & kCauseEmergencyStopTopic) != 0) out.add(kCauseEmergencyStopTopic, Reaction::kBrake);
   if ((stops & kCauseEmergencyStopService) != 0) out.add(kCauseEmergencyStopService, Reaction::kBrake);
+  if (input.sensors == nullptr) return;
   if ((input.sensors->digital_inputs & kInputEmergencyStop) != 0) {
     out.add(kCauseEmergencyStopInput, Reaction::kBrake);
   }

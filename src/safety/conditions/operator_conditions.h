@@ -27,15 +27,13 @@ class OperatorConditions {
 
   /// After a restart of the monitor: the topic e_stop counts as true until its next message.
   void hold_e_stop() noexcept { e_stop_held_ = true; }
-  bool e_stop_held() const noexcept { return e_stop_held_; }
 
-  /// `driving`: the state before this cycle is DRIVE.
+  /// `driving`: the state before this cycle is DRIVE. Without a sensor frame only topic and service are evaluated.
   void step(const MonitorInput& input, bool driving, ActiveCauses& out) noexcept;
 
-  /// StopCause bits of the topic and the service, each event reported once. For times without sensor frames.
-  std::uint64_t emergency_stops(const OperatorInput& operator_input) noexcept;
-
  private:
+  /// StopCause bits of the topic and the service; each event is reported once.
+  std::uint64_t emergency_stops(const OperatorInput& operator_input) noexcept;
   bool heartbeat_lost(std::uint64_t heartbeats, std::uint64_t cycle, bool driving) noexcept;
 
   double period_;
