@@ -13,9 +13,9 @@
 ///   another owner, open to others BusError naming owner or mode; its mode is not corrected, because another
 ///                                 process may still have it open
 ///   a link, directory, pipe       BusError
-/// What the processes of another bus left is removed by the next start of any node (bus_cleanup.h).
-/// A reader maps read-only. It maps nothing but what is usable: an unlocked unusable object is waited for, because its
-/// next writer replaces it; a locked one and a foreign owner are a BusError. A lock does not outlive the process
+/// The next start of any node removes the objects that processes of another bus left (bus_cleanup.h).
+/// A reader maps read-only, and only usable objects. It waits for an unusable object that is not locked, because the
+/// next writer replaces it. A locked one and a foreign owner are a BusError. A lock does not outlive the process
 /// that took it, unless a forked child has kept the descriptor.
 
 #include <cstdint>
@@ -30,8 +30,8 @@
 
 namespace robot_control {
 
-/// `name` of the bus where the parameter `bus` is empty: 16 hex digits of a hash (64-bit FNV-1a) of the port of
-/// the ROS master (11311 where the URI has none) and the namespace ("robot2", "/robot2" and "/robot2/" are one).
+/// `name` of the bus if the parameter `bus` is empty: 16 hex digits of a 64-bit FNV-1a hash. It covers the port of the
+/// ROS master (11311 where the URI has none) and the namespace ("robot2", "/robot2" and "/robot2/" are one).
 std::string bus_name(const std::string& master_uri, const std::string& name_space);
 
 struct ChannelNames {
@@ -67,8 +67,8 @@ struct BusLayoutOf<RingPositions> {
 template <class Object>
 class OwnedChannel {
  public:
-  /// Object is LatestFrames<Frame>, Ring<Row> or RingPositions. Throws BusError. What a writer says of itself
-  /// in the head (run attached to, robot) restarts.
+  /// Object is LatestFrames<Frame>, Ring<Row> or RingPositions. Throws BusError. The writer's own entries in the
+  /// head (run attached to, robot) restart.
   OwnedChannel(const std::string& bus, const std::string& channel)
       : object_(OwnedBusObject::claim(bus, channel, BusLayoutOf<Object>::value)) {
     // A reader of the retired object may come with a sequence seen there; equal numbers would let it sleep.

@@ -72,10 +72,10 @@ bool latched(const SharedMemory& permits) {
 bool remove_bus(const std::string& bus, const std::vector<std::string>& channels) {
   const std::vector<LockedObject> objects = locked(bus, channels);
   if (objects.empty()) return false;
-  for (const LockedObject& of : objects) {
-    if (of.channel == ChannelNames::kPermit && latched(of.object)) return false;
+  for (const LockedObject& each : objects) {
+    if (each.channel == ChannelNames::kPermit && latched(each.object)) return false;
   }
-  for (const LockedObject& of : objects) shm_unlink(of.name.c_str());
+  for (const LockedObject& each : objects) shm_unlink(each.name.c_str());
   return true;
 }
 

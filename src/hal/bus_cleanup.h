@@ -6,15 +6,16 @@
 ///   · this process holds the writer's lock of every one of them, so that no writer lives, and
 ///   · the last permit has no latched cause. A permit that cannot be read counts as latched: its bus stays until
 ///     its own next start.
-/// A node that starts on that bus at the same moment waits for those locks (bus_object.cpp) and finds the names gone,
-/// or holds one already, and the bus stays. Names of a bus that appear meanwhile are not touched.
+/// A node that starts on that bus at the same moment waits for those locks (bus_object.cpp) and finds the names gone.
+/// If it already holds a lock, the bus stays. Names of a bus that appear meanwhile are not touched.
 
 #include <string>
 #include <vector>
 
 namespace robot_control {
 
-/// Of every bus but `own`. Returns the names of the buses that were removed; fails in silence, for it is a favour.
+/// Removes every ended bus but `own`. Returns the names of the removed buses. A failure is not reported, because the
+/// node that calls does not depend on it.
 std::vector<std::string> remove_ended_buses(const std::string& own);
 
 }  // namespace robot_control

@@ -104,7 +104,7 @@ const char* kind_text(mode_t mode) {
 /// have it open still.
 [[noreturn]] void fail_not_private(const std::string& channel, const std::string& name) {
   const std::string file = file_of(name);
-  const std::string look = "see 'ls -l " + file + "'; ";
+  const std::string listing = "see 'ls -l " + file + "'; ";
   struct stat status {};
   if (lstat(file.c_str(), &status) != 0) {
     fail(channel, name, "may not be opened or made by " + user_name(geteuid()),
@@ -112,18 +112,18 @@ const char* kind_text(mode_t mode) {
   }
   if (status.st_uid != geteuid()) {
     fail(channel, name, "belongs to " + user_name(status.st_uid) + ", and this node runs as " + user_name(geteuid()),
-         look + "let its owner or root remove it, start all nodes as one user, or set another parameter 'bus'");
+         listing + "let its owner or root remove it, start all nodes as one user, or set another parameter 'bus'");
   }
   if (!S_ISREG(status.st_mode)) {
-    fail(channel, name, std::string(kind_text(status.st_mode)) + " stands in its place", look + "remove it");
+    fail(channel, name, std::string(kind_text(status.st_mode)) + " stands in its place", listing + "remove it");
   }
   char mode[8];
   std::snprintf(mode, sizeof mode, "%04o", static_cast<unsigned>(status.st_mode & 07777U));
   fail(channel, name, std::string("its mode is ") + mode + ", and must be 0600: others than this user may have it open",
-       look + "stop all nodes and remove it; the next start creates it again");
+       listing + "stop all nodes and remove it; the next start creates it again");
 }
 
-/// Of descriptors, here or on the whole machine: it passes.
+/// A shortage of descriptors, in this process or on the whole machine, is temporary.
 bool is_shortage(const std::system_error& error) {
   return error.code().value() == EMFILE || error.code().value() == ENFILE;
 }
@@ -184,7 +184,7 @@ void take_over(SharedMemory& object, const BusLayout& layout, MemoryMapping& map
   head->robot_hash.store(0, std::memory_order_release);
 }
 
-/// Readers of the old object look for the new one as soon as they see the flag.
+/// Readers of the old object map the new one as soon as the flag is set.
 void retire(const SharedMemory& object) {
   const std::uint64_t retired = 1;
   object.write_at(offsetof(HeadStart, retired), &retired, sizeof retired);
@@ -268,7 +268,7 @@ ForeignBusObject::ForeignBusObject(const std::string& bus, std::string channel, 
 
 bool ForeignBusObject::poll() {
   try {
-    return look();
+    return map_newest();
   } catch (const std::system_error& error) {
     if (!is_shortage(error)) fail_system(channel_, name_, error);
     obstacle_ = "cannot be looked at: too many open files";
@@ -276,7 +276,7 @@ bool ForeignBusObject::poll() {
   }
 }
 
-bool ForeignBusObject::look() {
+bool ForeignBusObject::map_newest() {
   std::optional<SharedMemory> named = SharedMemory::open(name_, Access::kReadOnly);
   obstacle_ = named ? "" : "does not exist yet";
   if (!named || is_current(*named)) return false;
@@ -289,12 +289,12 @@ bool ForeignBusObject::look() {
   return true;
 }
 
-/// A retired object is never current: the next look is for its successor.
+/// A retired object is never current: the next call maps its successor.
 bool ForeignBusObject::is_current(const SharedMemory& named) const {
   return object_ && object_->same_object(named) && inspect(named, layout_) == Finding::kUsable;
 }
 
-/// What keeps the object from being mapped; empty: nothing. An unlocked wreck is its next writer's to clear
+/// The reason why the object is not mapped; empty: it can be. An unlocked wreck is its next writer's to clear
 /// away; a locked one stays what it is, so that is an error.
 std::string ForeignBusObject::obstacle_of(const SharedMemory& named) const {
   Finding finding = inspect(named, layout_);

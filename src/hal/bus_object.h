@@ -1,5 +1,5 @@
 #pragma once
-/// What is the same for a channel of any type: the claim of an object by its writer, the view of a reader.
+/// The part of a channel that is the same for any type: the claim of an object by its writer, the view of a reader.
 /// The protocol: hal/bus.h.
 
 #include <atomic>
@@ -15,13 +15,13 @@
 
 namespace robot_control {
 
-/// What (channel, object), why, remedy.
+/// The message names the channel or object, the reason and the remedy.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What the head of a channel's object must contain, and how long the object must be.
+/// The required content of the head of a channel's object, and the object's length.
 struct BusLayout {
   std::uint64_t object_bytes = 0;
   std::uint64_t frame_bytes = 0;
@@ -32,7 +32,7 @@ struct BusLayout {
 /// letters, digits, '_', '-', '.', or the whole is longer than a file name may be.
 std::string bus_object_name(const std::string& bus, const std::string& channel);
 
-/// What an object holds for a process that expects `layout`.
+/// The content of an object for a process that expects `layout`.
 enum class BusContent { kUsable, kNone, kUnreadable };
 BusContent content_of(const SharedMemory& object, const BusLayout& layout);
 
@@ -65,7 +65,7 @@ class ForeignBusObject {
   const std::string& obstacle() const noexcept { return obstacle_; }
 
  private:
-  bool look();
+  bool map_newest();
   bool is_current(const SharedMemory& named) const;
   std::string obstacle_of(const SharedMemory& named) const;
 

@@ -69,8 +69,8 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
 
 void Gate::read_samples(const GateInput& input) noexcept {
   const SensorFrame& sensors = *input.sensors;
-  const bool there = (sensors.valid & kValidJoints) != 0 && sensors.joint_count == limits_.size();
-  samples_ = std::span(sensors.joints).first(there ? limits_.size() : 0);
+  const bool sampled = (sensors.valid & kValidJoints) != 0 && sensors.joint_count == limits_.size();
+  samples_ = std::span(sensors.joints).first(sampled ? limits_.size() : 0);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (std::isfinite(samples_[i].position)) memory_[i].speed.step(samples_[i].position, input.cycle);
   }

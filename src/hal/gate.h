@@ -69,7 +69,7 @@ class Gate {
   const GateReport& report() const noexcept { return report_; }
 
  private:
-  /// Of one joint, from tick to tick.
+  /// The state of one joint between two ticks.
   struct JointMemory {
     JointSpeed speed;
     bool driven = false;  ///< a command moved it in the last tick

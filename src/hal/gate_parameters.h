@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-/// What the wheels get while the gate brakes.
+/// The command of the wheels while the gate brakes.
 enum class FailAction {
   kBrake,  ///< the driver's brake: damped, then held
   kCoast,  ///< no torque: the robot rolls until friction stops it, and on a slope it rolls away

@@ -1,6 +1,6 @@
 #pragma once
-/// What is left of one joint's command within the limits of that joint. Each law only takes away: what it does not
-/// forbid passes bit for bit. They return GateReason bits, 0 where nothing was clamped.
+/// Clamps one joint's command to the limits of that joint. A value within its limit passes bit for bit. Each function
+/// returns GateReason bits, 0 where nothing was clamped.
 ///
 /// q: position, v: speed, e: effort, all of the joint; its torque is that of JointMode.
 

@@ -4,10 +4,11 @@
 ///   speed(k) = (q_a − q_b)/(max(a − b, k − a, base)·period)
 ///
 /// a: the last cycle in which the position changed; b: the last such cycle ≥ base before a, else the oldest one known.
-/// From change to change whole counts pass, so a steady speed is off by one cycle of a − b ≥ base at most where the
-/// counts are coarser than the samples, by one count of q_a − q_b where they are finer: at 1 kHz 8 % with 64 counts a
-/// turn, 0.13 rad/s with 4096, where one cycle's difference jumps by 98 and 1.5 rad/s. A wheel that dithers about an
-/// edge is no faster than a count per base; one that stands fades with k − a. The speed is that of base/2 ago.
+/// From change to change whole counts pass. If the counts are coarser than the samples, a steady speed is off by at
+/// most one cycle of a − b ≥ base. If they are finer, it is off by at most one count of q_a − q_b. At 1 kHz that is 8 %
+/// with 64 counts a turn and 0.13 rad/s with 4096; one cycle's difference jumps by 98 and 1.5 rad/s. A wheel that
+/// dithers about an edge is no faster than a count per base; one that stands fades with k − a. The speed is that of
+/// base/2 ago.
 ///
 /// Cycles that were skipped count. Real-time safe: constant size, no loop over the window.
 

@@ -30,7 +30,7 @@ class SnapshotStore {
 /// How the state before a row came about.
 enum class StateBefore { kUnknown, kContinued, kRestored };
 
-/// Of one law.
+/// The continuity of one law.
 class Continuity {
  public:
   Continuity(LawName law, ReplayReport& report) noexcept : law_(law), report_(report) {}

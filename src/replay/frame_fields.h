@@ -1,5 +1,5 @@
 #pragma once
-/// Where two frames differ, by the names of their members.
+/// Compares two frames by the names of their members.
 
 #include <string>
 #include <vector>

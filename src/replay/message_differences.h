@@ -1,5 +1,5 @@
 #pragma once
-/// Where a message Trace of a log is not what its row makes of it.
+/// Compares a message Trace of a log with the message that its row makes.
 
 #include <string_view>
 #include <vector>

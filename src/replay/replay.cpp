@@ -20,19 +20,19 @@ namespace {
 /// Which of the frames that a law used is neither in the log nor computed again; empty: none.
 struct Needed {
   const char* name;
-  bool there;
+  bool known;
   std::uint64_t cycle;
 };
 std::string unknown(std::initializer_list<Needed> frames) {
   for (const Needed& frame : frames) {
-    if (!frame.there)
+    if (!frame.known)
       return std::string("the ") + frame.name + " of cycle " + std::to_string(frame.cycle) +
              ", which it used, is not known";
   }
   return {};
 }
 
-/// Of the frame that a law computes in the cycle of `head`.
+/// The head of the frame that a law computes in the cycle of `head`.
 FrameHead own_head(const FrameHead& head) {
   return {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns};
 }

@@ -5,15 +5,13 @@
 ///   rows     ─► its inputs: sensors, requests, and which frames of the other laws it used, by checksum
 ///            ─► step ─► checksum of the output, compared with that in the row; the output is what the others used
 ///
-/// Of a row that was read from a log, the whole message is compared: with what the laws gave, and the frames that they
-/// used, its fields are put together again, byte for byte. So what people read is what the laws computed; what no law
-/// computes is covered by the checksum of the message (message_differences.h).
+/// The whole message of a row that was read from a log is compared, byte for byte. Its fields are put together again
+/// from the outputs of the laws and the frames that they used. Values that no law computes are covered by the checksum
+/// of the message (message_differences.h).
 ///
-/// A law whose state is not known (before its first snapshot, after rows that are missing, in another process) is not
-/// compared until its next snapshot; neither is one that used a frame that is neither in the log nor computed again.
-/// What was published instead of a law's output, because a fault was injected, is in the log, and is what the others
-/// used.
-///
+/// A law is not compared until its next snapshot while its state is unknown: before its first snapshot, after missing
+/// rows, in another process. The same holds after it used a frame that is neither in the log nor computed again. If an
+/// injected fault replaced a law's output, the log holds the published frame, which the other laws used.
 
 #include <array>
 #include <cstdint>

@@ -13,7 +13,7 @@
 
 namespace robot_control {
 
-/// What was published, found by checksum.
+/// The published frames, found by checksum.
 struct PublishedFrames {
   FrameHistory<SensorFrame> sensors;
   FrameHistory<StateFrame> state;
@@ -22,11 +22,11 @@ struct PublishedFrames {
 };
 
 /// The sensor frame that a node used, as the driver published it or, as paused or ended, published it again.
-inline bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& of, std::uint64_t checksum,
+inline bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& head, std::uint64_t checksum,
                        SensorFrame& out) {
   const SensorFrame* found = published.find(checksum);
   const bool again = found == nullptr;
-  if (again) found = published.find(of.run, of.cycle);
+  if (again) found = published.find(head.run, head.cycle);
   if (found == nullptr) return false;
   out = *found;
   if (!again) return true;

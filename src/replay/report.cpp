@@ -10,7 +10,7 @@ std::string_view name_of(LawName law) noexcept {
 }
 
 void ReplayReport::add(ReplayDifference difference) {
-  if (differences.size() < kMostDifferences) differences.push_back(std::move(difference));
+  if (differences.size() < kMaxDifferences) differences.push_back(std::move(difference));
 }
 
 bool ReplayReport::exact() const noexcept {
@@ -20,9 +20,10 @@ bool ReplayReport::exact() const noexcept {
 }
 
 std::string sentence(const ReplayDifference& difference) {
-  const std::string_view of = difference.law ? name_of(*difference.law) : "row";
-  return std::string(of) + ", run " + std::to_string(difference.run) + ", cycle " + std::to_string(difference.cycle) +
-         ": " + difference.field + " is " + difference.replayed + ", logged as " + difference.logged;
+  const std::string_view source = difference.law ? name_of(*difference.law) : "row";
+  return std::string(source) + ", run " + std::to_string(difference.run) + ", cycle " +
+         std::to_string(difference.cycle) + ": " + difference.field + " is " + difference.replayed + ", logged as " +
+         difference.logged;
 }
 
 std::string sentence(const ReplayGap& gap) {

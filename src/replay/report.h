@@ -1,5 +1,5 @@
 #pragma once
-/// What a replay found.
+/// The result of a replay.
 
 #include <array>
 #include <cstdint>
@@ -44,7 +44,7 @@ struct LawReport {
 };
 
 struct ReplayReport {
-  static constexpr std::size_t kMostDifferences = 1000;
+  static constexpr std::size_t kMaxDifferences = 1000;
 
   std::array<LawReport, kLaws> laws;
   std::uint64_t rows = 0;                     ///< whose messages were compared
@@ -53,7 +53,7 @@ struct ReplayReport {
   std::vector<ReplayGap> gaps;
   std::uint64_t damaged_snapshots = 0;  ///< whose checksum is wrong: not used
 
-  /// The first kMostDifferences are kept.
+  /// The first kMaxDifferences are kept.
   void add(ReplayDifference difference);
 
   /// Everything that could be compared was computed again, bit for bit, and there was at least one row.

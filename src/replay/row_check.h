@@ -11,9 +11,8 @@
 
 namespace robot_control {
 
-/// Makes of the frame in a row the one that the row has to hold: the computed one, or, where `fault` made another one
-/// of it, that one, whole and sealed. A fault breaks the seal of some frames (faults/node_faults.h); the
-/// content of one that it withheld is not known.
+/// Sets `logged` to the frame that the row has to hold: the computed one, or the one that `fault` made of it, sealed. A
+/// fault breaks the seal of some frames (faults/node_faults.h). The content of a frame that it withheld is not known.
 template <class Frame>
 void expect(const Frame& computed, FaultKind fault, Frame& logged) noexcept {
   const bool published = logged.head.kind == FrameKind::kFrame;

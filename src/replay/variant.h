@@ -1,6 +1,6 @@
 #pragma once
-/// The laws with other parameters, on the inputs of the log: what they would have given had everything else come as it
-/// did (open loop: the robot does not move otherwise for it).
+/// The laws with other parameters, on the inputs of the log. This is open loop: the robot of the log does not move
+/// differently for it.
 ///
 /// The controller takes its limits and gains over where the log begins, as from ~set_parameters. The estimator and the
 /// monitor begin at the first beginning of a run in the log.
@@ -17,7 +17,7 @@
 
 namespace robot_control {
 
-/// What a law gave in one cycle, and what it would have given; of the other laws, and before they begin, null.
+/// The output of one law in one cycle, beside that with other parameters. Those of other laws are null.
 struct VariedRow {
   std::int64_t run = 0;  ///< JoinedRow::run
   std::uint64_t cycle = 0;
@@ -33,7 +33,7 @@ class Variant {
  public:
   Variant(const Parameters& parameters, const RobotModel& robot);
 
-  /// Of one cycle. Null: the law has not begun.
+  /// The output of one cycle. Null: the law has not begun.
   const StateFrame* step(const EstimatorCalls& calls, const SensorFrame& sensors) noexcept;
 
   /// `law`: in the state of the log before this step.

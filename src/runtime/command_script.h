@@ -7,14 +7,14 @@
 ///   1500,,,e_stop
 ///   3000,0,0,e_stop_reset
 ///
-/// A row is a message received in that cycle: m/s and rad/s as on `cmd_vel` and subject to its timeout, `e_stop`
-/// as a call of `e_stop_trigger`, `e_stop_reset` as one of its service. The header line must be there, its last
-/// column may be left out. A row with an event may leave both speeds empty. NaN and infinity are let through: a
-/// bad message is a legitimate test, and the controller's to refuse. Blank lines and lines that begin with # are
-/// skipped. Cycles may repeat, not decrease.
+/// A row is a message received in that cycle. Speeds are m/s and rad/s as on `cmd_vel`, and subject to its timeout. The
+/// events are calls of the services `e_stop_trigger` and `e_stop_reset`. The header line is required, its last column
+/// may be left out. A row with an event may leave both speeds empty. NaN and infinity are passed on: a bad message is a
+/// legitimate test, and the controller refuses it. Blank lines and lines that begin with # are skipped. Cycles may
+/// repeat, not decrease.
 ///
-/// A script begins each run with a request of zero velocity before its first row, because nothing older can be pending:
-/// the first row may move the robot (safety/latch/motion_release.h).
+/// A script begins each run with a request of zero velocity before its first row. So the first row may move the robot
+/// (safety/latch/motion_release.h).
 
 #include <cstdint>
 #include <optional>
@@ -26,7 +26,7 @@
 
 namespace robot_control {
 
-/// What was received since the last look.
+/// The messages received since the last call of `advance`.
 struct ScriptEvents {
   bool has_twist = false;
   Twist twist;               ///< the last one received
@@ -53,7 +53,7 @@ class CommandScript {
   /// A new run: from the first row again.
   void rewind() noexcept { next_ = 0; }
 
-  /// Each run begins with a zero request; so does every script that was read.
+  /// Each run then begins with a zero request, as every script that was read does.
   void begin_with_zero() noexcept { begins_with_zero_ = true; }
   bool begins_with_zero() const noexcept { return begins_with_zero_; }
 

@@ -72,9 +72,9 @@ std::string body(const LatchRecord& record) {
 
 LatchRecord read_latch(const std::string& path) {
   std::error_code ignored;
-  // Of the link, not of its target: a link to nothing may lead to a disk that is not mounted.
+  // The link counts, not its target: a link to nothing may lead to a disk that is not mounted.
   if (std::filesystem::symlink_status(path, ignored).type() == std::filesystem::file_type::not_found) return {};
-  const InputFile file = read_input_file(path, LatchFile::kLargest);
+  const InputFile file = read_input_file(path, LatchFile::kMaxSize);
   return file.problem.empty() ? parse_latch(file.text) : unreadable();
 }
 
@@ -145,7 +145,7 @@ void LatchFile::write(const LatchRecord& record) {
   });
 }
 
-void LatchFile::look(std::uint64_t causes, std::uint64_t first_cause) {
+void LatchFile::update(std::uint64_t causes, std::uint64_t first_cause) {
   if (path_.empty()) return;
   if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   wait();
@@ -160,7 +160,7 @@ void LatchFile::look(std::uint64_t causes, std::uint64_t first_cause) {
 void LatchFile::finish(std::uint64_t causes, std::uint64_t first_cause) {
   wait();
   next_try_ns_ = 0;
-  look(causes, first_cause);
+  update(causes, first_cause);
   wait();
 }
 

@@ -6,13 +6,13 @@
 ///   since: 2026-11-21T08:55:16Z
 ///   checksum: 91d2f3a8c0b7e645        of the three lines above (signals/checksum.h)
 ///
-/// An absent file is no latch. Everything else that is not exactly such a record counts as a latch with the cause
-/// kCauseLatchUnreadable: another format, an unknown cause, a wrong checksum, a file larger than kLargest, no regular
-/// file, a link to nothing, no permission. After a release the file says `causes: []`.
+/// An absent file is no latch. Anything else that is not such a record is a latch with kCauseLatchUnreadable. Examples
+/// are another format, an unknown cause, a wrong checksum and a file larger than kMaxSize. So are a file that is not
+/// regular, a link to nothing and a file without permission. After a release the file says `causes: []`.
 ///
-/// Written by an ordinary thread as files/output_file.h says: whole or not at all, synchronised, through a symbolic
-/// link. Missing folders are made. What is no regular file is never written to. A failure is kept in `problem` and
-/// tried again whenever the causes change, and once a second.
+/// An ordinary thread writes it as files/output_file.h says: whole or not at all, synchronised, through a symbolic
+/// link. Missing folders are made. Only a regular file is written to. A failure is kept in `problem` and tried again
+/// whenever the causes change, and once a second.
 
 #include <cstdint>
 #include <future>
@@ -37,7 +37,7 @@ LatchRecord parse_latch(const std::string& text);
 
 class LatchFile {
  public:
-  static constexpr std::size_t kLargest = 4096;  ///< bytes; a record with every cause has about 700
+  static constexpr std::size_t kMaxSize = 4096;  ///< bytes; a record with every cause has about 700
 
   /// `path` empty: nothing is read or written.
   explicit LatchFile(const std::string& path);
@@ -45,11 +45,11 @@ class LatchFile {
   LatchFile(const LatchFile&) = delete;
   LatchFile& operator=(const LatchFile&) = delete;
 
-  /// What the file held when this object was made.
+  /// The content of the file when this object was made.
   const LatchRecord& found() const noexcept { return found_; }
 
   /// Ordinary thread: begins to write when the causes differ from those of the file. Does not wait for the disk.
-  void look(std::uint64_t causes, std::uint64_t first_cause);
+  void update(std::uint64_t causes, std::uint64_t first_cause);
 
   /// At the end: the same, and waits.
   void finish(std::uint64_t causes, std::uint64_t first_cause);
@@ -70,7 +70,7 @@ class LatchFile {
   std::future<std::string> writing_;
 };
 
-/// Where the record lies: `setting` itself, or where that is a folder (ends with '/', or exists as one) the file
+/// The path of the record: `setting` itself, or, if that is a folder (it ends with '/', or exists as one), the file
 /// latch.<host>.<name space, '/' as '.'> in it.
 std::string latch_path(const std::string& setting, const std::string& host, const std::string& name_space);
 

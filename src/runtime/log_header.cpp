@@ -25,8 +25,8 @@ std::string processor() {
 }
 
 /// Empty where there is no such file: a log goes without it.
-std::string text_of(const std::string& path, std::size_t most) {
-  return path.empty() ? std::string() : read_input_file(path, most).text;
+std::string text_of(const std::string& path, std::size_t max_size) {
+  return path.empty() ? std::string() : read_input_file(path, max_size).text;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace robot_control {
 
-/// What a log of this robot with these parameters, on this computer, begins with.
+/// The header of a log of this robot with these parameters, on this computer.
 LogHeader log_header(const Parameters& parameters, const RobotModel& robot);
 
 }  // namespace robot_control

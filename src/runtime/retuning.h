@@ -2,14 +2,14 @@
 /// Limits and gains of the controller, changed while it drives: the services ~set_parameters and
 /// ~set_parameter_map, without ROS.
 ///
-/// A request is taken as a whole or not at all. Against it stand all that would refuse a start (the schema's rules and
-/// contradictions, control_problems) and what was derived elsewhere at start and stays: the monitor stops a robot whose
-/// wheels exceed its wheel_speed limit Ω. Speed limits that ask more of a wheel than those of the start must leave it
-/// the least margin that it derives for itself (derived_limits.h),
+/// A request is accepted as a whole or refused. It is refused for every reason that would refuse a start: the schema's
+/// rules and contradictions, control_problems. The monitor's limits stay those of its start: it stops a robot whose
+/// wheels exceed its wheel_speed limit Ω. Speed limits that command a wheel to turn faster than those of the start must
+/// leave the monitor its smallest margin (derived_limits.h),
 ///
 ///   least_wheel_speed_limit(commanded_wheel_speed) ≤ Ω
 ///
-/// What is left out stays derived, from the new values. Accepted values are what the next request is laid over.
+/// Values that the request leaves out stay derived, from the new values. The next request is laid over accepted values.
 
 #include <mutex>
 #include <string>
@@ -24,7 +24,7 @@
 
 namespace robot_control {
 
-/// What was accepted.
+/// An accepted request.
 struct Retuned {
   std::uint64_t count = 0;  ///< DriveTuning::count, column `tuning` of the log
   std::vector<LiveValue> values;
@@ -45,7 +45,7 @@ class Retuning {
   /// Throws ParameterError with every reason; then nothing changes. Any ordinary thread.
   Retuned set(const std::string& request);
 
-  /// What holds now, as the user would have to set it. Any ordinary thread.
+  /// The values in force, as the user would have to set them. Any ordinary thread.
   DriveControllerParameters in_force() const;
 
   /// The same, each value with its range; those that are derived as the numbers that hold (of the first wheel). Any

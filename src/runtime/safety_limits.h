@@ -1,6 +1,6 @@
 #pragma once
-/// The monitor's limits as every composition of the loop runs with them: what the user gave, the rest from the robot
-/// and from how fast its controller may drive it.
+/// The monitor's limits in every composition of the loop. Limits that the user left out follow from the robot and from
+/// the speed limits of its controller.
 
 #include "parameters/parameters.h"
 #include "robot/robot_model.h"

@@ -34,17 +34,17 @@ SimulationServices::SimulationServices(LoopHold& hold, Driver& driver, DriverCyc
                                        std::function<std::vector<std::string>()> missing)
     : hold_(hold), driver_(driver), cycle_(cycle), missing_(std::move(missing)) {}
 
-/// With `request_mutex_` held.
-std::uint64_t SimulationServices::ask() {
-  request_.number = hold_.ask(request_);
+/// Its caller holds `request_mutex_`.
+std::uint64_t SimulationServices::send_request() {
+  request_.number = hold_.request(request_);
   return request_.number;
 }
 
-std::uint64_t SimulationServices::ask_pause(bool pause) {
+std::uint64_t SimulationServices::request_pause(bool pause) {
   const std::lock_guard lock(request_mutex_);
   request_.paused = pause ? 1 : 0;
   request_.step_until = 0;
-  return ask();
+  return send_request();
 }
 
 std::string SimulationServices::waiting_for() const {
@@ -54,7 +54,7 @@ std::string SimulationServices::waiting_for() const {
 }
 
 ServiceAnswer SimulationServices::set_pause(bool pause) {
-  const std::uint64_t number = ask_pause(pause);
+  const std::uint64_t number = request_pause(pause);
   if (!pause) return {true, "running" + waiting_for()};
   if (hold_.await_stand(number, kTimeout)) return {true, "paused " + before(hold_.next_cycle())};
   return {true, "will pause; no cycle runs now" + waiting_for()};
@@ -72,12 +72,12 @@ ServiceAnswer SimulationServices::step(std::uint64_t cycles) {
       if (hold_.stands(request_.number)) {  // and stands until another thread gets this lock
         const std::uint64_t first = hold_.next_cycle();
         request_.step_until = first + std::min(cycles, std::numeric_limits<std::uint64_t>::max() - first);
-        steps = {.number = ask(), .first = first, .target = request_.step_until};
+        steps = {.number = send_request(), .first = first, .target = request_.step_until};
         break;
       }
     }
     if (monotonic_ns() > end_ns) return {false, "time stands still anyway" + waiting_for()};
-    sleep_ns(LoopHold::kLook);
+    sleep_ns(LoopHold::kPollPeriod);
   }
   return await_steps(steps);
 }
@@ -86,13 +86,13 @@ ServiceAnswer SimulationServices::await_steps(const Steps& steps) {
   std::uint64_t seen = steps.first;
   std::int64_t seen_ns = monotonic_ns();
   while (!hold_.stands(steps.number)) {
-    sleep_ns(LoopHold::kLook);
+    sleep_ns(LoopHold::kPollPeriod);
     if (!hold_.looping()) return ended();
     if (const std::uint64_t next = hold_.next_cycle(); next != seen) {
       seen = next;
       seen_ns = monotonic_ns();
     } else if (monotonic_ns() - seen_ns > kStandstill) {
-      ask_pause(true);
+      request_pause(true);
       return {false, "time stands still " + before(next) + waiting_for()};
     }
     const std::lock_guard lock(request_mutex_);
@@ -112,7 +112,7 @@ ServiceAnswer SimulationServices::reset() {
     request_.parked = hold_.looping() ? 1 : 0;
     request_.step_until = 0;
     request_.faults = {};
-    number = ask();
+    number = send_request();
     if (request_.parked == 0 && hold_.next_cycle() > 0) return ended();
     if (request_.parked == 0) return {true, "no cycle has run yet" + waiting_for()};
   }
@@ -132,7 +132,7 @@ ServiceAnswer SimulationServices::reset() {
   const std::lock_guard lock(request_mutex_);
   request_.parked = 0;
   if (answer.success && request_.paused != 0) answer.message += ", paused";
-  ask();
+  send_request();
   return answer;
 }
 
@@ -146,7 +146,7 @@ ServiceAnswer SimulationServices::inject_fault(const std::string& component, con
   }
   std::string problem = set_fault(request_.faults, component, kind);
   if (!problem.empty()) return {false, std::move(problem)};
-  ask();
+  send_request();
   return {true, "injected: " + names_of(request_.faults)};
 }
 

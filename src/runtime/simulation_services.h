@@ -1,5 +1,5 @@
 #pragma once
-/// What an operator may do to a simulated machine while it runs: the services of mujoco_plant, without ROS.
+/// The services of mujoco_plant, without ROS: an operator controls a simulated machine while it runs.
 ///
 /// Every call may come from any ordinary thread. It returns once it is done, or says why it is not; `step` and
 /// `reset` refuse while another one of them is under way.
@@ -34,9 +34,9 @@ class SimulationServices {
   /// While paused: runs exactly so many cycles, then stands again.
   ServiceAnswer step(std::uint64_t cycles);
 
-  /// The machine returns to its initial pose, without faults, and a new run begins at cycle 0, one period after the
-  /// last stamp: estimator, controller and counters restart, a latched stop stays. Paused stays paused. Does not
-  /// succeed where the machine does not start; then the old run goes on, with the driver's fault.
+  /// The machine returns to its initial pose, without faults. A new run begins at cycle 0, one period after the last
+  /// stamp: estimator, controller and counters restart, a latched stop stays. A paused machine stays paused. If the
+  /// machine does not start, the reset fails, and the old run goes on with the driver's fault.
   ServiceAnswer reset();
 
   /// From the next cycle on; words of names.h, "ok" ends a fault. Unknown ones are answered with the list. A fault of a
@@ -45,13 +45,13 @@ class SimulationServices {
 
  private:
   struct Steps {
-    std::uint64_t number = 0;  ///< of the request
+    std::uint64_t number = 0;  ///< number of the request
     std::uint64_t first = 0;
     std::uint64_t target = 0;  ///< the cycle behind the last one
   };
 
-  std::uint64_t ask();
-  std::uint64_t ask_pause(bool pause);
+  std::uint64_t send_request();
+  std::uint64_t request_pause(bool pause);
   ServiceAnswer await_steps(const Steps& steps);
   std::string waiting_for() const;
 
@@ -61,7 +61,7 @@ class SimulationServices {
   std::function<std::vector<std::string>()> missing_;
   std::mutex request_mutex_;  ///< guards `request_`
   std::mutex exclusive_;      ///< held by step and reset
-  LoopHold::Asked request_;
+  LoopHold::Request request_;
 };
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// What parameters and robot must be together, checked by every composition of the loop before it starts.
+/// Rules on parameters and robot together, checked by every composition of the loop before it starts.
 
 #include <string>
 
@@ -14,8 +14,8 @@ void require_drivable(const Parameters& parameters, const RobotModel& robot);
 /// rad, the count of a wheel's encoder that `encoder_noise` stands for, uniform over it.
 double encoder_count(const EstimatorParameters& estimator) noexcept;
 
-/// What a user should know of slow driving, in one sentence: the speed of smooth_speed.h behind these encoders, if it
-/// is above kSlowRim; else empty.
+/// One sentence on the speed of smooth_speed.h behind these encoders, below which the robot does not drive smoothly.
+/// Empty if that speed is at most kSlowRim.
 std::string note_on_slow_driving(const Parameters& parameters, const RobotModel& robot);
 inline constexpr double kSlowRim = 0.05;  ///< m/s, hardly ever commanded
 

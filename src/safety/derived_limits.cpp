@@ -47,7 +47,7 @@ SafetyParameters derived_limits(const SafetyParameters& given, const RobotModel&
   fill(limits.power, power);
   fill(limits.stall, (robot.wheels.size() > 2 ? kScrubbingStall : kStall) * std::max(1.0, period / 0.001));
   fill(limits.not_stopping, kNotStopping * std::max(1.0, period / kSlowLoop));
-  fill(limits.runaway, std::max(0.2 * speed, kLeastRunaway) * std::max(1.0, period / kSlowLoop));
+  fill(limits.runaway, std::max(0.2 * speed, kMinRunaway) * std::max(1.0, period / kSlowLoop));
   return limits;
 }
 

@@ -20,9 +20,9 @@
 ///                       torque
 ///   not_stopping        kNotStopping; with a period above kSlowLoop in proportion: a slow wheel loop that was pushed
 ///                       takes longer to settle
-///   runaway             max(0.2 Ω, kLeastRunaway); with a period above kSlowLoop in proportion: a slow loop that
+///   runaway             max(0.2 Ω, kMinRunaway); with a period above kSlowLoop in proportion: a slow loop that
 ///                       pushed a wheel up a bump lets it overspeed on the way down.
-///                       kLeastRunaway covers a wheel loop that is pushed, and 20 quanta of a wheel speed measured with
+///                       kMinRunaway covers a wheel loop that is pushed, and 20 quanta of a wheel speed measured with
 ///                       4096 counts over T (0.077 rad/s)
 ///
 /// Battery limits are never derived: a URDF does not describe the battery. Measured values:
@@ -34,7 +34,7 @@
 namespace robot_control {
 
 inline constexpr double kSpeedMargin = 1.0;     ///< rad/s, 13 quanta as above; for slow robots
-inline constexpr double kLeastRunaway = 2.0;    ///< rad/s
+inline constexpr double kMinRunaway = 2.0;      ///< rad/s
 inline constexpr double kStall = 0.5;           ///< rad; docs/evidence/derivations.md
 inline constexpr double kScrubbingStall = 1.2;  ///< rad; docs/evidence/derivations.md
 inline constexpr double kNotStopping = 2.0;     ///< s; docs/evidence/derivations.md

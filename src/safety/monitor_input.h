@@ -11,7 +11,7 @@
 
 namespace robot_control {
 
-/// What an earlier monitor had latched.
+/// The latch of an earlier monitor.
 struct InheritedLatch {
   const Permit* permit = nullptr;  ///< the last permit in the channel; null: the channel holds none
   std::uint64_t causes = 0;        ///< StopCause bits of another record of that stop, for instance latch_file
@@ -28,8 +28,8 @@ struct MonitorInput {
   bool state_seen = false;                ///< a state exists; of its content only the next member is used
   std::uint64_t state_first_cycle = 0;    ///< StateFrame::first_cycle
 
-  /// Inputs with a wrong checksum: with `sensors`, 1 if there was one since the last frame; without, the number of
-  /// attempts in a row that read a corrupt sensor frame, at most FrameConditions::kPersistence.
+  /// Wrong checksums. With `sensors`: 1 if an input was corrupt since the last frame. Without: the number of attempts
+  /// in a row that read a corrupt sensor frame, at most FrameConditions::kPersistence.
   std::uint64_t corrupt = 0;
 
   OperatorInput operator_input{};

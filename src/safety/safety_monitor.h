@@ -23,20 +23,26 @@
 /// supervisor_table.h. The permit of cycle k expires after cycle k + kPermitLife, so a monitor that makes no progress
 /// permits no motion.
 ///
-/// Driver lost: latched when no current sensor frame arrives (wall clock), and when a frame carries another
-/// SensorFrame::driver_instance than the frame before it (any clock). A restarted driver therefore counts as lost,
+/// Driver lost latches in two cases.
+///   wall clock  no current sensor frame arrives
+///   any clock   a frame carries another SensorFrame::driver_instance than the frame before it
+/// A restarted driver therefore counts as lost,
 /// however short the interruption was and whatever the driver reported last. A reset of the simulation keeps the driver
 /// instance. A driver that reports its end (DriverState::kEnded) is missing, not lost: the state becomes INIT, or a
 /// latched stop stays.
 ///
-/// A latch outlives all processes: a restarted monitor restores the causes of the last permit in the channel, for any
-/// driver instance, and those of latch_file. Only an accepted reset clears them.
+/// A latch outlives all processes. A restarted monitor inherits the causes of the last permit in the channel, for any
+/// driver instance, and those of latch_file. They are latched at once, and only an accepted reset clears them.
+/// An `e_stop` topic that was true counts as true until its next message.
+/// A restart of the monitor is itself a cause, unless the driver instance of that permit has ended and the gate has
+/// used no permit of this run.
 ///
-/// Permit::withdrawals counts starts (motion_release.h), latched causes and the end of an earlier monitor: what was
-/// requested before one of them moves nothing after it (bridge/inputs/motion_requests.h).
+/// Permit::withdrawals counts starts (motion_release.h), latched causes and the end of an earlier monitor. A request
+/// from before one of them moves nothing after it (bridge/inputs/motion_requests.h).
 ///
-/// The speed limit of a permit is the smaller of slow_speed, while a cause with Reaction::kSlow is active and for
-/// kWarningHold after it (warnings.h), and the limit that the clearance gives. A speed limit never latches.
+/// The speed limit of a permit is the smaller of the limit that the clearance gives and slow_speed. The latter applies
+/// while a cause with Reaction::kSlow is active and for kWarningHold after it (warnings.h). A speed limit never
+/// latches.
 
 #include <cstdint>
 #include <optional>
@@ -77,8 +83,8 @@ class SafetyMonitor {
   /// Throws std::invalid_argument for parameters that parameter_check.h refuses.
   SafetyMonitor(const SafetyParameters& parameters, const RobotModel& robot, double period);
 
-  /// Fills everything but `out.head`. The first frame of another run restarts the counters and "was received" flags:
-  /// heartbeats and resets that were requested before it have no effect (kRefusalInit), emergency stops do.
+  /// Fills everything but `out.head`. The first frame of another run restarts all counters and conditions. Heartbeats
+  /// and resets received before that frame have no effect (kRefusalInit); emergency stops do.
   void step(const MonitorInput& input, Permit& out) noexcept;
 
  private:

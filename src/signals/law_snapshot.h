@@ -27,8 +27,7 @@ inline constexpr std::uint64_t kSnapshotCycles = 1024;
 inline constexpr std::size_t kSnapshotBytes = 40 * 1024;  ///< bytes of the longest state; that of the monitor has 30 KB
 
 /// A snapshot is taken in a node's first two cycles, in the first cycle of a run and every kSnapshotCycles. It is taken
-/// before the step of that cycle, after the calls in LawRow::new_run and MonitorCalls::events, before set_pose and
-/// tune.
+/// before the step of that cycle, after enter_run of gate, estimator and controller, before set_pose and tune.
 struct LawSnapshot {
   FrameHead head;           ///< head of the cycle; sealed outside of the loop
   std::uint64_t build = 0;  ///< build_id() of the program

@@ -20,48 +20,48 @@ TEST(LoopHold, TicksWhenNothingIsAsked) {
 
 TEST(LoopHold, StandsWhilePausedAndTicksAfterwards) {
   LoopHold hold;
-  hold.ask({.paused = 1});
+  hold.request({.paused = 1});
   EXPECT_FALSE(hold.may_tick(7));
-  hold.ask({.paused = 0});
+  hold.request({.paused = 0});
   EXPECT_TRUE(hold.may_tick(7));
 }
 
 TEST(LoopHold, PausedItTicksUpToTheCycleAskedForAndNoFurther) {
   LoopHold hold;
-  hold.ask({.paused = 1, .step_until = 10});
+  hold.request({.paused = 1, .step_until = 10});
   EXPECT_TRUE(hold.may_tick(9));
   EXPECT_FALSE(hold.may_tick(10));
 }
 
 TEST(LoopHold, AParkedLoopDoesNotTickWhateverElseIsAsked) {
   LoopHold hold;
-  hold.ask({.paused = 1, .step_until = 10, .parked = 1});
+  hold.request({.paused = 1, .step_until = 10, .parked = 1});
   EXPECT_FALSE(hold.may_tick(9));
-  EXPECT_TRUE(hold.park_asked());
+  EXPECT_TRUE(hold.park_requested());
 }
 
 TEST(LoopHold, AnswersWithTheAskingUnderWhichItStands) {
   LoopHold hold;
   const std::atomic<bool> stopping{false};
-  const std::uint64_t first = hold.ask({.paused = 1});
+  const std::uint64_t first = hold.request({.paused = 1});
   EXPECT_FALSE(hold.stands(first)) << "no cycle has looked";
   ASSERT_FALSE(hold.may_tick(3));
   hold.stand(kMillisecond, stopping);
   EXPECT_TRUE(hold.stands(first));
   EXPECT_EQ(hold.next_cycle(), 3u);
-  EXPECT_FALSE(hold.stands(hold.ask({.paused = 1, .step_until = 5})));
+  EXPECT_FALSE(hold.stands(hold.request({.paused = 1, .step_until = 5})));
 }
 
 TEST(LoopHold, AwaitsNothingWhereNoLoopRuns) {
   LoopHold hold;
-  EXPECT_FALSE(hold.await_stand(hold.ask({.paused = 1}), kTimeout));
+  EXPECT_FALSE(hold.await_stand(hold.request({.paused = 1}), kTimeout));
 }
 
 TEST(LoopHold, HandsTheFaultsOver) {
   LoopHold hold;
   InjectedFaults faults{};
   faults[2] = FaultKind::kStuck;
-  hold.ask({.faults = faults});
+  hold.request({.faults = faults});
   ASSERT_TRUE(hold.may_tick(0));
   EXPECT_EQ(hold.faults(), faults);
 }
@@ -81,14 +81,14 @@ TEST(LoopHold, AParkedLoopLeavesTheMachineToItsHolder) {
   });
   while (!hold.looping()) std::this_thread::yield();
   for (int round = 0; round < 100; ++round) {
-    ASSERT_TRUE(hold.await_stand(hold.ask({.parked = 1}), kTimeout));
+    ASSERT_TRUE(hold.await_stand(hold.request({.parked = 1}), kTimeout));
     guarded = 0;
-    hold.ask({.paused = 1, .parked = 1});
+    hold.request({.paused = 1, .parked = 1});
     EXPECT_EQ(guarded, 0u);
-    hold.ask({});
+    hold.request({});
   }
   stopping.store(true);
-  hold.ask({});
+  hold.request({});
   loop.join();
 }
 
@@ -96,11 +96,11 @@ TEST(LoopHold, TheLoopsSideDoesNotAllocate) {
   if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   LoopHold hold;
   const std::atomic<bool> stopping{false};
-  hold.ask({.paused = 1});
+  hold.request({.paused = 1});
   const AllocationGuard guard;
   hold.begin();
   if (!hold.may_tick(0)) hold.stand(kMillisecond, stopping);
-  hold.park_asked();
+  hold.park_requested();
   hold.end();
   EXPECT_EQ(guard.count(), 0u);
 }

@@ -72,7 +72,7 @@ TEST_F(DerivedLimits, OfPowerAreAllMotorsAtBothTheirLimits) {
 
 TEST_F(DerivedLimits, OfRunawayAreAFifthOfTheSpeedLimitButNeverLessThanTwo) {
   EXPECT_NEAR(limits().runaway.limit.value(), 3.75, kRounding);
-  EXPECT_NEAR(limits(1).runaway.limit.value(), kLeastRunaway, kRounding);
+  EXPECT_NEAR(limits(1).runaway.limit.value(), kMinRunaway, kRounding);
   EXPECT_NEAR(derived_limits(given_, robot_, kCommanded, 0.01).runaway.limit.value(), 2 * 3.75, kRounding)
       << "slow loops";
 }

@@ -266,13 +266,9 @@ TEST_F(MonitorTest, CountsStopsAndStarts) {
 
 TEST_F(MonitorTest, ARestartOfTheMonitorIsAWithdrawal) {
   drive();
-  const Permit last = permit_;
-  monitor_ = SafetyMonitor(parameters(), robot(), kPeriod);
-  monitor_.restore(last);
-  monitor_.enter_run(input_.operator_input);
-  monitor_.begin(cycle());
+  restart_monitor();
   step();
-  EXPECT_GT(permit_.withdrawals, last.withdrawals);
+  EXPECT_GT(permit_.withdrawals, last_permit_.withdrawals);
 }
 
 TEST_F(MonitorTest, AtAColdStartNothingMovesBeforeAZeroRequest) {

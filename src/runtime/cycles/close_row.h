@@ -1,5 +1,5 @@
 #pragma once
-/// What a law is given is noted from row to row (signals/law_calls.h).
+/// The inputs of a law are collected from row to row (signals/law_calls.h).
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace robot_control {
 /// Number of a process that gave itself none: alone on its channels.
 inline constexpr std::uint64_t kOnlyProcess = 1;
 
-/// Of a law that has not run yet.
+/// The first row of a law.
 template <class Calls>
 Calls first_row() noexcept {
   Calls calls;
@@ -18,7 +18,7 @@ Calls first_row() noexcept {
   return calls;
 }
 
-/// `noted` goes into `row`, and the notes of the next one begin.
+/// `noted` goes into `row`; then it is empty, for the next row.
 template <class Calls>
 void close_row(Calls& noted, std::uint64_t sensors, std::uint64_t output, Calls& row) noexcept {
   row = noted;

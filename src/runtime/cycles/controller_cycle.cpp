@@ -72,7 +72,7 @@ bool ControllerCycle::step() noexcept {
   const Lookup found = channels_.state->newest(state_);
   if (found == Lookup::kMissing) return false;
   if (!current(*channels_.sensors, state_.head, robot_hash_)) return false;
-  const Arrival arrival = clock_.judge(state_.head);
+  const Arrival arrival = clock_.compare(state_.head);
   if (arrival == Arrival::kOld) return false;
   const std::uint64_t run = state_.head.run;
   const std::uint64_t cycle = state_.head.cycle;
@@ -88,7 +88,7 @@ bool ControllerCycle::step() noexcept {
   }
   if (sensors_found != Lookup::kFrame) return false;
 
-  snapshots_.look(controller_, calls_.law, state_.head);
+  snapshots_.copy_if_due(controller_, calls_.law, state_.head);
   receive(cycle);
   tune();
   ControlInput input{.sensors = &sensors_, .state = &state_, .request = request_};

@@ -30,7 +30,7 @@ class ControllerCycle {
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
 
-  /// Likewise for other limits and gains: they hold from the next cycle on that computes a command.
+  /// Other limits and gains: one ordinary thread stores; they hold from the next cycle on that computes a command.
   LatestValue<DriveTuning>& tunings() noexcept { return tunings_; }
 
   /// Random number of this process, in every row.

@@ -1,5 +1,5 @@
 #pragma once
-/// What a consumer of the sensors channel has already seen, and when it woke.
+/// The cycle that a consumer has processed last, and when it woke.
 
 #include <cstdint>
 #include <optional>
@@ -14,7 +14,7 @@ namespace robot_control {
 /// ns on the clock of the stamps; null in virtual time and in lockstep, where all timings are zero.
 using Now = std::int64_t (*)();
 
-/// What a frame means to a consumer that may have seen it before.
+/// A frame compared with the one that its consumer processed last.
 enum class Arrival {
   kOld,     ///< the frame processed last, again
   kNext,    ///< a later cycle of the same run
@@ -25,7 +25,7 @@ class CycleClock {
  public:
   explicit CycleClock(Now clock) noexcept : now_(clock) {}
 
-  Arrival judge(const FrameHead& head) const noexcept {
+  Arrival compare(const FrameHead& head) const noexcept {
     if (head.run != run_) return Arrival::kNewRun;
     return head.cycle > cycle_ ? Arrival::kNext : Arrival::kOld;
   }

@@ -93,7 +93,7 @@ void DriverCycle::step() noexcept {
     if (channels_.truth.memory() != nullptr) channels_.truth.publish(trace_.truth);
   }
 
-  snapshots_.look(gate_, calls_.law, sensors.head);
+  snapshots_.copy_if_due(gate_, calls_.law, sensors.head);
   const std::span<const JointCommand> commands = gate_.step(input);
   driver_.write(commands);
   trace_.gate = gate_.report();

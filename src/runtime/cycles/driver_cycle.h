@@ -2,8 +2,8 @@
 /// The driver's duty in one tick k:
 ///   latch command k-1 and permit k-1 → sample sensors of x(t_k) → publish sensors k → gate
 ///   → apply torque over [t_k, t_k+1).
-/// Latched are the newest command of cycles k-4 … k-1 and the newest permit of cycles k-7 … k-1, of which the gate
-/// distinguishes an expired one from a missing one.
+/// Latched are the newest command of cycles k-4 … k-1 and the newest permit of cycles k-7 … k-1. The longer range lets
+/// the gate distinguish an expired permit from a missing one.
 /// Sensor-to-torque delay is exactly one period. No clock is read here; `now` stamps the trace only.
 
 #include <cstdint>

@@ -25,12 +25,12 @@ bool EstimatorCycle::step() noexcept {
   const Lookup found = sensors_channel_.newest(sensors_);
   if (found != Lookup::kFrame) return false;
   if (!current(sensors_channel_, sensors_.head, robot_hash_)) return false;
-  const Arrival arrival = clock_.judge(sensors_.head);
+  const Arrival arrival = clock_.compare(sensors_.head);
   if (arrival == Arrival::kOld) return false;
   if (arrival == Arrival::kNewRun) enter_run();
   clock_.accept(sensors_.head);
 
-  snapshots_.look(estimator_, calls_.law, sensors_.head);
+  snapshots_.copy_if_due(estimator_, calls_.law, sensors_.head);
   PoseRequest request;
   if (inbox_.load(request) && request.count != received_) {
     received_ = request.count;

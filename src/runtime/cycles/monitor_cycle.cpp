@@ -61,7 +61,7 @@ bool MonitorCycle::step() noexcept {
     const bool timed_out = woke_ns != 0 && current_ns_ != 0 && woke_ns - current_ns_ >= loss_ns_;
     return (timed_out || corrupt_sensors_ == FrameConditions::kPersistence) && step_without_frame(timed_out);
   }
-  const Arrival arrival = clock_.judge(arrived_.head);
+  const Arrival arrival = clock_.compare(arrived_.head);
   current_ns_ = woke_ns;
   if (arrival == Arrival::kOld) return republished() && step_without_frame(false);
   sensors_ = arrived_;
@@ -89,8 +89,8 @@ void MonitorCycle::read_inputs() noexcept {
   if (command_found == Lookup::kCorrupt || state_found == Lookup::kCorrupt) input_.corrupt = 1;
 }
 
-/// A driver that pauses or ends publishes its last frame again. It contains nothing else that is new, but no other
-/// frame will come, and a paused driver publishes it ten times a second: an operator's request is answered meanwhile.
+/// A driver that pauses or ends publishes its last frame again, a paused one ten times a second. No other frame will
+/// come, so an operator's request is answered then.
 bool MonitorCycle::republished() noexcept {
   const bool ends = arrived_.driver_state == DriverState::kPaused || arrived_.driver_state == DriverState::kEnded;
   if (!ends || arrived_.head.cycle != clock_.cycle()) return false;
@@ -143,7 +143,7 @@ bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
 }
 
 void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
-  snapshots_.look(monitor_, calls_.law, sensors_.head);
+  snapshots_.copy_if_due(monitor_, calls_.law, sensors_.head);
   monitor_.step(input_, trace_.permit);
   publish(clock_.run());
   trace_.timing = clock_.timing(woke_ns, sensors_);

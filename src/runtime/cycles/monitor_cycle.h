@@ -4,8 +4,8 @@
 /// Every step of the law has one row of the trace. A step without a new sensor frame repeats the run, cycle and stamp
 /// of the last one in its permit. Before the first frame it has no row: the snapshot in the first row covers it.
 ///
-/// Wall clock: a wake-up that finds no current sensor frame (none, corrupt, of another run or robot than the channel's
-/// head announces) counts as silence once the last current frame is loss_cycles periods old.
+/// A sensor frame is current if it is whole and of the run and robot that the channel's head announces. Wall clock: a
+/// wake-up without one counts as silence once the last one is loss_cycles periods old.
 
 #include <atomic>
 #include <cstdint>
@@ -31,7 +31,7 @@ class MonitorCycle {
     FrameWriter<Permit> permit;
   };
 
-  /// Takes over what the permit in the channel and `latch`, another record of an earlier stop, say was latched.
+  /// Inherits the latch of the permit in the channel and of `latch`, another record of an earlier stop.
   MonitorCycle(const SafetyParameters& parameters, const RobotModel& robot, double period, const Channels& channels,
                CommandScript script, Now now, InheritedLatch latch = {});
 
@@ -48,12 +48,11 @@ class MonitorCycle {
   /// paused or has ended, that latches kCauseDriverLost. True: as in `step`.
   bool time_out() noexcept;
 
-  /// Nothing woke the monitor for a while, which means nothing: answers resets, with a refusal, and emergency stops,
-  /// with the latch. Before the first frame the permit is one of kRunBeforeDriver, which no gate uses. True: as in
-  /// `step`.
+  /// Nothing woke the monitor for a while. Resets are refused and emergency stops latch. Before the first frame the
+  /// permit is one of kRunBeforeDriver, which no gate uses. True: as in `step`.
   bool idle() noexcept;
 
-  /// The last permit computed, before the first step that with what was latched when this monitor started.
+  /// The permit of the last step; before `step` and `idle`, that of the start, with the inherited latch.
   const Permit& permit() const noexcept { return trace_.permit; }
 
   /// Any thread: run of the permits that this process publishes; 0: none yet.

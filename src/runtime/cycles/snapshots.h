@@ -1,6 +1,5 @@
 #pragma once
-/// When a law's state is copied, and the copy. One copy of 2 … 30 KB, about a microsecond, every
-/// kSnapshotCycles.
+/// The copies of a law's state: one of 2 … 30 KB, about a microsecond, every kSnapshotCycles.
 
 #include <cstdint>
 
@@ -19,7 +18,7 @@ class Snapshots {
 
   /// Before the law's step of the cycle in `head`. The row of that step: `noted`.
   template <class Law>
-  void look(const Law& law, const LawRow& noted, const FrameHead& head) noexcept {
+  void copy_if_due(const Law& law, const LawRow& noted, const FrameHead& head) noexcept {
     constexpr std::uint64_t kFirstRows = 2;  // the first one repeats a cycle of an earlier process, perhaps
     const std::uint64_t part = head.cycle / kSnapshotCycles;
     taken_ = noted.number < kFirstRows || noted.new_run != 0 || part != part_;

@@ -1,7 +1,7 @@
 #pragma once
-/// A node's end of the trace: one row per cycle into its ring.
+/// A node's end of the trace: one row per step of its law into its ring.
 ///
-/// While a telemetry reads, a full ring blocks its writer, and so the cycle, in lockstep; in wall-clock time the
+/// While a telemetry reads, a full ring blocks its writer, and so the cycle, in lockstep. In wall-clock time the
 /// new row is dropped and counted. With no telemetry the oldest rows are overwritten. Beside them go the snapshots of
 /// the law, of which a ring holds the last eight.
 
@@ -19,7 +19,7 @@ namespace robot_control {
 inline constexpr const char* kTraceChannels[kTraceRings] = {"trace_plant", "trace_estimator", "trace_controller",
                                                             "trace_monitor"};
 
-/// Where its snapshots go; one that was not read is overwritten by the eighth after it.
+/// Channel of each ring of snapshots; one that was not read is overwritten by the eighth after it.
 inline constexpr const char* kSnapshotChannels[kTraceRings] = {"snapshot_plant", "snapshot_estimator",
                                                                "snapshot_controller", "snapshot_monitor"};
 using SnapshotRing = Ring<LawSnapshot, std::atomic, 8>;

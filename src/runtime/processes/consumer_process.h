@@ -16,10 +16,10 @@
 
 namespace robot_control {
 
-/// What the cycles stamp their trace with: nothing in lockstep, where time stands still.
+/// The clock with which the cycles stamp their trace; null in lockstep, where time stands still.
 Now clock_of(const LoopParameters& loop);
 
-/// What a consumer is called in its thread, its channel and its ring.
+/// The names of a consumer: thread, channel and ring.
 struct ConsumerNames {
   LoopPriority priority;
   const char* thread;
@@ -32,12 +32,12 @@ class ConsumerProcess : public Process {
  public:
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
 
-  /// Any thread: is this frame of the present run of a living driver? What an earlier one left is not.
+  /// Any thread: is this frame of the present run of a living driver? A frame that an earlier driver left is not.
   bool is_current(const FrameHead& head) const noexcept {
     return robot_agrees_.load() && current(sensors_.reader, head, robot_.hash);
   }
 
-  /// What this node published.
+  /// The channel that this node publishes.
   const FrameReader<Frame>& output() const noexcept { return output_.reader; }
 
  protected:
@@ -71,7 +71,7 @@ class ConsumerProcess : public Process {
 
   /// The loop: the frame that is there first, then one step per wake-up. `silence` is called when nothing woke it for
   /// `wait_ns`; like a step, it returns whether there is a row. A driver that starts, or an object that is mapped
-  /// again, wakes the loop and restarts the wait: silence alone does not show whether the driver was interrupted.
+  /// again, wakes the loop and restarts the wait. So silence alone does not show whether the driver was interrupted.
   template <class Cycle, class Waking, class Silence>
   void consume(Cycle& cycle, const FrameReader<Waking>& wake, std::int64_t wait_ns, Silence silence) noexcept {
     const auto append = [&] { trace_.append(cycle.trace(), cycle.snapshot(), stopping()); };

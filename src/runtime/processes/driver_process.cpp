@@ -101,7 +101,7 @@ void DriverProcess::loop() noexcept {
   } else {
     loop_wall();
   }
-  if (!hold_.park_asked()) cycle_->publish_ended();  // parked, the cycle belongs to a reset
+  if (!hold_.park_requested()) cycle_->publish_ended();  // parked, the cycle belongs to a reset
   hold_.end();
   finish();
 }
@@ -158,7 +158,7 @@ bool DriverProcess::await_chain() noexcept {
     for (;;) {
       const std::uint32_t seen = reader.sequence();
       if (published(reader, run, last)) return true;
-      if (stopping().load(std::memory_order_relaxed) || hold_.park_asked()) return false;
+      if (stopping().load(std::memory_order_relaxed) || hold_.park_requested()) return false;
       reader.wait(seen, kStopCheck);
     }
   };

@@ -35,12 +35,12 @@ class DriverProcess final : public Process {
   const FrameReader<SensorFrame>& sensors() const noexcept { return sensors_.reader; }
   const FrameReader<TruthFrame>& truth() const noexcept { return truth_.reader; }
 
-  /// Any thread: is this frame of the present run? What an earlier process left is not.
+  /// Any thread: is this frame of the present run? A frame that an earlier process left is not.
   bool is_current(const FrameHead& head) const noexcept {
     return attached_run(sensors_.writer.memory()->head) == head.run;
   }
 
-  /// Of a simulated machine, once it is open; null for hardware.
+  /// The services of a simulated machine, once it is open; null for hardware.
   SimulationServices* services() noexcept { return services_.get(); }
 
   /// Simulated over real time since the run began; time held is not counted.

@@ -18,25 +18,25 @@ namespace robot_control {
 
 class LoopHold {
  public:
-  static constexpr std::int64_t kLook = 500'000;  ///< ns between two looks of a thread that waits for the loop
+  static constexpr std::int64_t kPollPeriod = 500'000;  ///< ns, of a thread that waits for the loop
 
-  struct Asked {
-    std::uint64_t number = 0;  ///< set by `ask`
+  struct Request {
+    std::uint64_t number = 0;  ///< set by `request`
     std::uint64_t paused = 0;
     std::uint64_t step_until = 0;  ///< while paused: the cycle before which the loop stands again
     std::uint64_t parked = 0;
     InjectedFaults faults{};
   };
 
-  // Ordinary threads; `ask` one at a time.
+  // Ordinary threads; `request` is called by one at a time.
 
   /// Returns the number of this request.
-  std::uint64_t ask(Asked asked) noexcept;
+  std::uint64_t request(Request request) noexcept;
 
   /// The loop stands still, under this request or a later one.
   bool stands(std::uint64_t number) const noexcept { return answered_.load(std::memory_order_acquire) >= number; }
 
-  /// `stands`, waited for. False after `timeout_ns`, or when no loop runs.
+  /// Waits until the loop stands. False after `timeout_ns`, or when no loop runs.
   bool await_stand(std::uint64_t number, std::int64_t timeout_ns) const noexcept;
 
   /// The cycle for which the loop checked last.
@@ -50,32 +50,32 @@ class LoopHold {
   void begin() noexcept { looping_.store(true, std::memory_order_release); }
   void end() noexcept { looping_.store(false, std::memory_order_release); }
 
-  /// Looks into the inbox.
+  /// Reads the inbox. The cycle may run under the newest request.
   bool may_tick(std::uint64_t cycle) noexcept;
 
-  /// Is the loop asked to park, as of now? A wait for others must not keep it from that.
-  bool park_asked() noexcept;
+  /// Reads the inbox: is the loop to park? It parks also while it waits for other nodes.
+  bool park_requested() noexcept;
 
-  /// As of the last look; false: a tick is allowed beyond the cycles of a step.
-  bool paused() const noexcept { return asked_.paused != 0; }
+  /// By the request read last; false: a tick is allowed beyond the cycles of a step.
+  bool paused() const noexcept { return request_.paused != 0; }
 
-  /// As of the last look.
-  const InjectedFaults& faults() const noexcept { return asked_.faults; }
+  /// Those of the request read last.
+  const InjectedFaults& faults() const noexcept { return request_.faults; }
 
-  /// After `may_tick` said no: answers, and sleeps until something else is asked or, unless parked, for `wait_ns`.
+  /// After `may_tick` returned false: acknowledges, and sleeps until another request or, unless parked, for `wait_ns`.
   void stand(std::int64_t wait_ns, const std::atomic<bool>& stopping) noexcept;
 
  private:
-  void look() noexcept;
+  void receive() noexcept;
 
-  LatestValue<Asked> inbox_;
+  LatestValue<Request> inbox_;
   std::uint64_t numbers_ = 0;           ///< given out; ordinary threads
-  std::atomic<std::uint32_t> word_{0};  ///< futex: something else is asked
+  std::atomic<std::uint32_t> word_{0};  ///< futex: another request
   std::atomic<std::uint64_t> answered_{0};
   std::atomic<std::uint64_t> next_cycle_{0};
   std::atomic<bool> looping_{false};
-  Asked asked_;             ///< real-time thread
-  std::uint32_t seen_ = 0;  ///< `word_` before the last look
+  Request request_;         ///< real-time thread
+  std::uint32_t seen_ = 0;  ///< `word_` before the last request was read
 };
 
 }  // namespace robot_control

@@ -55,7 +55,7 @@ void MonitorProcess::poll_channels() {
   command_.poll();
   ConsumerProcess::poll_channels();
   if (!started()) cycle_.idle();
-  with_latched([this](std::uint64_t causes, std::uint64_t first) { latch_file_.look(causes, first); });
+  with_latched([this](std::uint64_t causes, std::uint64_t first) { latch_file_.update(causes, first); });
 }
 
 /// Waiting for nodes, the first cycle must find every channel mapped; otherwise a missing node is a fact that

@@ -19,7 +19,7 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
   std::vector<std::string> missing() const override;
   MonitorCycle& cycle() noexcept { return cycle_; }
 
-  /// What was latched when this process started, since when and how to release it, in one line; empty: nothing.
+  /// One line on the causes latched when this process started, since when, and how to release them; empty: none.
   const std::string& restored() const noexcept { return restored_; }
 
   /// When this process started, the topic `e_stop` counted as true.
@@ -39,7 +39,7 @@ class MonitorProcess final : public ConsumerProcess<Permit, MonitorTrace> {
   Input<CommandFrame> command_;
   LatchFile latch_file_;
   MonitorCycle cycle_;
-  Permit inherited_;  ///< what was latched when this process started
+  Permit inherited_;  ///< the latch when this process started
   std::string restored_;
   std::int64_t loss_ns_;
 };

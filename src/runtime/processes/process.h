@@ -2,8 +2,8 @@
 /// A node without ROS: its channels and locks, its real-time thread, and what an ordinary thread does for it.
 ///
 /// The constructor takes the locks of the channels that the node writes (BusError when another instance holds
-/// them). Then an ordinary thread calls `poll` at 10 Hz: it maps the channels of the others as they appear,
-/// starts the real-time thread as soon as the node can run, and notices replaced channels, another robot and
+/// them). Then an ordinary thread calls `poll` at 10 Hz. It maps the channels of the others as they appear, and
+/// starts the real-time thread as soon as the node can run. It also detects replaced channels, another robot and
 /// telemetry. The real-time thread touches nothing but frames, futexes and the clock.
 
 #include <atomic>
@@ -47,7 +47,7 @@ class Process {
   /// The same as of the last `poll`; any thread.
   std::vector<std::string> last_missing() const;
 
-  /// What the real-time thread was granted and what not, in words; empty before it started.
+  /// The privileges that the real-time thread was granted or refused, in words; empty before it started.
   std::vector<std::string> realtime_messages() const;
 
  protected:

@@ -78,9 +78,9 @@ class TelemetryProcess::Source {
  private:
   static constexpr std::size_t kBatch = 64;
 
-  /// With the rows of the present writer that are there: a snapshot of its law is among them (law_snapshot.h). Some
-  /// room is left for what it writes meanwhile. Only a row appended since the ring was mapped proves that its writer
-  /// lives and that `began` is its own: one that starts holds the lock before it has stored that.
+  /// Begins with the rows of the present writer that are there: a snapshot of its law is among them (law_snapshot.h).
+  /// Some room is left for the rows that it writes meanwhile. Only a row appended since the ring was mapped proves that
+  /// its writer lives and that `began` is its own. A writer that starts holds the lock before it has stored `began`.
   void begin() {
     constexpr std::uint64_t kBack = kRingRows - kRingRows / 8;
     if (!reader_ || reader_->written() == reader_->position()) return;
@@ -135,7 +135,7 @@ TelemetryProcess::TelemetryProcess(const Parameters& parameters, const RobotMode
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
       lockstep_(parameters.loop.clock == ClockMode::kLockstep),
       permit_(bus, ChannelNames::kPermit),
-      join_(parameters.loop.period(), [this](const JoinedRow& row) { take(row); }),
+      join_(parameters.loop.period(), [this](const JoinedRow& row) { store(row); }),
       sources_(std::make_unique<Sources>(bus)) {
   // First: it notices another telemetry in this folder, whose logs are not to be renamed.
   if (parameters.telemetry.black_box > 0 && !lockstep_) {
@@ -186,14 +186,14 @@ void TelemetryProcess::poll() {
   if (!bag_->broken()) bag_problem_.clear();
 }
 
-void TelemetryProcess::take(const JoinedRow& row) {
+void TelemetryProcess::store(const JoinedRow& row) {
   if (csv_ != nullptr && !row.repeats) write_down(csv_problem_, [&] { csv_->write(row); });
   if (bag_ != nullptr) write_down(bag_problem_, [&] { bag_->write(row); });
 }
 
-/// Before it is joined.
+/// A row before it is joined.
 template <class Row>
-void TelemetryProcess::look_at(const Row& row, std::size_t ring) {
+void TelemetryProcess::receive(const Row& row, std::size_t ring) {
   const std::uint64_t process = row.calls.law.process;
   if (std::exchange(law_processes_[ring], process) != process) ++parameter_changes_;
   if constexpr (requires { row.tuning; }) {
@@ -222,13 +222,13 @@ std::size_t TelemetryProcess::drain() {
     if (bag_ != nullptr) bag_->write(snapshot);
   };
   sources_->each([&](auto& source, std::size_t ring) {
-    rows += source.drain(join_, positions_.memory()->read[ring], keep, [&](const auto& row) { look_at(row, ring); });
+    rows += source.drain(join_, positions_.memory()->read[ring], keep, [&](const auto& row) { receive(row, ring); });
   });
-  if (black_box_ != nullptr) look_for_stops();
+  if (black_box_ != nullptr) check_permit();
   return rows;
 }
 
-void TelemetryProcess::look_for_stops() {
+void TelemetryProcess::check_permit() {
   Permit permit;
   if (permit_.reader.newest(permit) != Lookup::kFrame) return;
   black_box_->see(permit.causes, monotonic_ns());

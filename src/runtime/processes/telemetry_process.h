@@ -1,13 +1,13 @@
 #pragma once
 /// The reader of the trace: takes the rows of the four rings, joins them by cycle and writes run.bag and run.csv.
-/// The black box (recording/black_box) gets them first, as they are; what the safety monitor has latched stands in its
-/// newest permit, also where a lost driver leaves no row.
+/// The black box (recording/black_box) gets them first, as they are. The causes that latched a stop are read from the
+/// newest permit.
 ///
 /// It owns the read positions. It announces itself only once all four rings are mapped and the positions stored
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
 ///
-/// A disk that takes no more ends a file, not this process: the rings are still emptied, so that no node waits for
-/// space, what is not written is counted, and another file is tried (recording/bag_log.h, telemetry/csv_log.h).
+/// A full disk ends a file, not this process. The rings are still emptied, so that no node waits for space. Rows that
+/// are not written are counted, and another file is tried (recording/bag_log.h, telemetry/csv_log.h).
 
 #include <array>
 #include <cstdint>
@@ -64,7 +64,7 @@ class TelemetryProcess {
   /// Changes where a node has begun or has taken live parameters over: it may have others than a header says.
   std::uint64_t parameter_changes() const noexcept { return parameter_changes_; }
 
-  /// What the logs that begin from now on begin with; joints and period stay.
+  /// The header of the logs that begin from now on; joints and period stay.
   void set_header(const LogHeader& header);
 
   /// Nodes whose ring is not there or not owned by a running process.
@@ -75,13 +75,13 @@ class TelemetryProcess {
   /// Older logs that were removed since the last call, for telemetry.quota.
   std::vector<std::string> take_removed() { return folder_.take_removed(); }
 
-  /// What was saved of the black box, or could not be, since the last call.
+  /// Notes on what was saved of the black box, or could not be, since the last call.
   std::vector<std::string> take_notes();
 
   /// Why a log has ended, or run.bag waits for the disk; empty: nothing is wrong.
   std::string problem() const;
 
-  /// Of run.csv, run.bag and the black box; empty: it is not written.
+  /// Paths of run.csv, run.bag and the black box; empty: it is not written.
   const std::string& csv_path() const noexcept { return csv_path_; }
   const std::string& bag_path() const noexcept { return bag_path_; }
   const std::string& black_box_path() const noexcept { return black_box_path_; }
@@ -95,10 +95,10 @@ class TelemetryProcess {
   /// Notes a LogError in `problem`.
   template <class Act>
   static void write_down(std::string& problem, Act act);
-  void take(const JoinedRow& row);
+  void store(const JoinedRow& row);
   template <class Row>
-  void look_at(const Row& row, std::size_t ring);
-  void look_for_stops();
+  void receive(const Row& row, std::size_t ring);
+  void check_permit();
 
   OwnedChannel<RingPositions> positions_;
   LogFolder folder_;

@@ -37,7 +37,7 @@ BodyConditions::BodyConditions(const SafetyParameters& parameters, const RobotMo
       impact_(kCauseImpact, parameters.impact, period),
       gyro_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
       accelerometer_{.watch{kCauseImuStuck, parameters.imu_stuck, period}},
-      window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMostSamples)) {
+      window_(std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(kImpactWindow / period)), 1, kMaxSamples)) {
   across_.fill(Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < wheel_count_; ++i) {
     const WheelModel& wheel = robot.wheels[i];
@@ -118,15 +118,15 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, boo
   shake(felt);
   weigh(sensors);
 
-  const auto judge = [&](ConditionWatch& watch, bool beyond, double value) {
+  const auto update = [&](ConditionWatch& watch, bool beyond, double value) {
     watch.step({.beyond = beyond, .value = value, .limit = watch.limit()}, elapsed);
     out.add(watch);
   };
-  judge(tilt_, attitude_.known() && tilt > tilt_.limit(), tilt);
-  judge(tip_over_, attitude_.known() && tilt > tip_tilt_ && tilt_rate > tip_over_.limit(), tilt_rate);
-  judge(free_fall_, felt && force() < free_fall_.limit(), force());
-  judge(lift_, carried_ < lift_.limit(), carried_);
-  judge(impact_, shock_ > impact_.limit(), shock_);
+  update(tilt_, attitude_.known() && tilt > tilt_.limit(), tilt);
+  update(tip_over_, attitude_.known() && tilt > tip_tilt_ && tilt_rate > tip_over_.limit(), tilt_rate);
+  update(free_fall_, felt && force() < free_fall_.limit(), force());
+  update(lift_, carried_ < lift_.limit(), carried_);
+  update(impact_, shock_ > impact_.limit(), shock_);
   repeat(gyro_, turned, sensors.imu.angular_velocity, elapsed, wheels_turn, out);
   repeat(accelerometer_, felt, sensors.imu.linear_acceleration, elapsed, wheels_turn, out);
 }

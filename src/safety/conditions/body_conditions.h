@@ -58,7 +58,7 @@ class BodyConditions {
   double force() const noexcept { return force_.norm(); }  ///< m/s², |a|, of the last good sample
 
  private:
-  static constexpr std::size_t kMostSamples = 20;  ///< kImpactWindow at 2 kHz
+  static constexpr std::size_t kMaxSamples = 20;  ///< kImpactWindow at 2 kHz
 
   struct Wheel {
     std::size_t joint = 0;
@@ -96,7 +96,7 @@ class BodyConditions {
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
   std::size_t window_;  ///< samples in kImpactWindow
   std::size_t next_ = 0;
-  std::array<Eigen::Vector3d, kMostSamples> across_;  ///< m/s², the last ones
+  std::array<Eigen::Vector3d, kMaxSamples> across_;  ///< m/s², the last ones
   double shock_ = 0;
   double carried_ = 1;
 };

@@ -32,19 +32,19 @@ inline const ConditionMeasurement& worse(const ConditionMeasurement& a, const Co
   return b.value - b.limit > a.value - a.limit ? b : a;
 }
 
-/// Below its limit by more than any measurement.
+/// A measurement that is never beyond its limit and never the worse of two.
 inline constexpr ConditionMeasurement kNothingMeasured{.limit = std::numeric_limits<double>::infinity()};
 
-/// The number of cycles for which a measurement counts: from kFarTimes the limit on, n times the limit in one cycle
-/// counts as much as the limit in n cycles, at most kMostTimes. So a light wheel whose motor runs away (10³ rad/s) is
-/// stopped before its persistence ends, and a wheel that leaves a bump is not.
+/// The number of cycles for which a measurement counts. From kFarTimes the limit on, n times the limit counts n cycles,
+/// at most kMaxTimes. A light wheel whose motor runs away (10³ rad/s) is stopped before the persistence ends; a wheel
+/// that leaves a bump is not.
 inline std::uint64_t weighed(const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
   constexpr double kFarTimes = 3;
-  constexpr double kMostTimes = 50;
+  constexpr double kMaxTimes = 50;
   if (!measurement.beyond) return elapsed;
   const double times = measurement.value / measurement.limit;
   if (!(times >= kFarTimes)) return elapsed;
-  return elapsed * static_cast<std::uint64_t>(std::min(times, kMostTimes));
+  return elapsed * static_cast<std::uint64_t>(std::min(times, kMaxTimes));
 }
 
 class ConditionWatch {
@@ -80,7 +80,7 @@ class ConditionWatch {
 
   bool active() const noexcept { return beyond_ >= cycles_; }
 
-  /// Of the last step in which the measurement was beyond its limit.
+  /// The measurement of the last step in which it was beyond its limit.
   const ConditionMeasurement& measurement() const noexcept { return measurement_; }
 
  private:

@@ -7,7 +7,7 @@ namespace robot_control {
 
 GateConditions::GateConditions(std::uint64_t loss_cycles, double period) noexcept
     : loss_cycles_(loss_cycles),
-      second_(std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(1 / period)), 1, kMostTicks)) {}
+      second_(std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(1 / period)), 1, kMaxTicks)) {}
 
 void GateConditions::enter_run() noexcept {
   permits_ = refused_frames_ = in_a_row_ = in_second_ = 0;

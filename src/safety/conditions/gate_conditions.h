@@ -24,7 +24,7 @@ namespace robot_control {
 
 class GateConditions {
  public:
-  static constexpr std::size_t kMostTicks = 2048;  ///< of the last second
+  static constexpr std::size_t kMaxTicks = 2048;  ///< of the last second
 
   /// `period` s.
   GateConditions(std::uint64_t loss_cycles, double period) noexcept;
@@ -65,7 +65,7 @@ class GateConditions {
   std::uint64_t in_a_row_ = 0;
   std::uint64_t in_second_ = 0;
   std::size_t next_tick_ = 0;
-  std::bitset<kMostTicks> ticks_;  ///< of the last second: refused
+  std::bitset<kMaxTicks> ticks_;  ///< of the last second: refused
 };
 
 }  // namespace robot_control

@@ -37,14 +37,14 @@ void MachineConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, 
   if (sensors.driver_state == DriverState::kFault || sensors.faults != 0) out.add(kCauseDriverFault, Reaction::kBrake);
 
   const auto overruns = static_cast<double>(overruns_of_the_last_second(sensors.overruns, elapsed));
-  const double most = overruns_.limit();
-  out.judge(overruns_, {.beyond = overruns > most, .value = overruns, .limit = most}, elapsed);
+  const double limit = overruns_.limit();
+  out.update(overruns_, {.beyond = overruns > limit, .value = overruns, .limit = limit}, elapsed);
 
   const bool reported = (sensors.valid & kValidBattery) != 0;
   const double voltage = sensors.battery_voltage;
   for (ConditionWatch* watch : {&battery_low_, &battery_empty_}) {
     const double least = watch->limit();
-    out.judge(*watch, {.beyond = reported && voltage < least, .value = voltage, .limit = least}, elapsed);
+    out.update(*watch, {.beyond = reported && voltage < least, .value = voltage, .limit = least}, elapsed);
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the driver reports about the machine.
+/// Conditions that the driver reports about the machine.
 ///
 ///   driver fault   driver_state kFault or faults ≠ 0; leads to FAULT
 ///   overruns       growth of SensorFrame::overruns over the last second, in steps of a tenth; overruns before the

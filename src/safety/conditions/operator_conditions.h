@@ -1,5 +1,5 @@
 #pragma once
-/// What the operator commands, and whether the operator's heartbeat still arrives.
+/// Conditions on the operator's inputs: emergency stops and the heartbeat.
 ///
 ///   e-stop topic    level true, or its trigger counter changed      | service  its counter changed
 ///   e-stop input    kInputEmergencyStop

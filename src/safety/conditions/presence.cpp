@@ -16,13 +16,13 @@ void Presence::step(const MonitorInput& input, std::uint64_t elapsed, ActiveCaus
   if (command != nullptr && input.state_seen) {
     stale_ = command->state_cycle == command->head.cycle ? 0 : stale_ + elapsed;
   }
-  judge(kCauseControllerLost, cycle - command_seen_, out);
-  judge(kCauseEstimatorLost, cycle - state_seen_, out);
-  judge(kCauseCommandStale, stale_, out);
-  if (elapsed > loss_cycles_) judge(kCauseMonitorLate, elapsed, out);
+  add_if_lost(kCauseControllerLost, cycle - command_seen_, out);
+  add_if_lost(kCauseEstimatorLost, cycle - state_seen_, out);
+  add_if_lost(kCauseCommandStale, stale_, out);
+  if (elapsed > loss_cycles_) add_if_lost(kCauseMonitorLate, elapsed, out);
 }
 
-void Presence::judge(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept {
+void Presence::add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept {
   if (cycles < loss_cycles_) return;
   out.add(cause, Reaction::kBrake,
           {.beyond = true, .value = static_cast<double>(cycles), .limit = static_cast<double>(loss_cycles_)});

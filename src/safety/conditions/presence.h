@@ -32,7 +32,7 @@ class Presence {
   std::uint64_t missing() const noexcept { return missing_; }
 
  private:
-  void judge(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept;
+  void add_if_lost(StopCause cause, std::uint64_t cycles, ActiveCauses& out) const noexcept;
 
   std::uint64_t loss_cycles_;
   std::uint64_t missing_ = kMissingSensors | kMissingState | kMissingCommand;

@@ -12,8 +12,8 @@ void SensorPresence::Silence::reset() noexcept {
 
 void SensorPresence::Silence::step(bool silent, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   cycles_ = silent ? cycles_ + elapsed : 0;
-  out.judge(watch_, {.beyond = silent, .value = static_cast<double>(cycles_) * period_, .limit = persistence_},
-            elapsed);
+  out.update(watch_, {.beyond = silent, .value = static_cast<double>(cycles_) * period_, .limit = persistence_},
+             elapsed);
 }
 
 SensorPresence::SensorPresence(const SafetyParameters& parameters, std::size_t wheels, double period) noexcept

@@ -69,9 +69,9 @@ void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targ
       continue;
     }
     follow(i, measured, commanded_[i], targets[i], elapsed);
-    measurement = worse(measurement, judge(i, motion));
+    measurement = worse(measurement, measure(i, motion));
   }
-  out.judge(watch_, measurement, elapsed);
+  out.update(watch_, measurement, elapsed);
   warning_.step(measurement, elapsed);
   if (!watch_.active()) out.add(warning_);
 }
@@ -84,26 +84,26 @@ void TorqueOscillation::follow(std::size_t wheel, double measured, double comman
                                std::uint64_t elapsed) noexcept {
   const double dt = static_cast<double>(elapsed) * period_;
   const Weights weights = elapsed == 1 ? one_cycle_ : weights_of(dt);
-  Wheel& of = wheels_[wheel];
-  if (!of.driven) {
-    of.measured.slow = measured;
-    of.commanded.slow = commanded;
+  Wheel& state = wheels_[wheel];
+  if (!state.driven) {
+    state.measured.slow = measured;
+    state.commanded.slow = commanded;
   } else {
-    of.measured.step(measured, weights);
-    of.commanded.step(commanded, weights);
-    of.planned.step(inertia_[wheel] * (target - of.target) / dt, weights);
+    state.measured.step(measured, weights);
+    state.commanded.step(commanded, weights);
+    state.planned.step(inertia_[wheel] * (target - state.target) / dt, weights);
   }
-  of.driven = true;
-  of.target = target;
+  state.driven = true;
+  state.target = target;
 }
 
-ConditionMeasurement TorqueOscillation::judge(std::size_t wheel, const WheelMotion& motion) const noexcept {
-  const Wheel& of = wheels_[wheel];
-  const double most = effort_limit_[wheel];
-  if (most <= 0) return kNothingMeasured;
-  const double explained = 2 * of.planned.rms() + count_ripple_[wheel] * motion.quantum(wheel);
-  const double ripple = std::min(of.measured.rms(), of.commanded.rms());
-  return beyond(wheel, ripple / most, watch_.limit() + explained / most);
+ConditionMeasurement TorqueOscillation::measure(std::size_t wheel, const WheelMotion& motion) const noexcept {
+  const Wheel& state = wheels_[wheel];
+  const double effort_limit = effort_limit_[wheel];
+  if (effort_limit <= 0) return kNothingMeasured;
+  const double explained = 2 * state.planned.rms() + count_ripple_[wheel] * motion.quantum(wheel);
+  const double ripple = std::min(state.measured.rms(), state.commanded.rms());
+  return beyond(wheel, ripple / effort_limit, watch_.limit() + explained / effort_limit);
 }
 
 }  // namespace robot_control

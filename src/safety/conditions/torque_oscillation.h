@@ -64,7 +64,7 @@ class TorqueOscillation {
 
   static Weights weights_of(double dt) noexcept;
   void follow(std::size_t wheel, double measured, double commanded, double target, std::uint64_t elapsed) noexcept;
-  ConditionMeasurement judge(std::size_t wheel, const WheelMotion& motion) const noexcept;
+  ConditionMeasurement measure(std::size_t wheel, const WheelMotion& motion) const noexcept;
 
   double period_;
   Weights one_cycle_;

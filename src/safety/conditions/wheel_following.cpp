@@ -51,13 +51,13 @@ void WheelFollowing::step(const SensorFrame& sensors, const WheelTargets& target
       wrong_direction_[i].reset();
       continue;
     }
-    judge_runaway(targets, motion, i, elapsed, out);
-    judge_direction(targets, motion, i, elapsed, out);
+    update_runaway(targets, motion, i, elapsed, out);
+    update_direction(targets, motion, i, elapsed, out);
   }
   const double dt = static_cast<double>(elapsed) * period_;
   planned_.step(targets, dt);
-  out.judge(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingMeasured, elapsed);
-  out.judge(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingMeasured, elapsed);
+  out.update(stall_, known ? stalled(sensors, targets, motion, dt) : kNothingMeasured, elapsed);
+  out.update(not_stopping_, known ? not_stopped(targets, standstill, elapsed) : kNothingMeasured, elapsed);
 }
 
 void WheelFollowing::Excess::reset() noexcept {
@@ -72,11 +72,11 @@ void WheelFollowing::Excess::step(const ConditionMeasurement& measurement, doubl
   const bool slows = !begins && speed < mark - progress && measurement.value <= kFarBeyond * measurement.limit;
   if (begins || slows) mark = speed;
   if (slows) return watch.reset();
-  out.judge(watch, measurement, elapsed);
+  out.update(watch, measurement, elapsed);
 }
 
-void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
-                                   std::uint64_t elapsed, ActiveCauses& out) noexcept {
+void WheelFollowing::update_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                                    std::uint64_t elapsed, ActiveCauses& out) noexcept {
   Excess& excess = runaway_[wheel];
   const double target = targets[wheel];
   const double speed = target == 0 ? std::abs(motion.speed(wheel)) : along(target, motion.speed(wheel));
@@ -85,8 +85,8 @@ void WheelFollowing::judge_runaway(const WheelTargets& targets, const WheelMotio
   excess.step(measurement, speed, kProgress + tolerance, weighed(measurement, elapsed), out);
 }
 
-void WheelFollowing::judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
-                                     std::uint64_t elapsed, ActiveCauses& out) noexcept {
+void WheelFollowing::update_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                                      std::uint64_t elapsed, ActiveCauses& out) noexcept {
   Excess& excess = wrong_direction_[wheel];
   const double target = targets[wheel];
   const double speed = target == 0 ? 0 : -along(target, motion.speed(wheel));

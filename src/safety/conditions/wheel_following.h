@@ -20,12 +20,12 @@
 ///                    ground friction 1, S: its largest. 0 for one wheel a side: then `held` is −∞
 ///   runaway          s·ω − |q̇*| > limit + δ;  |ω| if the target is 0
 ///   wrong_direction  −s·ω > limit + δ
-/// Of a runaway of 3 × limit and more the persistence is shorter (condition_watch.h).
+/// A runaway of 3 × limit and more has a shorter persistence (condition_watch.h).
 ///
-/// Persistence of the last two restarts whenever the wheel has lost kProgress + δ of that speed since it began. A drive
-/// at its torque limit, or a scrubbing skid steer, lags behind a target that changes sign, but slows down; a wheel that
-/// runs away does not. Beyond kFarBeyond times the limit the persistence is not restarted: no lag is that large, but a
-/// command that jumped, or an encoder that counts backwards, is there at once.
+/// The persistence of the last two restarts whenever the wheel has lost kProgress + δ of that speed since it began. A
+/// drive at its torque limit, or a scrubbing skid steer, lags behind a target that changes sign, but slows down. A
+/// wheel that runs away does not. Beyond kFarBeyond times the limit the persistence is not restarted. No lag is that
+/// large, but a command that jumped, or an encoder that counts backwards, exceeds it at once.
 ///
 ///   not_stopping     s of motion (joint_standstill.h) since standstill was commanded, until the robot stood for kRest.
 ///                    Covers robots that roll on, are pushed, or oscillate about their rest position and stand at the
@@ -70,7 +70,7 @@ class WheelFollowing {
             const JointStandstill& standstill, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
-  /// Of one wheel.
+  /// The stall measurement of one wheel.
   struct Stall {
     double missed = 0;                                       ///< rad
     double target_travel = 0;                                ///< rad, ∫|q̇*|dt since the wheel last turned
@@ -93,10 +93,10 @@ class WheelFollowing {
               ActiveCauses& out) noexcept;
   };
 
-  void judge_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
-                     ActiveCauses& out) noexcept;
-  void judge_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
-                       ActiveCauses& out) noexcept;
+  void update_runaway(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel, std::uint64_t elapsed,
+                      ActiveCauses& out) noexcept;
+  void update_direction(const WheelTargets& targets, const WheelMotion& motion, std::size_t wheel,
+                        std::uint64_t elapsed, ActiveCauses& out) noexcept;
   ConditionMeasurement stalled(const SensorFrame& sensors, const WheelTargets& targets, const WheelMotion& motion,
                                double dt) noexcept;
   double held(std::size_t wheel, double scrubbing) const noexcept;

@@ -48,10 +48,10 @@ void WheelLimits::step(const SensorFrame& sensors, const WheelMotion& motion, bo
   const double in_force = in_force_.step(speed_limit, elapsed);
   const bool known = motion.speed_known();
   const ConditionMeasurement speed = known ? fastest(motion, in_force) : kNothingMeasured;
-  out.judge(speed_, speed, weighed(speed, elapsed));
-  out.judge(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingMeasured, elapsed);
-  out.judge(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingMeasured, elapsed);
-  out.judge(power_, known ? drawn(sensors, motion) : kNothingMeasured, elapsed);
+  out.update(speed_, speed, weighed(speed, elapsed));
+  out.update(acceleration_, motion.acceleration_known() ? most_jerked(motion) : kNothingMeasured, elapsed);
+  out.update(effort_, motion.sampled() && passed ? strongest(sensors) : kNothingMeasured, elapsed);
+  out.update(power_, known ? drawn(sensors, motion) : kNothingMeasured, elapsed);
 }
 
 ConditionMeasurement WheelLimits::fastest(const WheelMotion& motion, double speed_limit) const noexcept {

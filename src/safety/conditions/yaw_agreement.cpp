@@ -30,7 +30,7 @@ YawAgreement::YawAgreement(const Condition& condition, const RobotModel& robot, 
 void YawAgreement::step(const SensorFrame& sensors, const WheelMotion& motion, std::uint64_t elapsed,
                         ActiveCauses& out) noexcept {
   const bool known = motion.speed_known() && (sensors.valid & kValidGyro) != 0;
-  out.judge(watch_, known ? compare(sensors.imu.angular_velocity, motion) : kNothingMeasured, elapsed);
+  out.update(watch_, known ? compare(sensors.imu.angular_velocity, motion) : kNothingMeasured, elapsed);
 }
 
 ConditionMeasurement YawAgreement::compare(const Vector3& gyro, const WheelMotion& motion) const noexcept {

@@ -5,8 +5,8 @@
 ///
 /// z the base's z axis in the IMU's axes (RobotModel::imu_in_base), v the mean rim speed of a side, b the effective
 /// wheel base, δ = 2·(quantum/T)·radius/b the encoders' tolerance (wheel_motion.h), summed over the wheels.
-/// kScrub applies with several wheels a side, which scrub in a turn by up to half of ω, depending on the ground
-/// (RobotModel); with one wheel a side it is 0.
+/// kScrub applies with several wheels a side: in a turn they scrub by up to half of ω, depending on the ground. With
+/// one wheel a side it is 0.
 
 #include <array>
 #include <cstdint>

@@ -34,7 +34,7 @@ class ActiveCauses {
   }
 
   /// One more cycle of a condition.
-  void judge(ConditionWatch& watch, const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
+  void update(ConditionWatch& watch, const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
     if (watch.step(measurement, elapsed)) add(watch);
   }
 

@@ -22,7 +22,7 @@ void MotionRelease::start(std::uint64_t cycle) noexcept {
   since_gap_.restart(std::max(since_gap_.after, since_start_.after));
 }
 
-void MotionRelease::note_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept {
+void MotionRelease::update_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept {
   if (known == first_cycle) return;
   known = first_cycle;
   start(first_cycle);
@@ -34,18 +34,18 @@ void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexc
   const std::uint64_t resumes = input.sensors->resumes;
   if (resumes_ && *resumes_ != resumes) start(cycle);
   resumes_ = resumes;
-  if (input.state_seen) note_start(state_first_, input.state_first_cycle);
-  if (command != nullptr) note_start(command_first_, command->first_cycle);
+  if (input.state_seen) update_start(state_first_, input.state_first_cycle);
+  if (command != nullptr) update_start(command_first_, command->first_cycle);
   if (elapsed > 1) since_gap_.restart(cycle - 1);
   no_motion_requested_ = false;
   if (command != nullptr && input.state_seen && command->state_cycle == command->head.cycle) {
-    judge(*command);
+    evaluate(*command);
   } else {
     since_gap_.restart(cycle);
   }
 }
 
-void MotionRelease::judge(const CommandFrame& command) noexcept {
+void MotionRelease::evaluate(const CommandFrame& command) noexcept {
   const bool zero_after_start = since_start_.grown(command);
   const bool zero_after_gap = since_gap_.grown(command);
   const bool in_force = !zero(command.twist_requested);

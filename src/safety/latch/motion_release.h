@@ -4,24 +4,26 @@
 /// A *current command frame* in cycle k is the command of cycle k−1, computed from the state of cycle k−1. Its counters
 /// of requests (control/command_watch.h) began in its first_cycle.
 ///
-/// **Zero first.** A start is the first cycle of a run (the driver was started or reset), the first_cycle of an
-/// estimator or of a controller, the first cycle after a pause (SensorFrame::resumes), and the first cycle of this
-/// monitor. After the latest start motion is released as soon
-/// as a current command frame reports one of
+/// **Zero first.** A start is one of
+///   the first cycle of a run: the driver was started or reset
+///   the first_cycle of an estimator or of a controller
+///   the first cycle after a pause (SensorFrame::resumes)
+///   the first cycle of this monitor
+/// After the latest start motion is released as soon as a current command frame reports one of
 ///   zero     a zero request was received after that start
 ///   silence  no message of any sender, accepted or refused, for silence_needed cycles after that start, and no command
 ///            in force requests motion
 /// Once released, motion stays released until the next start.
 ///
-/// **Evidence for a reset.** No motion is requested in cycle k if its current command frame reports a command in force
-/// of zero velocity, and one of
+/// **Evidence for a reset.** It exists in cycle k if the current command frame reports that the velocity in force is
+/// zero, and one of
 ///   zero     a zero request was received after the last gap, and only zero requests since then
 ///   silence  as above, after the last gap
-/// A *gap* is a start, a cycle without a current command frame, or a cycle that the monitor skipped: messages and
+/// A *gap* is a start, a cycle without a current command frame, or a cycle that the monitor skipped. Messages and
 /// silence before a gap do not count.
 ///
-/// A zero request counts as received after cycle c if the frame's counter began at c or later, or has grown since the
-/// first current frame after c.
+/// A zero request counts as received after cycle c if the frame's counter began at c or later. It also counts if the
+/// counter has grown since the first current frame after c.
 
 #include <cstdint>
 #include <optional>
@@ -61,8 +63,8 @@ class MotionRelease {
   };
 
   void start(std::uint64_t cycle) noexcept;
-  void note_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept;
-  void judge(const CommandFrame& command) noexcept;
+  void update_start(std::optional<std::uint64_t>& known, std::uint64_t first_cycle) noexcept;
+  void evaluate(const CommandFrame& command) noexcept;
 
   std::optional<std::uint64_t> resumes_;  ///< SensorFrame::resumes of the last step
   std::optional<std::uint64_t> state_first_;

@@ -2,15 +2,18 @@
 /// Causes → latch → state. Holds what outlives a cycle and a run: the latched causes, the reaction to each, the first
 /// cause.
 ///
-/// A latched cause stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused while a
-/// cause is active, while there is no evidence that no motion is requested (motion_release.h), while a wheel turns,
-/// while the body may still slide, and while a node is missing in INIT; STOPPING counts as moving. In READY and DRIVE,
-/// where nothing is latched, a reset is accepted without effect. The ramp of STOPPING ends at the cycle that was fixed
-/// when it began, or at standstill.
+/// A latched cause stays in `causes` until a reset is accepted; nothing else clears it. A reset is refused while
+///   a cause is active,
+///   there is no evidence that no motion is requested (motion_release.h),
+///   a wheel turns or the state is STOPPING,
+///   the body may still slide, or
+///   a node is missing in INIT.
+/// In READY and DRIVE, where nothing is latched, a reset is accepted without effect. The ramp of STOPPING ends at the
+/// cycle that was fixed when it began, or at standstill.
 ///
-/// INIT ends when all nodes of this run were received once and motion is released (motion_release.h). A node start,
-/// which withdraws the release, leads from READY and DRIVE to INIT and from STOPPING to STOPPED: the robot brakes, and
-/// no cause is latched for it.
+/// INIT ends when all nodes of this run were received once and motion is released (motion_release.h). A node start
+/// withdraws the release: READY and DRIVE become INIT, STOPPING becomes STOPPED. The robot brakes, and no cause is
+/// latched for it.
 
 #include <cstdint>
 

@@ -24,7 +24,7 @@ class Warnings {
   std::uint64_t bits() const noexcept { return warning_ | slowing_; }
   bool slowing() const noexcept { return slowing_ != 0; }
 
-  /// Of one set bit: the last measurement, with the cycle since which it is active.
+  /// The last measurement of one set bit, with the cycle since which it is active.
   const CauseEvidence& evidence(std::uint64_t cause) const noexcept;
 
  private:

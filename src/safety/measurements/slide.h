@@ -1,12 +1,12 @@
 #pragma once
 /// An upper bound on how fast the body may still slide. Standing wheels do not prove that the body stands: on ice it
-/// slides with locked wheels, and no sensor of the monitor distinguishes steady sliding from rest.
+/// slides with locked wheels. No sensor of the monitor distinguishes steady sliding from rest.
 ///
 ///   u_k = max(u_k−1 − a·dt, min(rim, u_k−1 + kGrip·dt, limit)),   rim = max |ωᵢ|·rᵢ, 0 while the wheels stand
 ///
 /// u is a bound (m/s), not a measurement: the rim speed, reduced no faster than by a = stop_deceleration, which is
-/// reached on every ground the robot drives on. kGrip: a tyre cannot accelerate the body faster, so a spinning wheel or
-/// a wrong encoder counts little if it is short. limit: that of wheel_speed.
+/// reached on every ground the robot drives on. A tyre cannot accelerate the body faster than kGrip: a spinning wheel
+/// or a wrong encoder counts little if it is short. `limit` is that of wheel_speed.
 ///
 /// While the wheel speeds are not known (wheel_motion.h), u keeps its value.
 

@@ -21,7 +21,7 @@ void WheelMotion::enter_run() noexcept {
 
 void WheelMotion::step(const SensorFrame& sensors) noexcept {
   speed_known_ = acceleration_known_ = false;
-  sampled_ = take(sensors);
+  sampled_ = read_angles(sensors);
   if (!sampled_) return;
   const Sample* const middle = before(newest_);
   if (middle == nullptr) return;
@@ -37,7 +37,7 @@ void WheelMotion::step(const SensorFrame& sensors) noexcept {
   acceleration_known_ = true;
 }
 
-bool WheelMotion::take(const SensorFrame& sensors) noexcept {
+bool WheelMotion::read_angles(const SensorFrame& sensors) noexcept {
   if ((sensors.valid & kValidJoints) == 0 || sensors.joint_count < wheels_) return false;
   Values angle{};
   bool all_finite = true;
@@ -55,7 +55,7 @@ bool WheelMotion::take(const SensorFrame& sensors) noexcept {
 
 void WheelMotion::refine_quantum(std::size_t wheel, double candidate) noexcept {
   double& quantum = quantum_[wheel];
-  if (candidate <= kLeastQuantum || (quantum != 0 && candidate >= quantum)) return;
+  if (candidate <= kMinQuantum || (quantum != 0 && candidate >= quantum)) return;
   quantum = candidate;
   speed_tolerance_[wheel] = quantum / window_;
   acceleration_tolerance_[wheel] = 2 * quantum / (window_ * window_);

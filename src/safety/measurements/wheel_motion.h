@@ -9,12 +9,12 @@
 /// window T the resolution is quantum/T = 0.08 rad/s, at the price of a lag of T/2.
 ///
 ///   quantum       the smallest step of an angle, or change of step, in this run: a single count, because a robot
-///                 starts from rest; at speed, steps of 65 and 66 counts give it, too. Steps below kLeastQuantum are
+///                 starts from rest; at speed, steps of 65 and 66 counts give it, too. Steps below kMinQuantum are
 ///                 ignored: an encoder of 2²² counts needs no tolerance.
 ///   tolerances    quantum/T for a speed, 2 quanta/T² for an acceleration: the largest error by quantisation
 ///
-/// Skipped cycles, and samples that are missing, not valid or not finite, make a window longer, up to twice its length;
-/// beyond that speed and acceleration are not known.
+/// Skipped cycles, and samples that are missing, not valid or not finite, make a window longer, up to twice its length.
+/// Beyond that speed and acceleration are not known.
 
 #include <array>
 #include <cstddef>
@@ -29,7 +29,7 @@ namespace robot_control {
 class WheelMotion {
  public:
   static constexpr std::uint64_t kMaxWindow = 40;  ///< cycles
-  static constexpr double kLeastQuantum = 1e-6;    ///< rad
+  static constexpr double kMinQuantum = 1e-6;      ///< rad
 
   /// The first `wheels` joints. `period` s.
   WheelMotion(std::size_t wheels, double period) noexcept;
@@ -63,7 +63,7 @@ class WheelMotion {
   static constexpr std::uint64_t kNever = ~std::uint64_t{0};
   static constexpr std::size_t kSlots = 256;  // two windows of twice the length, and more
 
-  bool take(const SensorFrame& sensors) noexcept;
+  bool read_angles(const SensorFrame& sensors) noexcept;
   void refine_quanta(const Values& angle) noexcept;
   void refine_quantum(std::size_t wheel, double candidate) noexcept;
   const Sample* before(std::uint64_t cycle) const noexcept;
