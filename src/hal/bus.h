@@ -92,9 +92,9 @@ class ForeignChannel {
       : object_(std::make_unique<ForeignBusObject>(bus, std::move(channel), BusLayoutOf<Object>::value)) {}
 
   /// Ordinary thread, at 10 Hz: maps, or maps again when the name has a new object. True if `memory()` changed.
-  /// Throws BusError. A shortage of descriptors passes: what is mapped stays, and the next poll looks again. Old
-  /// mappings stay valid; after an unlink without a successor the old one stays current,
-  /// because its writer may well go on.
+  /// Throws BusError. A shortage of descriptors is temporary: mappings stay, and the next poll tries again. Old
+  /// mappings stay valid. After an unlink without a successor the old one stays current, because its writer may
+  /// continue.
   bool poll() { return object_->poll(); }
 
   /// True while some process holds the writer's lock on the mapped object; false while none is mapped.

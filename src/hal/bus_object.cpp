@@ -100,8 +100,8 @@ const char* kind_text(mode_t mode) {
   return "a device or socket";
 }
 
-/// The object of this name is not this user's alone. It is refused, its mode is not corrected: another process may
-/// have it open still.
+/// The object of this name is open to other users. It is refused, and its mode is not corrected: another process may
+/// still have it open.
 [[noreturn]] void fail_not_private(const std::string& channel, const std::string& name) {
   const std::string file = file_of(name);
   const std::string listing = "see 'ls -l " + file + "'; ";
@@ -195,7 +195,7 @@ std::optional<SharedMemory> open_or_create(const std::string& name) {
   return object ? std::move(object) : SharedMemory::create(name);
 }
 
-/// False: held by another for longer than kLockTries · kSettleNs, or the name is another object's by now.
+/// False: another process held the lock for longer than kLockTries · kSettleNs, or the name has another object by now.
 bool lock_soon(SharedMemory& object) {
   for (int tries = 0; !object.lock(); ++tries) {
     if (tries == kLockTries || !object.still_named()) return false;
@@ -294,8 +294,8 @@ bool ForeignBusObject::is_current(const SharedMemory& named) const {
   return object_ && object_->same_object(named) && inspect(named, layout_) == Finding::kUsable;
 }
 
-/// The reason why the object is not mapped; empty: it can be. An unlocked wreck is its next writer's to clear
-/// away; a locked one stays what it is, so that is an error.
+/// The reason why the object is not mapped; empty: it can be. The next writer replaces an unlocked
+/// unusable object. A locked one stays unusable, which is an error.
 std::string ForeignBusObject::obstacle_of(const SharedMemory& named) const {
   Finding finding = inspect(named, layout_);
   for (int tries = 0; tries < kSettleTries; ++tries) {

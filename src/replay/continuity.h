@@ -1,5 +1,5 @@
 #pragma once
-/// Whether the state of a law that runs again is the one before the next row, and which rows were not compared.
+/// Decides whether the state of a replayed law is that before the next row, and lists the rows that were not compared.
 
 #include <cstdint>
 #include <map>
@@ -16,10 +16,10 @@ namespace robot_control {
 /// The snapshots of all laws.
 class SnapshotStore {
  public:
-  /// Throws ReplayError: of another build. False: its checksum is wrong, it is not used.
+  /// Throws ReplayError if the snapshot is of another build. False: its checksum is wrong, and it is not used.
   bool add(const LawSnapshot& snapshot);
 
-  /// Null: none was taken there.
+  /// Null: no snapshot was taken at this row.
   const LawSnapshot* find(LawName law, const LawRow& row) const;
 
  private:
@@ -27,7 +27,7 @@ class SnapshotStore {
   std::map<Key, LawSnapshot> snapshots_;
 };
 
-/// How the state before a row came about.
+/// The origin of the state before a row.
 enum class StateBefore { kUnknown, kContinued, kRestored };
 
 /// The continuity of one law.
@@ -35,7 +35,8 @@ class Continuity {
  public:
   Continuity(LawName law, ReplayReport& report) noexcept : law_(law), report_(report) {}
 
-  /// The state before this row; `restore(snapshot)` sets the law to it and is called where rows are missing.
+  /// The origin of the state before this row. Where rows are missing, `restore(snapshot)` is called to set the law to
+  /// it.
   template <class Restore>
   StateBefore before(const LawRow& row, const SnapshotStore& snapshots, Restore restore) {
     const bool follows = known_ && row.process == process_ && row.number == next_;
@@ -54,7 +55,7 @@ class Continuity {
   LawName law() const noexcept { return law_; }
   bool known() const noexcept { return known_; }
 
-  /// From here on the state is unknown, until a snapshot.
+  /// The state is unknown until the next snapshot.
   void lose(const std::string& reason) {
     known_ = false;
     reason_ = reason;
@@ -78,7 +79,7 @@ class Continuity {
   std::uint64_t process_ = 0;
   std::uint64_t next_ = 0;  ///< number of the row that follows
   std::string reason_ = "no snapshot yet";
-  std::size_t gap_ = 0;  ///< index + 1 of the one that goes on
+  std::size_t gap_ = 0;  ///< index + 1 of the gap that continues; 0: none
 };
 
 }  // namespace robot_control

@@ -10,13 +10,13 @@ namespace robot_control {
 template <class Frame>
 class FrameHistory {
  public:
-  /// `checksum`: by which the log names it.
+  /// The log names the frame by `checksum`.
   void add(std::uint64_t checksum, const Frame& frame) noexcept {
     entries_[next_] = {true, checksum, frame};
     next_ = (next_ + 1) % kFrames;
   }
 
-  /// Null: it is not there.
+  /// Null: the history does not hold it.
   const Frame* find(std::uint64_t checksum) const noexcept {
     for (const Entry& entry : entries_) {
       if (entry.filled && entry.checksum == checksum) return &entry.frame;
@@ -24,7 +24,7 @@ class FrameHistory {
     return nullptr;
   }
 
-  /// The newest of this cycle; null: there is none.
+  /// The newest frame of this cycle; null: there is none.
   const Frame* find(std::uint64_t run, std::uint64_t cycle) const noexcept {
     const Frame* found = nullptr;
     for (std::size_t i = 0; i < kFrames; ++i) {

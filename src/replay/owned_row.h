@@ -1,5 +1,5 @@
 #pragma once
-/// A row of the log with what its pointers point to.
+/// A row of the log that owns the rows of its nodes.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ class OwnedRow {
     keep(row.laws.monitor, monitor_, has_[3]);
   }
 
-  /// With the bytes of its message, and the time under which it stands in the log.
+  /// A row that was read from a log, with the bytes of its message and the time of that message.
   OwnedRow(const TraceRow& row, std::string_view message, std::int64_t time_ns) : OwnedRow(row.joined(0)) {
     message_ = message;
     time_ns_ = time_ns;
@@ -27,7 +27,7 @@ class OwnedRow {
     lost_ = row.lost;
   }
 
-  /// The same row; it holds as long as this object.
+  /// The same row; its pointers are valid as long as this object lives.
   JoinedRow joined() const noexcept {
     JoinedRow row{.run = run_, .cycle = cycle_, .time = 0, .driver = driver()};
     row.repeats = repeats_;

@@ -17,7 +17,7 @@
 namespace robot_control {
 namespace {
 
-/// Which of the frames that a law used is neither in the log nor computed again; empty: none.
+/// Names the first frame that a law used and that is neither in the log nor computed again; empty: none.
 struct Needed {
   const char* name;
   bool known;
@@ -116,7 +116,7 @@ const ReplayReport& Replay::report() const noexcept {
   return parts_->report;
 }
 
-/// Afterwards the row holds what was computed.
+/// Replaces the outputs of the laws in the row by the computed ones.
 void Replay::Parts::add(OwnedRow row) {
   if (row.driver() != nullptr) run(row, *row.driver());
   if (row.estimator() != nullptr) run(row, *row.estimator());
@@ -132,7 +132,7 @@ void Replay::Parts::differ(const OwnedRow& row, LawName law, const std::vector<F
   }
 }
 
-/// The other laws may have used it: `computed`, or what a fault made of it.
+/// Keeps the published frame for the other laws: `computed`, or the one that a fault made of it.
 template <class Frame>
 void Replay::Parts::publish(const LawRow& law, const Frame& logged, const Frame* computed,
                             FrameHistory<Frame>& published) {
@@ -164,7 +164,7 @@ void Replay::Parts::compare(const OwnedRow& row, Replica& replica, LawRow& law, 
   expect(computed, fault, logged);
 }
 
-/// Returns what is missing.
+/// Returns the sentence on the missing frame; empty: none is missing.
 std::string Replay::Parts::gate_input(const DriverTrace& driver, GateInput& input) const {
   static const Permit kNoPermit;
   static const CommandFrame kNoCommand;
@@ -290,6 +290,7 @@ void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
   monitor.law.step(input, monitor.output);
   if (framed) monitor.injected = sensors.injected;
   compare(row, monitor, calls.law, trace.permit, fault_of(monitor.injected, FaultComponent::kMonitor), frames.permit);
+  if (framed) calls.silence = SensorSilence::kNone;
   calls.command = commanded ? used(Lookup::kFrame, *input.command) : UsedFrame{.found = calls.command.found};
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .permit = &monitor.output, .varied_permit = varied});

@@ -21,7 +21,8 @@ struct PublishedFrames {
   FrameHistory<Permit> permit;
 };
 
-/// The sensor frame that a node used, as the driver published it or, as paused or ended, published it again.
+/// Finds the sensor frame that a node used. A driver that paused or ended published its last frame again, with that
+/// state.
 inline bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& head, std::uint64_t checksum,
                        SensorFrame& out) {
   const SensorFrame* found = published.find(checksum);

@@ -17,10 +17,10 @@ std::string_view name_of(LawName law) noexcept;
 
 /// One number that is computed differently from the log.
 struct ReplayDifference {
-  std::optional<LawName> law;  ///< whose output it is; nothing: it is a field of the row
+  std::optional<LawName> law;  ///< that computed it; empty: it is a field of the row
   std::int64_t run = 0;        ///< JoinedRow::run
   std::uint64_t cycle = 0;
-  std::string field;  ///< "joints[1].effort"; "digest" where the log holds no more than the frame's checksum
+  std::string field;  ///< "joints[1].effort"; "digest" if the log holds only the frame's checksum
   std::string logged;
   std::string replayed;
 };

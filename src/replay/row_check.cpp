@@ -19,7 +19,7 @@ void RowCheck::check(OwnedRow& row) {
   }
 }
 
-/// The rows of a run stand in the order of their cycles, and one that repeats a cycle behind that.
+/// The rows of a run are in the order of their cycles. A row that repeats a cycle follows the row of that cycle.
 void RowCheck::place(OwnedRow& row) noexcept {
   const bool goes_on = run_ >= 0 && row.run_id() == run_id_;
   const std::uint64_t cycle = goes_on && row.repeats() ? cycle_ : row.cycle();

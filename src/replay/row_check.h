@@ -28,7 +28,7 @@ class RowCheck {
   /// `joints` of the robot. `report` lives longer.
   RowCheck(std::size_t joints, ReplayReport& report) noexcept : joints_(joints), report_(report) {}
 
-  /// In the order of the log. `row` holds its message, and what was computed in place of what was logged.
+  /// Called in the order of the log. `row` holds its message, and the computed outputs in place of the logged ones.
   void check(OwnedRow& row);
 
  private:

@@ -14,7 +14,7 @@ const StateFrame* Variant::step(const EstimatorCalls& calls, const SensorFrame& 
   if (calls.law.new_run != 0) {
     const bool restarted = estimates_ && calls.law.process != process_ && state_.head.run == sensors.head.run;
     if (restarted) {
-      estimator_.resume(state_);  // as the node does, from the last state of the one before
+      estimator_.resume(state_);  // the node, too, continues from the last state of its predecessor
     } else {
       estimator_.enter_run();
     }

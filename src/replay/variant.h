@@ -36,7 +36,7 @@ class Variant {
   /// The output of one cycle. Null: the law has not begun.
   const StateFrame* step(const EstimatorCalls& calls, const SensorFrame& sensors) noexcept;
 
-  /// `law`: in the state of the log before this step.
+  /// `law` has the state of the log before this step.
   const CommandFrame* step(const ControllerCalls& calls, const ControlInput& input,
                            const DriveController& law) noexcept;
 
@@ -45,7 +45,7 @@ class Variant {
  private:
   Estimator estimator_;
   DriveTuning tuning_;
-  std::optional<DriveController> controller_;  ///< nothing: it has not begun
+  std::optional<DriveController> controller_;  ///< empty: it has not begun
   SafetyMonitor monitor_;
   bool estimates_ = false;
   std::uint64_t process_ = 0;  ///< whose estimates they are

@@ -40,7 +40,7 @@ std::string hexadecimal(std::uint64_t number) {
   return text.data();
 }
 
-/// Bits of names separated by blanks; nothing where one is unknown.
+/// Returns the bits of names that are separated by blanks; nothing if a name is unknown.
 std::optional<std::uint64_t> causes_named(const std::string& names) {
   std::uint64_t causes = 0;
   std::istringstream words(names);
@@ -55,7 +55,7 @@ std::optional<std::uint64_t> causes_named(const std::string& names) {
   return causes;
 }
 
-/// The rest of a line that begins with `key`, and the text behind it.
+/// Splits off the first line, which begins with `key`: its rest is `value`, the following lines stay in `text`.
 bool take_line(std::string& text, const std::string& key, std::string& value) {
   if (!text.starts_with(key)) return false;
   const std::size_t end = text.find('\n');
@@ -78,7 +78,7 @@ LatchRecord read_latch(const std::string& path) {
   return file.problem.empty() ? parse_latch(file.text) : unreadable();
 }
 
-/// A device or FIFO would take the record and forget it.
+/// A device or FIFO would accept the record and not keep it.
 void write_record(const std::string& path, const std::string& text) {
   const std::filesystem::path file(path);
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {

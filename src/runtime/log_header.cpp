@@ -12,7 +12,7 @@
 namespace robot_control {
 namespace {
 
-/// "AMD Ryzen …; fpu vme …" of the first processor: two of the same flags compute the same.
+/// Model and flags of the first processor: "AMD Ryzen …; fpu vme …". Processors with equal flags compute equal bits.
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   std::string model, flags;
@@ -24,7 +24,7 @@ std::string processor() {
   return model + ";" + flags;
 }
 
-/// Empty where there is no such file: a log goes without it.
+/// Empty if there is no such file: the log is written without it.
 std::string text_of(const std::string& path, std::size_t max_size) {
   return path.empty() ? std::string() : read_input_file(path, max_size).text;
 }

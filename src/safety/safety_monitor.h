@@ -34,8 +34,8 @@
 /// A latch outlives all processes. A restarted monitor inherits the causes of the last permit in the channel, for any
 /// driver instance, and those of latch_file. They are latched at once, and only an accepted reset clears them.
 /// An `e_stop` topic that was true counts as true until its next message.
-/// A restart of the monitor is itself a cause, unless the driver instance of that permit has ended and the gate has
-/// used no permit of this run.
+/// A restart of the monitor is itself a cause if its driver instance still runs. It is one, too, if the gate has used a
+/// permit of this run.
 ///
 /// Permit::withdrawals counts starts (motion_release.h), latched causes and the end of an earlier monitor. A request
 /// from before one of them moves nothing after it (bridge/inputs/motion_requests.h).

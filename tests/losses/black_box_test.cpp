@@ -118,7 +118,6 @@ TEST_F(ABlackBox, HoldsASnapshotOfEachLawBeforeAStopRightAfterTheStartOfTelemetr
   }
 }
 
-/// Then no row says that it stopped.
 TEST_F(NightlyBlackBox, IsSavedAfterTheStopForALostDriverToo) {
   robot_.await_cycles(500);
   nodes().process(LoopNode::kPlant).stop_with(SIGKILL);

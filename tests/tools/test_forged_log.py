@@ -82,7 +82,7 @@ def test_a_copy_is_as_good_as_its_log(replayed):
 @pytest.mark.parametrize(
     "edit",
     [
-        given(permit_causes=0, permit_active=0, permit_first_cause=0, operator_e_stop_services=0, event_call=b""),
+        given(permit_causes=0, permit_active=0, permit_first_cause=0, operator_e_stop_services=0),
         given(supervisor_state=2),
         moved,
         given(estimate_yaw=1.0),

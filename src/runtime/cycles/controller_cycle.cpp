@@ -16,7 +16,7 @@ ControllerCycle::ControllerCycle(const DriveControllerParameters& parameters, co
   trace_.tuning = controller_.tuning();
 }
 
-/// Everything but the command itself, which script and inbox share.
+/// Takes over every member but the command itself, which script and inbox share.
 void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
   received_ = arrived;
   request_.stale = arrived.stale;

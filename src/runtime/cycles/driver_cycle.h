@@ -46,11 +46,11 @@ class DriverCycle {
   /// One tick. The first one of a run is cycle 0.
   void step() noexcept;
 
-  /// After the others have worked on the frame of the last tick: they see it again, as paused. Nothing before
-  /// the first tick of a run.
+  /// Publishes the frame of the last tick again, as paused. Called after the other nodes have processed that frame;
+  /// without effect before the first tick of a run.
   void publish_paused() noexcept { publish_last_as(DriverState::kPaused); }
 
-  /// The same as ended: no tick follows. A fault stays reported as what it is.
+  /// Publishes the frame of the last tick again, as ended: no tick follows. A reported fault stays reported.
   void publish_ended() noexcept { publish_last_as(DriverState::kEnded); }
 
   /// A simulated machine has these faults from the next tick on.

@@ -16,7 +16,7 @@ class Snapshots {
     snapshot_.build = build_id();
   }
 
-  /// Before the law's step of the cycle in `head`. The row of that step: `noted`.
+  /// Called before the law's step of the cycle in `head`; `noted` is the row of that step.
   template <class Law>
   void copy_if_due(const Law& law, const LawRow& noted, const FrameHead& head) noexcept {
     constexpr std::uint64_t kFirstRows = 2;  // the first one repeats a cycle of an earlier process, perhaps
@@ -30,7 +30,7 @@ class Snapshots {
     save_state(law, snapshot_);
   }
 
-  /// Taken in the last step; else null.
+  /// The copy taken in the last step; null: none was due.
   const LawSnapshot* taken() const noexcept { return taken_ ? &snapshot_ : nullptr; }
 
  private:

@@ -101,7 +101,7 @@ void DriverProcess::loop() noexcept {
   } else {
     loop_wall();
   }
-  if (!hold_.park_requested()) cycle_->publish_ended();  // parked, the cycle belongs to a reset
+  if (!hold_.park_requested()) cycle_->publish_ended();  // while the loop is parked, a reset uses the cycle
   hold_.end();
   finish();
 }
@@ -112,8 +112,8 @@ void DriverProcess::tick() noexcept {
   trace_.append(cycle_->trace(), cycle_->snapshot(), stopping());
 }
 
-/// Waits while the loop is held. True if it was: time has passed, perhaps a new run begun. Once it is to end, a reset
-/// may still have machine and cycle.
+/// Waits while the loop is held. True if it was held: time has passed, and a new run may have begun. When the loop is
+/// to end, a reset may still use machine and cycle.
 bool DriverProcess::await_turn() noexcept {
   bool held = false;
   while (!stopping().load(std::memory_order_relaxed) && !hold_.may_tick(cycle_->next_cycle())) {
@@ -147,9 +147,9 @@ void DriverProcess::loop_wall() noexcept {
   }
 }
 
-/// Lockstep: have state, command and permit of the last tick passed, with or without content? Waited for; false when
-/// the loop shall end or park. The end of the chain first: when it has come, the others are there, and one wake-up
-/// was enough.
+/// Lockstep: waits until state, command and permit of the last tick have passed, with or without content. False if the
+/// loop is to end or park. It waits for the end of the chain first: the other frames are then present after one
+/// wake-up.
 bool DriverProcess::await_chain() noexcept {
   if (cycle_->next_cycle() == 0) return true;
   const std::uint64_t run = cycle_->run();
@@ -185,7 +185,7 @@ void DriverProcess::loop_lockstep() noexcept {
       if (run != cycle_->run()) start_ns = monotonic_ns();
       run = cycle_->run();
     }
-    if (held || !complete) continue;  // asked to park while the chain was not complete, it still is to be waited for
+    if (held || !complete) continue;  // a loop that parked before the chain was complete still has to wait for it
     tick();
   }
 }

@@ -31,7 +31,7 @@ MonitorProcess::~MonitorProcess() {
   with_latched([this](std::uint64_t causes, std::uint64_t first) { latch_file_.finish(causes, first); });
 }
 
-/// Calls `keep` with what is latched now.
+/// Calls `keep` with the causes that are latched now, and the first of them.
 template <class Keep>
 void MonitorProcess::with_latched(Keep keep) const {
   Permit permit;
@@ -58,8 +58,7 @@ void MonitorProcess::poll_channels() {
   with_latched([this](std::uint64_t causes, std::uint64_t first) { latch_file_.update(causes, first); });
 }
 
-/// Waiting for nodes, the first cycle must find every channel mapped; otherwise a missing node is a fact that
-/// the monitor reports.
+/// With wait_for_nodes, every channel is mapped before the first cycle. Otherwise the monitor reports a missing node.
 bool MonitorProcess::ready() {
   const bool all = state_.reader.memory() != nullptr && command_.reader.memory() != nullptr;
   return ConsumerProcess::ready() && (all || !loop_parameters().wait_for_nodes);
