@@ -52,7 +52,6 @@ struct Replay::Parts {
                    {}},
         monitor{SafetyMonitor(safety_limits(parameters, robot), robot, parameters.loop.period()),
                 Continuity(LawName::kMonitor, report),
-                {},
                 {}} {}
 
   void add(OwnedRow row);
@@ -288,8 +287,7 @@ void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
   }
   const Permit* varied = variant == nullptr ? nullptr : variant->step(calls, input);
   monitor.law.step(input, monitor.output);
-  if (framed) monitor.injected = sensors.injected;
-  compare(row, monitor, calls.law, trace.permit, fault_of(monitor.injected, FaultComponent::kMonitor), frames.permit);
+  compare(row, monitor, calls.law, trace.permit, fault_of(sensors.injected, FaultComponent::kMonitor), frames.permit);
   if (framed) calls.silence = SensorSilence::kNone;
   calls.command = commanded ? used(Lookup::kFrame, *input.command) : UsedFrame{.found = calls.command.found};
   if (varied == nullptr) return;

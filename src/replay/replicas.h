@@ -60,7 +60,6 @@ struct MonitorReplica {
   SafetyMonitor law;
   Continuity continuity;
   Permit output;
-  InjectedFaults injected{};  ///< SensorFrame::injected of the last step with a frame
 };
 
 }  // namespace robot_control
