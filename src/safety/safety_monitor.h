@@ -26,23 +26,20 @@
 /// Driver lost latches in two cases.
 ///   wall clock  no current sensor frame arrives
 ///   any clock   a frame carries another SensorFrame::driver_instance than the frame before it
-/// A restarted driver therefore counts as lost,
-/// however short the interruption was and whatever the driver reported last. A reset of the simulation keeps the driver
-/// instance. A driver that reports its end (DriverState::kEnded) is missing, not lost: the state becomes INIT, or a
-/// latched stop stays.
+/// A restarted driver therefore counts as lost, however short the interruption was and whatever the driver reported
+/// last. A reset of the simulation keeps the driver instance. A driver that reports its end (DriverState::kEnded) is
+/// missing, not lost: the state becomes INIT, or a latched stop stays.
 ///
 /// A latch outlives all processes. A restarted monitor inherits the causes of the last permit in the channel, for any
-/// driver instance, and those of latch_file. They are latched at once, and only an accepted reset clears them.
-/// An `e_stop` topic that was true counts as true until its next message.
-/// A restart of the monitor is itself a cause if its driver instance still runs. It is one, too, if the gate has used a
-/// permit of this run.
+/// driver instance, and those of latch_file. They are latched at once, and only an accepted reset clears them. An
+/// `e_stop` topic that was true counts as true until its next message. The restart itself is a cause if the driver
+/// instance of that permit still runs, and if the gate has used a permit of this run.
 ///
 /// Permit::withdrawals counts starts (motion_release.h), latched causes and the end of an earlier monitor. A request
 /// from before one of them moves nothing after it (bridge/inputs/motion_requests.h).
 ///
 /// The speed limit of a permit is the smaller of the limit that the clearance gives and slow_speed. The latter applies
-/// while a cause with Reaction::kSlow is active and for kWarningHold after it (warnings.h). A speed limit never
-/// latches.
+/// while a cause with Reaction::kSlow is active and for kWarningHold after it (warnings.h). It never latches.
 
 #include <cstdint>
 #include <optional>
