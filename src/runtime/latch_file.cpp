@@ -56,7 +56,7 @@ std::optional<std::uint64_t> causes_named(const std::string& names) {
 }
 
 /// Splits off the first line, which begins with `key`: its rest is `value`, the following lines stay in `text`.
-bool take_line(std::string& text, const std::string& key, std::string& value) {
+bool cut_line(std::string& text, const std::string& key, std::string& value) {
   if (!text.starts_with(key)) return false;
   const std::size_t end = text.find('\n');
   if (end == std::string::npos) return false;
@@ -110,8 +110,8 @@ LatchRecord parse_latch(const std::string& text) {
   std::string first_cause;
   std::string since;
   std::string checksum;
-  const bool whole = take_line(rest, "causes: [", causes) && take_line(rest, "first_cause: ", first_cause) &&
-                     take_line(rest, "since: ", since) && take_line(rest, "checksum: ", checksum) && rest.empty();
+  const bool whole = cut_line(rest, "causes: [", causes) && cut_line(rest, "first_cause: ", first_cause) &&
+                     cut_line(rest, "since: ", since) && cut_line(rest, "checksum: ", checksum) && rest.empty();
   if (!whole || !causes.ends_with(']')) return unreadable();
   causes.pop_back();
   const std::optional<std::uint64_t> bits = causes_named(causes);

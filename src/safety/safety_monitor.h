@@ -32,8 +32,8 @@
 ///
 /// A latch outlives all processes. A restarted monitor inherits the causes of the last permit in the channel, for any
 /// driver instance, and those of latch_file. They are latched at once, and only an accepted reset clears them. An
-/// `e_stop` topic that was true counts as true until its next message. The restart itself is a cause if the driver
-/// instance of that permit still runs, and if the gate has used a permit of this run.
+/// `e_stop` topic that was true counts as true until its next message. The restart itself is a cause if that driver
+/// instance still runs or the gate has used a permit of this run.
 ///
 /// Permit::withdrawals counts starts (motion_release.h), latched causes and the end of an earlier monitor. A request
 /// from before one of them moves nothing after it (bridge/inputs/motion_requests.h).
