@@ -53,7 +53,7 @@ struct ABagLog : testing::Test {
   ABagLog() { parameters.telemetry.record = RecordMode::kAlways; }
 
   BagLog& open(const TelemetryParameters& telemetry) {
-    const std::unique_ptr<LogFolder> earlier = std::move(logs);  // the log before this one still refers to it
+    log.reset();  // it refers to its folder
     logs = std::make_unique<LogFolder>(folder.path() / "log", static_cast<std::int64_t>(telemetry.quota * 1e9));
     log = std::make_unique<BagLog>(*logs, log_header(parameters, loop.robot()), telemetry);
     return *log;
