@@ -35,8 +35,7 @@ class Continuity {
  public:
   Continuity(LawName law, ReplayReport& report) noexcept : law_(law), report_(report) {}
 
-  /// The origin of the state before this row. Where rows are missing, `restore(snapshot)` is called to set the law to
-  /// it.
+  /// The origin of the state before this row. If rows are missing, `restore(snapshot)` sets the law to a snapshot.
   template <class Restore>
   StateBefore before(const LawRow& row, const SnapshotStore& snapshots, Restore restore) {
     const bool follows = known_ && row.process == process_ && row.number == next_;
