@@ -244,7 +244,10 @@ TEST_F(ABagLog, WhoseFileWasRemovedSaysSoCountsAndBeginsAnother) {
 
 TEST_F(ABagLog, WithoutAMessageIsRemovedAtTheEndAndNotKeptAfterACrash) {
   parameters.telemetry.record = RecordMode::kRequest;
-  open();  // as after SIGKILL: it is not closed
+  open();
+  std::filesystem::copy_file(path(), path("killed"));  // as after SIGKILL: it is not closed
+  log.reset();
+  std::filesystem::rename(path("killed"), path());
   open();
   drive_on(1500);
   EXPECT_THAT(names(), ElementsAre("run.bag"));
