@@ -43,11 +43,11 @@ void BagLog::set_header(LogHeader header) {
 }
 
 void BagLog::begin_bag() {
-  const std::string path = folder_.begin(LogKind::kBag);
+  const std::string path = folder_.begin();
   bag_begin_ns_ = 0;
   split_due_ns_ = 0;
-  writer_ = std::make_unique<BagWriter>(path, connections(),
-                                        [this](std::int64_t bytes) { return folder_.make_room(LogKind::kBag, bytes); });
+  writer_ =
+      std::make_unique<BagWriter>(path, connections(), [this](std::int64_t bytes) { return folder_.make_room(bytes); });
 }
 
 /// With the time of the first chunk, so that a player does not wait for it.
@@ -171,7 +171,7 @@ void BagLog::close() {
   writer_->close();
   std::error_code ignored;
   if (bag_begin_ns_ != 0) return;
-  const std::string path = folder_.path(LogKind::kBag);  // it holds no message
+  const std::string path = folder_.path();  // it holds no message
   if (std::filesystem::is_regular_file(std::filesystem::symlink_status(path, ignored))) {
     std::filesystem::remove(path, ignored);
   }

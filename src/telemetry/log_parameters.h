@@ -15,7 +15,6 @@ enum class RecordMode {
 
 struct TelemetryParameters {
   std::string directory;  ///< where runs are written; empty or relative: from where the node was started
-  bool csv = true;        ///< write run.csv beside run.bag
   RecordMode record = RecordMode::kMotion;
   double split_size = 1;         ///< GB (10⁹ bytes), of one run.bag; 0: no limit
   double split_time = 3600;      ///< s, of one run.bag; 0: no limit
