@@ -7,7 +7,7 @@
 /// cannot be removed. Only regular files count and are removed.
 ///
 /// The first `begin` locks the folder, because two writers would rename each other's logs. The lock (flock of the
-/// folder itself) ends with the process. Where the file system has no locks, there is none.
+/// folder itself) ends with the process. Some file systems have no locks; then there is none.
 
 #include <cstdint>
 #include <string>

@@ -5,11 +5,11 @@
 
 namespace robot_control {
 
-/// Which cycles run.bag holds.
+/// The mode decides which cycles run.bag holds.
 enum class RecordMode {
-  kMotion,   ///< while the robot moves, with what came before (recording/bag_log.h)
-  kAlways,   ///< all
-  kRequest,  ///< from a call of the service until it is taken back
+  kMotion,   ///< cycles while the robot moves, and those before (recording/bag_log.h)
+  kAlways,   ///< all cycles
+  kRequest,  ///< cycles between two calls of the service
   kOff,      ///< there is no run.bag
 };
 

@@ -2,7 +2,7 @@
 /// These templates make fields of members of a row; only the tables of fields, trace_*_fields.cpp, use them.
 ///
 /// `Get` is a stateless lambda that returns a reference to a member of one part of a row, as `MEMBER` makes it. `Wire`
-/// is the type in the message. Where the part is missing, numbers are NaN and integers 0.
+/// is the type in the message. If the part is missing, numbers are NaN and integers 0.
 
 #include <algorithm>
 #include <array>
@@ -101,7 +101,7 @@ constexpr Wire none() {
 }
 
 template <class Wire>
-void put_number(std::string& to, Wire value) {
+void write_number(std::string& to, Wire value) {
   ByteSink(to).number(value);
 }
 
@@ -120,7 +120,7 @@ struct ArraySize : std::integral_constant<std::size_t, 0> {};
 template <class Element, std::size_t N>
 struct ArraySize<std::array<Element, N>> : std::integral_constant<std::size_t, N> {};
 
-/// A number, or an array of fixed length.
+/// The field is a number, or an array of fixed length.
 template <class Part, class Wire, class Get>
 TraceField field(std::string name, std::string comment, Get) {
   using Value = std::decay_t<std::invoke_result_t<Get, Part&>>;
@@ -128,11 +128,11 @@ TraceField field(std::string name, std::string comment, Get) {
   TraceField result{.name = std::move(name), .type = wire_name<Wire>(), .comment = std::move(comment)};
   if constexpr (kSize == 0) {
     result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return as_number(Get{}(part)); });
-    result.put = [](const TraceSource& source, std::string& to) {
+    result.write = [](const TraceSource& source, std::string& to) {
       const Part* part = part_of<Part>(source.row);
-      put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
+      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
     };
-    result.take = [](ByteSource& from, TraceRow& row) {
+    result.read = [](ByteSource& from, TraceRow& row) {
       Get{}(part_of<Part>(row)) = static_cast<Value>(from.number<Wire>());
       return true;
     };
@@ -141,13 +141,13 @@ TraceField field(std::string name, std::string comment, Get) {
     if constexpr (std::is_arithmetic_v<typename Value::value_type>) {
       result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part)[i]); });
     }
-    result.put = [](const TraceSource& source, std::string& to) {
+    result.write = [](const TraceSource& source, std::string& to) {
       const Part* part = part_of<Part>(source.row);
       for (std::size_t i = 0; i < kSize; ++i) {
-        put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
+        write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
       }
     };
-    result.take = [](ByteSource& from, TraceRow& row) {
+    result.read = [](ByteSource& from, TraceRow& row) {
       auto& values = Get{}(part_of<Part>(row));
       for (auto& value : values) value = static_cast<std::decay_t<decltype(value)>>(from.number<Wire>());
       return true;
@@ -163,15 +163,15 @@ TraceField list(std::string name, std::string comment, Size, Get) {
   TraceField result{
       .name = std::move(name), .type = std::string(wire_name<Wire>()) + "[]", .comment = std::move(comment)};
   result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part, i)); });
-  result.put = [](const TraceSource& source, std::string& to) {
+  result.write = [](const TraceSource& source, std::string& to) {
     const Part* part = part_of<Part>(source.row);
     const std::size_t size = Size{}(part, source.joints);
-    put_number(to, static_cast<std::uint32_t>(size));
+    write_number(to, static_cast<std::uint32_t>(size));
     for (std::size_t i = 0; i < size; ++i) {
-      put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
+      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
     }
   };
-  result.take = [](ByteSource& from, TraceRow& row) {
+  result.read = [](ByteSource& from, TraceRow& row) {
     const auto size = from.number<std::uint32_t>();
     if (size > Max) return false;
     for (std::size_t i = 0; i < size; ++i) {
@@ -205,14 +205,14 @@ template <class Part, class Get>
 TraceField yaw(std::string name, Get) {
   TraceField result{.name = std::move(name), .type = wire_name<float>(), .comment = "rad"};
   result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return yaw_of(Get{}(part)); });
-  result.put = [](const TraceSource& source, std::string& to) {
+  result.write = [](const TraceSource& source, std::string& to) {
     const Part* part = part_of<Part>(source.row);
-    if (part == nullptr) return put_number(to, none<float>());
+    if (part == nullptr) return write_number(to, none<float>());
     Quaternion recorded = Get{}(*part);
     for (double& entry : recorded) entry = static_cast<float>(entry);
-    put_number(to, static_cast<float>(yaw_of(recorded)));
+    write_number(to, static_cast<float>(yaw_of(recorded)));
   };
-  result.take = [](ByteSource& from, TraceRow&) {
+  result.read = [](ByteSource& from, TraceRow&) {
     from.number<float>();
     return true;
   };

@@ -33,8 +33,8 @@ TraceField of_row(std::string name, std::string comment, Put, Take) {
           .plain = {.integer = true,
                     .value = [](const JoinedRow& row,
                                 std::size_t) { return static_cast<double>(Put{}(TraceSource{.row = row})); }},
-          .put = [](const TraceSource& source, std::string& to) { put_number(to, Wire(Put{}(source))); },
-          .take =
+          .write = [](const TraceSource& source, std::string& to) { write_number(to, Wire(Put{}(source))); },
+          .read =
               [](ByteSource& from, TraceRow& row) {
                 Take{}(row, from.number<Wire>());
                 return true;
@@ -96,9 +96,9 @@ void add_checksum(TraceFields& to) {
   to.push_back({.name = "checksum",
                 .type = wire_name<u32>(),
                 .comment = "of the fields before it and of the message's time in the bag",
-                .put = [](const TraceSource& source,
-                          std::string& message) { put_number(message, message_checksum(message, source.time_ns)); },
-                .take =
+                .write = [](const TraceSource& source,
+                            std::string& message) { write_number(message, message_checksum(message, source.time_ns)); },
+                .read =
                     [](ByteSource& from, TraceRow&) {
                       from.number<u32>();
                       return true;

@@ -1,11 +1,10 @@
 #pragma once
-/// This table lists every field of the message Trace once: name, type, unit, the member of a row that it holds, and its
-/// columns in tables.
+/// This table lists every field of the message Trace once: name, type, unit, member of a row, and columns.
 ///
-/// The writer and the reader of run.bag, the arrays of Python, run.csv and msg/Trace.msg (tests/docs/trace_message.py
-/// writes it) come from this table. A new member of a row needs one line here. The inputs of a law are recorded bit for
-/// bit (float64, integers). Its outputs, which a replay computes again, are float32. The last field is the checksum of
-/// all fields before it.
+/// Writer and reader of run.bag, the arrays of Python, run.csv and msg/Trace.msg come from this table.
+/// The script tests/docs/trace_message.py writes msg/Trace.msg. A new member of a row needs one line here. The inputs
+/// of a law are recorded bit for bit (float64, integers). Its outputs, which a replay computes again, are float32. The
+/// last field is the checksum of all fields before it.
 
 #include <cstdint>
 #include <string>
@@ -60,27 +59,27 @@ struct TraceSource {
 struct TraceColumn {
   using Value = double (*)(const JoinedRow& row, std::size_t element);
 
-  std::string name = {};     ///< where `per_joint`, a suffix behind the name of the joint
+  std::string name = {};     ///< a suffix behind the name of the joint if `per_joint`
   std::string meaning = {};  ///< unit and meaning; empty: those of the field
   bool integer = false;      ///< run.csv shows it without a decimal point
   bool per_joint = false;    ///< each joint has such a column
-  bool timing = false;       ///< only runs on the wall clock have it; else it would differ between equal runs
+  bool timing = false;       ///< only runs on the wall clock have it: equal runs differ in it
   std::size_t element = 0;   ///< element of the array; `log_columns` sets it to the number of the joint
   Value value = nullptr;     ///< the number; NaN where its node published no frame. Integers are exact up to 2^53
 };
 
 struct TraceField {
   std::string name;
-  std::string type;          ///< of ROS: "float64", "float32[3]", "float64[]"
+  std::string type;          ///< type of ROS: "float64", "float32[3]", "float64[]"
   std::string comment;       ///< unit and meaning
-  std::string heading = {};  ///< in the .msg, before this field; mostly empty
+  std::string heading = {};  ///< heading in the .msg before this field; mostly empty
   std::vector<TraceColumn> columns = {};
   std::size_t max_joints = kMaxJoints;  ///< number of joints that have the columns `per_joint`
   TraceColumn plain = {};               ///< shows the member itself, without a name
 
-  void (*put)(const TraceSource& source, std::string& to) = nullptr;
+  void (*write)(const TraceSource& source, std::string& to) = nullptr;
   /// False: the list is longer than the member.
-  bool (*take)(ByteSource& from, TraceRow& row) = nullptr;
+  bool (*read)(ByteSource& from, TraceRow& row) = nullptr;
 
   /// These functions add columns. Without names, the column has the name of the field; with names, each of the first
   /// elements has a column.

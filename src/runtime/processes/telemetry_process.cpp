@@ -186,7 +186,7 @@ void TelemetryProcess::receive(const Row& row, std::size_t ring) {
   if (black_box_ == nullptr) return;
   black_box_->add(row);
   if constexpr (requires { row.permit; }) {
-    if (!permit_seen_) black_box_->see(row.permit.causes, monotonic_ns());
+    if (!permit_seen_) black_box_->watch(row.permit.causes, monotonic_ns());
   }
 }
 
@@ -215,7 +215,7 @@ std::size_t TelemetryProcess::drain() {
 void TelemetryProcess::check_permit() {
   Permit permit;
   if (permit_.reader.newest(permit) != Lookup::kFrame) return;
-  black_box_->see(permit.causes, monotonic_ns());
+  black_box_->watch(permit.causes, monotonic_ns());
   permit_seen_ = true;
 }
 
