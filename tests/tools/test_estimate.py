@@ -14,6 +14,7 @@ from robot_control import ClosedLoop, Estimator
 from robot_control.estimate.main import main
 from robot_control.estimate.samples import Stream, merged
 from robot_control.estimate.wheels import wheel_angles
+from robot_control.installed_files import share_file
 
 SCRIPT = Path(__file__).parents[2] / "scripts/estimate.py"
 ROBOT = [f"--wheel-radius={RADIUS}", f"--wheel-base={WHEEL_BASE}", f"--imu-position={','.join(map(str, IMU))}"]
@@ -206,7 +207,9 @@ def test_of_several_runs_in_a_log_the_last_one_counts(run):
 
 
 def test_a_log_of_another_robot_is_refused_with_its_joints(run):
-    Path("other.urdf").write_text(Path("robot.urdf").read_text().replace("left_wheel_joint", "port_joint"))
+    Path("other.urdf").write_text(
+        Path(share_file("urdf/diffbot.urdf")).read_text().replace("left_wheel_joint", "port_joint")
+    )
     loop = ClosedLoop(urdf="other.urdf")
     loop.log_into(".")
     loop.run(0.1)

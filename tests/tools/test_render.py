@@ -105,7 +105,7 @@ def test_an_unknown_scene_and_a_wrong_size_end_with_a_message(tmp_path, capsys):
 
 @needs_egl
 def test_pictures_show_the_robot_in_the_middle_and_its_path(tmp_path):
-    run = driven(tmp_path, 2.0)
+    run = driven(tmp_path, 4.0)
     main([str(run), "--pictures", "2", "--size", "320x180", "--out", str(tmp_path / "out")])
     for number in (1, 2):
         picture = (255 * matplotlib.image.imread(tmp_path / "out" / f"render_{number}.png")[..., :3]).astype(int)
@@ -119,4 +119,4 @@ def test_pictures_show_the_robot_in_the_middle_and_its_path(tmp_path):
         pytest.skip("ffmpeg is not installed: scripts/setup --render")
     frames = ["-count_frames", "-show_entries", "stream=width,height,nb_read_frames", "-of", "csv=p=0"]
     listed = subprocess.run(["ffprobe", "-v", "error", *frames, str(video)], check=True, capture_output=True, text=True)
-    assert listed.stdout.strip() == "320,180,50"
+    assert listed.stdout.strip() == "320,180,100"
