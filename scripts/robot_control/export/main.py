@@ -15,7 +15,7 @@ from robot_control.export.csv_table import write_csv
 from robot_control.export.mcap_file import McapError, write_mcap
 
 EPILOG = """
---csv     the table run.csv: a row per cycle, columns with the names of docs/log.md; outputs with the precision of
+--csv     the table run.csv: a row per cycle, columns with the names of msg/Trace.msg; outputs with the precision of
           float32
 --mcap    every message as it is, for Foxglove; of any ROS 1 bag. Needs PyPI's mcap
 --topics  odom, tf, joint_states and cmd_vel, for `rosbag play --clock` and RViz, of the last run
