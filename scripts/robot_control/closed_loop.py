@@ -7,6 +7,7 @@ log["truth_linear"]  # numpy, one value per cycle
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from os import PathLike
 from typing import Any
@@ -233,5 +234,5 @@ class ClosedLoop:
 
     @property
     def units(self) -> dict[str, str]:
-        """Column name → unit, or the name of the enum that an integer column holds."""
-        return dict(self._loop.columns)
+        """Column name → unit, or the name of the enum or the bits that an integer column holds."""
+        return {name: re.split("[,;]", meaning)[0] for name, meaning in self._loop.columns}

@@ -5,6 +5,6 @@ int main(int argc, char** argv) {
   using namespace robot_control;
   return run_node(argc, argv,
                   {.name = "telemetry",
-                   .purpose = "Writes every cycle of all nodes to a log (run.csv, run.bag) and to the black box.",
+                   .purpose = "Writes every cycle of all nodes to a log (run.bag) and to the black box.",
                    .make = make_telemetry});
 }

@@ -35,7 +35,7 @@ RobotModel robot_in(const Parameters& parameters) {
   return read_robot(load_description(parameters.urdf), parameters.robot);
 }
 
-/// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of run.csv.
+/// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of a log.
 class VariedColumns {
  public:
   explicit VariedColumns(const RobotModel& robot) {

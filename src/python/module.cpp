@@ -28,11 +28,11 @@
 #include "python/run_bag.h"
 #include "python/signal_names.h"
 #include "python/wheel_loops.h"
+#include "recording/fields/trace_fields.h"
 #include "runtime/start_check.h"
 #include "signals/cause_names.h"
 #include "signals/slip_detection.h"
 #include "simulation/closed_loop.h"
-#include "telemetry/columns.h"
 
 namespace py = pybind11;
 
@@ -43,7 +43,7 @@ Twist planar(double linear, double angular) {
   return {.linear = {linear, 0, 0}, .angular = {0, 0, angular}};
 }
 
-std::vector<Column> columns_of(const ClosedLoop& loop) {
+std::vector<TraceColumn> columns_of(const ClosedLoop& loop) {
   std::vector<std::string> names;
   for (const JointModel& joint : loop.robot().joints) names.push_back(joint.name);
   return log_columns(names, false);
@@ -65,7 +65,7 @@ void receive(ClosedLoop& loop, const py::object& given) {
 py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, LoopReplay* replay) {
   constexpr std::int64_t kBlock = 1000;  // cycles between two checks for Ctrl-C
   if (cycles < 0) throw py::value_error("cycles must not be negative");
-  const std::vector<Column> columns = columns_of(loop);
+  const std::vector<TraceColumn> columns = columns_of(loop);
   std::vector<py::array_t<double>> arrays;
   std::vector<double*> cells;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -75,8 +75,9 @@ py::dict run(ClosedLoop& loop, std::int64_t cycles, const py::object& command, L
   const auto step = [&](std::int64_t row) {
     loop.step();
     if (replay != nullptr) replay->note(loop);
-    const PresentSources present = present_sources(loop.row());
-    for (std::size_t i = 0; i < columns.size(); ++i) cells[i][row] = columns[i].value(loop.row(), present);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      cells[i][row] = columns[i].value(loop.row(), columns[i].element);
+    }
   };
   for (std::int64_t first = 0; first < cycles; first += kBlock) {
     const std::int64_t last = std::min(first + kBlock, cycles);
@@ -170,9 +171,9 @@ double smooth_speed_of(const ClosedLoop& loop) {
                       parameters.loop.period());
 }
 
-std::vector<std::pair<std::string, std::string>> column_units(const ClosedLoop& loop) {
+std::vector<std::pair<std::string, std::string>> column_meanings(const ClosedLoop& loop) {
   std::vector<std::pair<std::string, std::string>> names;
-  for (const Column& column : columns_of(loop)) names.emplace_back(column.name, column.unit);
+  for (const TraceColumn& column : columns_of(loop)) names.emplace_back(column.name, column.meaning);
   return names;
 }
 
@@ -226,7 +227,7 @@ void bind_closed_loop(py::module_& module) {
       .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot()); })
       .def_property_readonly("cycle", &ClosedLoop::cycle)
       .def_property_readonly("time", &ClosedLoop::time)
-      .def_property_readonly("columns", &column_units);
+      .def_property_readonly("columns", &column_meanings);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recording/bag_log.h"
@@ -15,8 +16,6 @@
 #include "runtime/build_id.h"
 #include "runtime/log_header.h"
 #include "simulation/closed_loop.h"
-#include "telemetry/columns.h"
-#include "telemetry/csv_writer.h"
 #include "telemetry/log_error.h"
 
 namespace py = pybind11;
@@ -48,7 +47,7 @@ py::dict header_of(const LogHeader& header) {
 
 /// A column of the table, which grows with the rows.
 struct FilledColumn {
-  Column column;
+  TraceColumn column;
   std::vector<double> values;
 };
 
@@ -57,24 +56,21 @@ class Table {
  public:
   /// `names` selects columns; if it is empty, the table has all columns.
   Table(const LogHeader& header, const std::vector<std::string>& names) : period_(header.period) {
-    for (Column& column : log_columns(header.joints, header.clock == "wall")) {
+    for (TraceColumn& column : log_columns(header.joints, header.clock == "wall")) {
       if (!names.empty() && std::find(names.begin(), names.end(), column.name) == names.end()) continue;
       columns_.push_back({.column = std::move(column), .values = {}});
     }
   }
 
   void add(const TraceRow& row, std::int64_t time_ns) {
-    if (row.repeats) return;
     if (run_ != row.run) {
       ++runs_;
       run_ = row.run;
-      for (FilledColumn& each : columns_) each.values.clear();
-      times_.clear();
+      clear();
     }
     if (times_.size() == times_.capacity()) grow();
     const JoinedRow joined = row.joined(period_);
-    const PresentSources present = present_sources(joined);
-    for (FilledColumn& each : columns_) each.values.push_back(each.column.value(joined, present));
+    for (FilledColumn& each : columns_) each.values.push_back(each.column.value(joined, each.column.element));
     times_.push_back(static_cast<double>(time_ns) * 1e-9);
   }
 
@@ -86,8 +82,20 @@ class Table {
     for (FilledColumn& each : columns_) result[text_of(each.column.name)] = array_of(std::move(each.values));
     return result;
   }
+  py::set integers() const {
+    py::set result;
+    for (const FilledColumn& each : columns_) {
+      if (each.column.integer) result.add(text_of(each.column.name));
+    }
+    return result;
+  }
   py::array_t<double> times() { return array_of(std::move(times_)); }
   std::uint64_t runs() const noexcept { return runs_; }
+  std::size_t rows() const noexcept { return times_.size(); }
+  void clear() {
+    for (FilledColumn& each : columns_) each.values.clear();
+    times_.clear();
+  }
 
  private:
   /// Reserves room for the estimated number of rows and some more, because each further growth copies everything. The
@@ -124,7 +132,7 @@ py::dict read_run_bag(const std::string& path, const std::vector<std::string>& n
   std::uint64_t rows = 0;
   std::uint64_t lost = 0;
   const auto add = [&](const TraceRow& row, std::int64_t time_ns) {
-    table->add(row, time_ns);
+    if (!row.repeats) table->add(row, time_ns);
     lost = row.lost;
     if (++rows % kLook == 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
   };
@@ -135,15 +143,24 @@ py::dict read_run_bag(const std::string& path, const std::vector<std::string>& n
                   "ros_time"_a = table->times(), "runs"_a = table->runs(), "lost"_a = lost, "cut"_a = reader.cut());
 }
 
-/// Writes all runs of a log as the table that telemetry writes.
-void write_run_csv(const std::string& path, const std::string& to) {
+/// Gives all runs of a log to `use(arrays by column, names of the columns of integers)`, in parts.
+void each_part_of_run_bag(const std::string& path, const py::function& use) {
+  constexpr std::size_t kRows = 1 << 14;
   TraceReader reader(path);
-  const LogHeader& header = reader.header();
-  CsvWriter csv(to, log_columns(header.joints, header.clock == "wall"));
-  reader.read({.row = [&](const TraceRow& row, std::int64_t) {
-    if (!row.repeats) csv.write(row.joined(header.period));
+  Table table(reader.header(), {});
+  std::int64_t run = -1;
+  const auto end_part = [&] {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (table.rows() == 0) return;
+    use(table.columns(), table.integers());
+    table.clear();
+  };
+  reader.read({.row = [&](const TraceRow& row, std::int64_t time_ns) {
+    if (row.repeats) return;
+    if (std::exchange(run, row.run) != row.run || table.rows() == kRows) end_part();
+    table.add(row, time_ns);
   }});
-  csv.close();
+  end_part();
 }
 
 /// A FolderLog is a bag together with the folder that contains it.
@@ -187,7 +204,7 @@ void bind_run_bag(py::module_& module) {
   module.def(
       "read_run_header", [](const std::string& path) { return header_of(TraceReader(path).header()); },
       py::arg("path"));
-  module.def("write_run_csv", write_run_csv, py::arg("path"), py::arg("to"));
+  module.def("each_part_of_run_bag", each_part_of_run_bag, py::arg("path"), py::arg("use"));
   module.def(
       "save_black_box",
       [](const std::string& path, const std::string& bag) {

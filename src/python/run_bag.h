@@ -5,7 +5,7 @@
 
 namespace robot_control {
 
-/// Adds `read_run_bag`, `read_run_header`, `write_run_csv`, `save_black_box`, and `log_into` and `end_log` of
+/// Adds `read_run_bag`, `read_run_header`, `each_part_of_run_bag`, `save_black_box`, and `log_into` and `end_log` of
 /// ClosedLoop.
 void bind_run_bag(pybind11::module_& module);
 

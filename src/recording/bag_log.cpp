@@ -13,7 +13,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint32_t kHeader = 0;  // numbers of the connections
+constexpr std::uint32_t kHeader = 0;  // these are the numbers of the connections
 constexpr std::uint32_t kTrace = 1;
 constexpr std::uint32_t kSnapshot = 2;
 
@@ -43,24 +43,24 @@ void BagLog::set_header(LogHeader header) {
 }
 
 void BagLog::begin_bag() {
-  const std::string path = folder_.begin(LogKind::kBag);
+  const std::string path = folder_.begin();
   bag_begin_ns_ = 0;
   split_due_ns_ = 0;
-  writer_ = std::make_unique<BagWriter>(path, connections(),
-                                        [this](std::int64_t bytes) { return folder_.make_room(LogKind::kBag, bytes); });
+  writer_ =
+      std::make_unique<BagWriter>(path, connections(), [this](std::int64_t bytes) { return folder_.make_room(bytes); });
 }
 
-/// With the time of the first chunk, so that a player does not wait for it.
+/// The header has the time of the first chunk, so that a player does not wait for it.
 void BagLog::write_header(std::int64_t time_ns) {
   ChunkBuilder first;
   first.add_record(writer_->connection_records());
   first.add(kHeader, time_ns, encode(header_));
-  writer_->write(first.take());
+  writer_->write(first.pack());
   bag_begin_ns_ = time_ns;
   ++header_.part;
 }
 
-/// A bag is sorted by time, and a time above 0.
+/// Times in a bag rise strictly and are above 0.
 std::int64_t BagLog::ros_time(std::int64_t stamp_ns) noexcept {
   last_ns_ = std::max(last_ns_ + 1, stamp_ns + offset_ns_);
   return last_ns_;
@@ -91,7 +91,7 @@ void BagLog::write(const LawSnapshot& snapshot) {
 void BagLog::end_chunk() {
   if (chunk_.empty()) return;
   const std::int64_t begin_ns = chunk_.begin_ns();
-  held_.push_back({.chunk = chunk_.take(),
+  held_.push_back({.chunk = chunk_.pack(),
                    .begin_ns = begin_ns,
                    .rows = std::exchange(chunk_rows_, 0),
                    .snapshot = std::exchange(chunk_snapshot_, false)});
@@ -112,7 +112,7 @@ void BagLog::write_held() {
   std::optional<LogError> problem;
   for (const std::deque<Held> held = std::exchange(held_, {}); const Held& each : held) {
     try {
-      hand_over(each);  // the others are counted
+      hand_over(each);  // each chunk is counted where it fails
     } catch (const LogError& error) {
       problem = error;
     }
@@ -142,7 +142,7 @@ void BagLog::split_where_due(const Held& next) {
   const auto reached = [&](double gigabytes) {
     return gigabytes > 0 && static_cast<double>(writer_->bytes()) >= gigabytes * 1e9;
   };
-  // Only what is no longer running can be removed: a log shall hold most of its quota, always the newest.
+  // Only closed bags can be removed, so a bag has at most a quarter of the quota.
   const bool too_large = reached(parameters_.quota / 4);
   const bool long_enough = parameters_.split_time > 0 && bag_begin_ns_ != 0 && seconds >= parameters_.split_time;
   if (!too_large && !reached(parameters_.split_size) && !long_enough) return;
@@ -171,7 +171,7 @@ void BagLog::close() {
   writer_->close();
   std::error_code ignored;
   if (bag_begin_ns_ != 0) return;
-  const std::string path = folder_.path(LogKind::kBag);  // it holds no message
+  const std::string path = folder_.path();  // the bag holds no message
   if (std::filesystem::is_regular_file(std::filesystem::symlink_status(path, ignored))) {
     std::filesystem::remove(path, ignored);
   }

@@ -1,15 +1,16 @@
 #pragma once
-/// The log of every cycle as a ROS bag, run.bag: topics `trace_header` (latched, first), `trace`, `trace_snapshot`.
+/// The log of every cycle is a ROS bag, run.bag, with the topics `trace_header` (latched, first), `trace` and
+/// `trace_snapshot`.
 ///
-/// Rows are collected in chunks of a second. Where only motion is recorded (motion_watch.h), the chunks of the last
-/// `kBeforeNs` are held in memory and written when it begins. A bag that is as large or as long as it may be is closed
-/// and kept under the next number, and another one begins (log_folder.h): with the next snapshots of the laws, so that
-/// each can be replayed from its begin, or, where none comes within `kBeforeNs` or the quota is small, without.
+/// Rows are collected in chunks of a second. If only motion is recorded (motion_watch.h), the chunks of the last
+/// `kBeforeNs` are held in memory and written when motion begins. A bag of the permitted size or length is closed and
+/// kept under the next number, and another one begins (log_folder.h). It begins with the next snapshots of the laws, so
+/// that it can be replayed from its begin. If none comes within `kBeforeNs`, or the quota is small, it begins without.
 ///
 /// A bag without a message is removed at the end.
 ///
-/// A disk that does not take a chunk ends the bag, not the log: rows are counted, and every `kRetryNs` another bag is
-/// tried. All times are given; no clock is read.
+/// An error of the disk ends the bag, not the log: rows are counted, and another bag is tried every `kRetryNs`. All
+/// times are arguments; no clock is read.
 
 #include <cstdint>
 #include <deque>
@@ -28,40 +29,40 @@ namespace robot_control {
 class BagLog final : public RowLog {
  public:
   static constexpr std::int64_t kChunkNs = 1'000'000'000;
-  static constexpr std::size_t kChunkBytes = 1 << 22;        ///< uncompressed, where a second is more
+  static constexpr std::size_t kChunkBytes = 1 << 22;        ///< uncompressed size at which a chunk ends early
   static constexpr std::int64_t kBeforeNs = 12'000'000'000;  ///< at 100 Hz, a snapshot comes every 10.24 s
   static constexpr std::size_t kBeforeBytes = 32 << 20;  ///< compressed; at 2 kHz with 32 joints it is less than 12 s
   static constexpr std::int64_t kRetryNs = 10'000'000'000;
 
-  /// Begins run.bag in `folder`, which lives longer. `quota` etc. are those of the folder. Throws LogError.
+  /// Begins run.bag in `folder`, which must outlive this object. The quota is that of the folder. Throws LogError.
   BagLog(LogFolder& folder, LogHeader header, const TelemetryParameters& parameters);
 
-  /// ROS time − stamps; 0 where stamps are ROS time (lockstep).
+  /// `offset_ns` is ROS time − stamps; it is 0 in lockstep, whose stamps are ROS time.
   void set_time_offset(std::int64_t offset_ns) noexcept { offset_ns_ = offset_ns; }
 
-  /// What the bags that begin from now on begin with; joints and period stay.
+  /// Sets the header of the bags that begin from now on. Joints and period must stay the same.
   void set_header(LogHeader header);
 
-  /// Rows that were lost on the way here, since the beginning.
+  /// `rows` were lost since the beginning before they reached this log.
   void set_lost(std::uint64_t rows) noexcept { lost_before_ = rows; }
 
-  /// Until it is taken back, everything is recorded.
+  /// Every cycle is recorded while `on` is true.
   void request(bool on) noexcept { requested_ = on; }
 
   void write(const JoinedRow& row) override;
 
-  /// Before the row to which it belongs.
+  /// A snapshot comes before the row to which it belongs.
   void write(const LawSnapshot& snapshot) override;
 
-  /// At 10 Hz, `now_ns` on any clock that runs: what is a second old goes to the disk, also where no row follows; after
-  /// an error another bag is tried. Throws LogError.
+  /// The caller calls this at 10 Hz; `now_ns` is on any clock that runs. A chunk of a second goes to the disk, also if
+  /// no row follows. After an error another bag is tried. Throws LogError.
   void poll(std::int64_t now_ns);
 
   void close() override;
 
   bool recording() const noexcept { return recording_; }
-  std::uint64_t rows() const noexcept { return rows_; }            ///< that the disk has taken
-  std::uint64_t unwritten() const noexcept { return unwritten_; }  ///< that it should have taken and has not
+  std::uint64_t rows() const noexcept { return rows_; }            ///< number that the disk has taken
+  std::uint64_t unwritten() const noexcept { return unwritten_; }  ///< number that the disk has refused
   bool broken() const noexcept { return writer_ == nullptr; }      ///< no bag is open since the last error
 
  private:
@@ -69,7 +70,7 @@ class BagLog final : public RowLog {
     PackedChunk chunk;
     std::int64_t begin_ns = 0;  ///< ROS time
     std::uint64_t rows = 0;
-    bool snapshot = false;  ///< it holds some
+    bool snapshot = false;  ///< true: it holds a snapshot
   };
 
   std::int64_t ros_time(std::int64_t stamp_ns) noexcept;
@@ -84,12 +85,12 @@ class BagLog final : public RowLog {
   LogHeader header_;
   TelemetryParameters parameters_;
   std::unique_ptr<BagWriter> writer_;
-  std::int64_t bag_begin_ns_ = 0;  ///< ROS time of its first chunk; 0: it has none yet
+  std::int64_t bag_begin_ns_ = 0;  ///< ROS time of the bag's first chunk; 0: it has none yet
   ChunkBuilder chunk_;
   std::uint64_t chunk_rows_ = 0;
-  bool chunk_wanted_ = false;      ///< the robot moved in it
-  bool chunk_snapshot_ = false;    ///< of a law, in it
-  std::int64_t split_due_ns_ = 0;  ///< ROS time since which the bag is as large or long as it may be; 0: it is not
+  bool chunk_wanted_ = false;      ///< true: the open chunk is to be recorded
+  bool chunk_snapshot_ = false;    ///< true: the open chunk holds a snapshot
+  std::int64_t split_due_ns_ = 0;  ///< ROS time since which a new bag is due; 0: none is
   std::string message_;
   std::deque<Held> held_;
   std::size_t held_bytes_ = 0;
@@ -98,7 +99,7 @@ class BagLog final : public RowLog {
   bool recording_ = false;
   std::int64_t offset_ns_ = 0;
   std::int64_t last_ns_ = 0;   ///< ROS time of the last message
-  std::int64_t flush_ns_ = 0;  ///< `now_ns` when the open chunk is due
+  std::int64_t flush_ns_ = 0;  ///< value of `now_ns` at which the open chunk is due
   std::int64_t retry_ns_ = 0;
   std::uint64_t lost_before_ = 0;
   std::uint64_t rows_ = 0;

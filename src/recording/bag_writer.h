@@ -1,10 +1,9 @@
 #pragma once
-/// A ROS bag, written chunk by chunk.
+/// This writer appends a ROS bag chunk by chunk.
 ///
-/// Of the library rosbag_storage nothing is used: it ends the process where the disk is full when a bag is closed, and
-/// cannot keep a chunk back. What is written here is read by rosbag and by every other reader of the format (tested).
-/// The file ends with an index; until `close` it has none, and rosbag needs `rosbag reindex` where the writer was
-/// killed. bags/bag_reader.h needs no index.
+/// The library rosbag_storage is not used: it ends the process if the disk is full while a bag is closed. It also
+/// cannot keep a chunk back. Every reader of the format reads these bags, also rosbag (tested). `close` writes the
+/// index. After a kill there is none, and rosbag needs `rosbag reindex`; bags/bag_reader.h needs no index.
 
 #include <cstdint>
 #include <string>
@@ -27,23 +26,23 @@ class BagWriter {
   /// Makes the folders above `path` and replaces the file. The connections are numbered 0, 1, … Throws LogError.
   BagWriter(std::string path, std::vector<WrittenConnection> connections, LogFile::Room room);
 
-  /// Closes without a word; call `close` to learn of errors.
+  /// Closes the bag and ignores errors; `close` reports them.
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// The records of the connections: the first chunk begins with them.
+  /// The first chunk begins with these records of the connections.
   std::string connection_records() const;
 
-  /// Throws LogError where the disk does not take it, or the file is not at its path any more; the bag then ends with
-  /// its last whole chunk, and what follows is ignored.
+  /// Throws LogError if the disk refuses the chunk, or the file is not at its path any more. The bag then ends with its
+  /// last whole chunk, and further chunks are ignored.
   void write(const PackedChunk& chunk);
 
   /// Writes the index. Throws LogError.
   void close();
 
   bool open() const noexcept { return file_.open(); }
-  std::int64_t bytes() const noexcept { return file_.bytes(); }  ///< up to the end of the last whole chunk
+  std::int64_t bytes() const noexcept { return file_.bytes(); }  ///< size up to the end of the last whole chunk
   const std::string& path() const noexcept { return file_.path(); }
 
  private:

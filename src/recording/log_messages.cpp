@@ -14,7 +14,7 @@
 namespace robot_control {
 namespace {
 
-class Put {
+class Writer {
  public:
   void operator()(const std::string& value) { sink_.text(value); }
   void operator()(const std::vector<std::string>& values) {
@@ -32,9 +32,9 @@ class Put {
   ByteSink sink_{bytes};
 };
 
-class Take {
+class Reader {
  public:
-  explicit Take(std::string_view message) : source_(message) {}
+  explicit Reader(std::string_view message) : source_(message) {}
 
   void operator()(std::string& value) { value = source_.text(); }
   void operator()(std::vector<std::string>& values) {
@@ -52,28 +52,28 @@ class Take {
   ByteSource source_;
 };
 
-/// The fields in the order of the .msg.
+/// Visits the fields in the order of the .msg.
 template <class Header, class Visit>
-void each_header_field(Header& of, Visit visit) {
-  visit("robot", of.robot);
-  visit("joints", of.joints);
-  visit("wheels", of.wheels);
-  visit("period", of.period);
-  visit("clock", of.clock);
-  visit("record", of.record);
-  visit("part", of.part);
-  visit("parameters", of.parameters);
-  visit("urdf", of.urdf);
-  visit("scene", of.scene);
-  visit("calibration", of.calibration);
-  visit("version", of.version);
-  visit("build", of.build);
-  visit("host", of.host);
-  visit("kernel", of.kernel);
-  visit("processor", of.processor);
-  visit("libraries", of.libraries);
-  visit("missing", of.missing);
-  visit("checksum", of.checksum);
+void each_header_field(Header& header, Visit visit) {
+  visit("robot", header.robot);
+  visit("joints", header.joints);
+  visit("wheels", header.wheels);
+  visit("period", header.period);
+  visit("clock", header.clock);
+  visit("record", header.record);
+  visit("part", header.part);
+  visit("parameters", header.parameters);
+  visit("urdf", header.urdf);
+  visit("scene", header.scene);
+  visit("calibration", header.calibration);
+  visit("version", header.version);
+  visit("build", header.build);
+  visit("host", header.host);
+  visit("kernel", header.kernel);
+  visit("processor", header.processor);
+  visit("libraries", header.libraries);
+  visit("missing", header.missing);
+  visit("checksum", header.checksum);
 }
 
 constexpr std::size_t kChecksumDigits = 8;
@@ -84,7 +84,7 @@ std::string checksum_text(std::string_view bytes) {
   return text.data();
 }
 
-/// Of a member in a .msg.
+/// These functions name the type of a member in a .msg.
 std::string_view type_of(const std::string&) {
   return "string";
 }
@@ -98,9 +98,9 @@ std::string_view type_of(double) {
   return "float64";
 }
 
-/// Of a version that has a field which this one has not.
-void pass_over(Take& take, const std::string& type, const std::string& name) {
-  const auto drop = [&](auto value) { take(value); };
+/// Ignores a field that another version has.
+void pass_over(Reader& read, const std::string& type, const std::string& name) {
+  const auto drop = [&](auto value) { read(value); };
   if (type == "string") return drop(std::string());
   if (type == "string[]") return drop(std::vector<std::string>());
   if (type == "uint32") return drop(std::uint32_t{});
@@ -109,24 +109,24 @@ void pass_over(Take& take, const std::string& type, const std::string& name) {
 }
 
 template <class Snapshot, class Visit>
-void each_snapshot_number(Snapshot& of, Visit& visit) {
-  visit(of.head.run);
-  visit(of.head.cycle);
-  visit(of.head.stamp_ns);
-  visit(of.head.checksum);
-  visit(of.build);
-  visit(of.process);
-  visit(of.number);
+void each_snapshot_number(Snapshot& snapshot, Visit& visit) {
+  visit(snapshot.head.run);
+  visit(snapshot.head.cycle);
+  visit(snapshot.head.stamp_ns);
+  visit(snapshot.head.checksum);
+  visit(snapshot.build);
+  visit(snapshot.process);
+  visit(snapshot.number);
 }
 
 }  // namespace
 
 std::string encode(const LogHeader& header) {
-  Put put;
+  Writer write;
   each_header_field(header, [&](std::string_view name, const auto& member) {
-    name == "checksum" ? put(checksum_text(put.bytes)) : put(member);
+    name == "checksum" ? write(checksum_text(write.bytes)) : write(member);
   });
-  return put.bytes;
+  return write.bytes;
 }
 
 bool intact(const LogHeader& header) {
@@ -135,16 +135,16 @@ bool intact(const LogHeader& header) {
 }
 
 std::string encode(const LawSnapshot& snapshot) {
-  Put put;
-  put(std::string(kLawNodes.at(static_cast<std::size_t>(snapshot.law))));
-  each_snapshot_number(snapshot, put);
-  put(std::string(reinterpret_cast<const char*>(snapshot.state.data()), snapshot.bytes));
-  return put.bytes;
+  Writer write;
+  write(std::string(kLawNodes.at(static_cast<std::size_t>(snapshot.law))));
+  each_snapshot_number(snapshot, write);
+  write(std::string(reinterpret_cast<const char*>(snapshot.state.data()), snapshot.bytes));
+  return write.bytes;
 }
 
 LogHeader decode_header(std::string_view message, const std::string& definition) {
   LogHeader header;
-  Take take(message);
+  Reader read(message);
   std::istringstream lines(definition);
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line.substr(0, line.find('#')));
@@ -153,24 +153,24 @@ LogHeader decode_header(std::string_view message, const std::string& definition)
     bool known = false;
     each_header_field(header, [&](std::string_view field, auto& member) {
       if (field != name || type_of(member) != type) return;
-      take(member);
+      read(member);
       known = true;
     });
-    if (!known) pass_over(take, type, name);
+    if (!known) pass_over(read, type, name);
   }
-  if (!take.whole()) throw TraceError("the message TraceHeader has not the length of its fields");
+  if (!read.whole()) throw TraceError("the message TraceHeader has not the length of its fields");
   return header;
 }
 
 LawSnapshot decode_snapshot(std::string_view message) {
   LawSnapshot snapshot;
   std::string node, state;
-  Take take(message);
-  take(node);
-  each_snapshot_number(snapshot, take);
-  take(state);
+  Reader read(message);
+  read(node);
+  each_snapshot_number(snapshot, read);
+  read(state);
   const auto* const law = std::find(kLawNodes.begin(), kLawNodes.end(), node);
-  if (!take.whole() || law == kLawNodes.end() || state.size() > kSnapshotBytes) {
+  if (!read.whole() || law == kLawNodes.end() || state.size() > kSnapshotBytes) {
     throw TraceError("a message Snapshot has not the length of its fields, or is of no known node");
   }
   snapshot.law = static_cast<LawName>(law - kLawNodes.begin());

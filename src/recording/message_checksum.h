@@ -1,5 +1,5 @@
 #pragma once
-/// The checksum of a message of a log.
+/// Every message of a log carries this checksum.
 
 #include <cstdint>
 #include <string_view>
@@ -8,8 +8,8 @@
 
 namespace robot_control {
 
-/// Of a message that stands under this time in the bag; `bytes`: those before its checksum. Half a sum: every row
-/// carries one, and it cannot be compressed.
+/// `time_ns` is the time of the message in the bag, and `bytes` are those before its checksum. It is half a sum,
+/// because every row carries one and it cannot be compressed.
 inline std::uint32_t message_checksum(std::string_view bytes, std::int64_t time_ns) {
   Checksum sum;
   sum.mix(static_cast<std::uint64_t>(time_ns));

@@ -1,6 +1,6 @@
 #pragma once
-/// The messages of a log as a bag describes them: name, MD5 sum and text of msg/*.msg, taken at build time;
-/// and what else the build knows about itself.
+/// A bag describes the messages of a log by name, MD5 sum and text of msg/*.msg; the build reads them. It also knows
+/// its own version and compiler.
 
 #include <string>
 
@@ -8,7 +8,7 @@ namespace robot_control {
 
 struct MessageType {
   std::string name;        ///< "robot_control/Trace"
-  std::string md5;         ///< as genmsg computes it
+  std::string md5;         ///< the MD5 sum that genmsg computes
   std::string definition;  ///< the text of the .msg
 };
 

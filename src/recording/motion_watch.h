@@ -1,9 +1,8 @@
 #pragma once
-/// Which cycles are worth recording where only motion is (telemetry.record: motion).
+/// If only motion is recorded (telemetry.record: motion), this watch decides which cycles are.
 ///
-/// The robot moves while a velocity other than zero is requested, while the estimator does not report that all sensors
-/// are quiet, or while a node gives no frame. A change of the safety monitor's state or causes counts, too. It moves
-/// until it has stood for `kAfter`.
+/// The robot moves while a velocity other than zero is requested, while the estimator reports no standstill, or while a
+/// node gives no frame. A change of the safety monitor's state or causes counts as motion. Motion ends `kAfter` later.
 
 #include <cstdint>
 
@@ -13,8 +12,9 @@ namespace robot_control {
 
 class MotionWatch {
  public:
-  static constexpr std::int64_t kAfter = 5'000'000'000;  ///< ns; a stop is seen to its end, its oscillation included
+  static constexpr std::int64_t kAfter = 5'000'000'000;  ///< ns; the oscillation after a stop is recorded, too
 
+  /// True: the cycle is to be recorded.
   bool step(const JoinedRow& row, std::int64_t time_ns) noexcept;
 
  private:

@@ -9,9 +9,9 @@
 namespace robot_control {
 namespace {
 
-constexpr int kEffort = 3;  // of LZ4's 0 … 12: the first of its thorough ones
+constexpr int kEffort = 3;  // LZ4 has levels 0 … 12; the thorough ones begin here
 
-/// As roslz4 reads it: independent blocks, a checksum over the content, no size of the content in the frame.
+/// roslz4 needs independent blocks, a checksum over the content, and no size of the content in the frame.
 std::string compressed(const std::string& content) {
   LZ4F_preferences_t preferences = LZ4F_INIT_PREFERENCES;
   preferences.frameInfo.blockSizeID = LZ4F_max1MB;
@@ -46,7 +46,7 @@ void ChunkBuilder::add(std::uint32_t connection, std::int64_t time_ns, std::stri
   end_ns_ = std::max(end_ns_, time_ns);
 }
 
-PackedChunk ChunkBuilder::take() {
+PackedChunk ChunkBuilder::pack() {
   PackedChunk chunk{.begin_ns = begin_ns_, .end_ns = end_ns_};
   BagFields fields(BagOp::kChunk);
   fields.text("compression", "lz4").number("size", static_cast<std::uint32_t>(content_.size()));

@@ -1,7 +1,7 @@
 #pragma once
-/// The records of a ROS bag, version 2.0 (wiki.ros.org/Bags/Format/2.0), and a chunk of messages, compressed with LZ4.
+/// A ROS bag, version 2.0 (wiki.ros.org/Bags/Format/2.0), consists of records and of chunks, compressed with LZ4.
 ///
-/// A record is a header of named fields and data, each behind its length in 4 bytes, little endian.
+/// A record has a header of named fields, and data. Each stands behind its length in 4 bytes, little endian.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace robot_control {
 
-/// Appends values as a bag and a ROS message have them: little endian, texts and lists behind their length.
+/// Appends values in the format of bags and ROS messages: little endian, with the length before texts and lists.
 class ByteSink {
  public:
   explicit ByteSink(std::string& to) : to_(to) {}
@@ -28,7 +28,7 @@ class ByteSink {
     to_.append(value);
   }
 
-  /// Seconds and nanoseconds, 4 bytes each.
+  /// A time has 4 bytes of seconds and 4 of nanoseconds.
   void time(std::int64_t ns) {
     number(static_cast<std::uint32_t>(ns / 1'000'000'000));
     number(static_cast<std::uint32_t>(ns % 1'000'000'000));
@@ -73,36 +73,36 @@ class BagFields {
 
 void append_record(std::string& to, const BagFields& fields, std::string_view data);
 
-inline constexpr std::size_t kEntryBytes = 12;  ///< of a chunk's index, for each message: time and offset
+inline constexpr std::size_t kEntryBytes = 12;  ///< bytes of a message in a chunk's index: time and offset
 
-/// A chunk ready for the file: its record, and the index of its messages behind it.
+/// A chunk has its record and, behind it, the index of its messages.
 struct PackedChunk {
   std::string record = {};
   std::string index = {};
   std::int64_t begin_ns = 0;                          ///< time of its earliest message
-  std::int64_t end_ns = 0;                            ///< of its latest
+  std::int64_t end_ns = 0;                            ///< time of its latest message
   std::map<std::uint32_t, std::uint32_t> count = {};  ///< messages by connection
 };
 
 /// Collects messages for a chunk.
 class ChunkBuilder {
  public:
-  /// `connection`: number of a connection record, of this chunk or an earlier one. `time_ns`: ROS time, above 0.
+  /// `connection` is the number of a connection record in this chunk or an earlier one. `time_ns` is ROS time above 0.
   void add(std::uint32_t connection, std::int64_t time_ns, std::string_view message);
 
-  /// A record that is no message: that of a connection.
+  /// Adds the record of a connection.
   void add_record(std::string_view record) { content_.append(record); }
 
   bool empty() const noexcept { return content_.empty(); }
-  std::size_t size() const noexcept { return content_.size(); }  ///< bytes, uncompressed
+  std::size_t size() const noexcept { return content_.size(); }  ///< uncompressed bytes
   std::int64_t begin_ns() const noexcept { return begin_ns_; }
 
-  /// Compresses what was added; the next chunk begins empty.
-  PackedChunk take();
+  /// Compresses the collected messages and empties the builder.
+  PackedChunk pack();
 
  private:
   std::string content_;
-  std::map<std::uint32_t, std::string> entries_;  ///< of the index: time and offset of each message, by connection
+  std::map<std::uint32_t, std::string> entries_;  ///< the index by connection: time and offset of each message
   std::int64_t begin_ns_ = 0;
   std::int64_t end_ns_ = 0;
 };

@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-/// Bytes of ROS's own types; nullptr-like 0: a type that is none of them.
+/// The size of a type of ROS's own in bytes; 0: it is another type.
 std::size_t size_of(std::string_view type) {
   static const std::map<std::string_view, std::size_t> sizes{
       {"bool", 1},    {"int8", 1},  {"uint8", 1},    {"byte", 1},    {"char", 1},  {"int16", 2},
@@ -18,18 +18,18 @@ std::size_t size_of(std::string_view type) {
   return found == sizes.end() ? 0 : found->second;
 }
 
-constexpr std::size_t kLongestDefinition = 1 << 18;  // bytes
-constexpr std::size_t kLongestArray = 1 << 12;       // elements
+constexpr std::size_t kMaxDefinition = 1 << 18;  // bytes
+constexpr std::size_t kMaxArray = 1 << 12;       // elements
 
 }  // namespace
 
 void encode_trace(const TraceSource& source, std::string& to) {
   to.clear();
-  for (const TraceField& field : trace_fields()) field.put(source, to);
+  for (const TraceField& field : trace_fields()) field.write(source, to);
 }
 
 TraceDecoder::TraceDecoder(const std::string& definition) {
-  if (definition.size() > kLongestDefinition) throw TraceError("the definition of Trace is too long");
+  if (definition.size() > kMaxDefinition) throw TraceError("the definition of Trace is too long");
   std::istringstream lines(definition);
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("===")) break;  // the definitions of other messages follow
@@ -48,7 +48,7 @@ TraceDecoder::TraceDecoder(const std::string& definition) {
     } else if (bracket != std::string::npos) {
       const char* const end = type.data() + type.size();
       const auto [stop, error] = std::from_chars(type.data() + bracket + 1, end, step.count);
-      if (error != std::errc() || *stop != ']' || step.count == 0 || step.count > kLongestArray) {
+      if (error != std::errc() || *stop != ']' || step.count == 0 || step.count > kMaxArray) {
         throw TraceError("field " + name + " of Trace has the type " + type + ", which is not read");
       }
     }
@@ -76,7 +76,7 @@ void TraceDecoder::decode(std::string_view message, TraceRow& row) const {
   for (const Step& step : steps_) {
     bool fits = true;
     if (step.field != nullptr) {
-      fits = step.field->take(from, row);
+      fits = step.field->read(from, row);
     } else {
       const std::size_t count = step.count == 0 ? from.number<std::uint32_t>() : step.count;
       from.bytes(count * step.element);
@@ -86,17 +86,17 @@ void TraceDecoder::decode(std::string_view message, TraceRow& row) const {
   }
   if (from.left() != 0) throw TraceError("a message Trace has " + std::to_string(from.left()) + " bytes too many");
   const int answered = row.repeats ? row.parts : row.published;
-  const auto head = [&](FrameHead& of, TracePart part) {
-    of.run = row.run_id;
-    of.cycle = row.cycle;
-    of.stamp_ns = row.stamp_ns;
-    of.kind = (answered & part) != 0 ? FrameKind::kFrame : FrameKind::kToken;
+  const auto set_head = [&](FrameHead& head, TracePart part) {
+    head.run = row.run_id;
+    head.cycle = row.cycle;
+    head.stamp_ns = row.stamp_ns;
+    head.kind = (answered & part) != 0 ? FrameKind::kFrame : FrameKind::kToken;
   };
-  head(row.driver.sensors.head, kPartDriver);
-  head(row.driver.truth.head, kPartDriver);
-  head(row.estimator.state.head, kPartEstimator);
-  head(row.controller.command.head, kPartController);
-  head(row.monitor.permit.head, kPartMonitor);
+  set_head(row.driver.sensors.head, kPartDriver);
+  set_head(row.driver.truth.head, kPartDriver);
+  set_head(row.estimator.state.head, kPartEstimator);
+  set_head(row.controller.command.head, kPartController);
+  set_head(row.monitor.permit.head, kPartMonitor);
 }
 
 }  // namespace robot_control

@@ -10,7 +10,7 @@ TraceReader::TraceReader(const std::string& path, const Use& use)
         if (bag.chunks().size() == 1) find_header(bag, chunk);
         if (!header_) return;
         if (bag.chunks().size() == 1 && use.header) use.header(*header_);
-        take(bag, chunk, use);
+        read_chunk(bag, chunk, use);
       }) {
   if (!header_) {
     throw TraceError(path + " is no log of robot_control: it does not begin with a TraceHeader" +
@@ -27,7 +27,7 @@ void TraceReader::find_header(BagReader& bag, const BagChunk& chunk) {
   }
 }
 
-void TraceReader::look_at_connections(const BagReader& bag, const Use& use) {
+void TraceReader::find_connections(const BagReader& bag, const Use& use) {
   for (const auto& [number, connection] : bag.connections()) {
     if ((use.row || use.message) && connection.type == trace_type().name && !rows_.contains(number)) {
       rows_.emplace(number, connection.definition);
@@ -39,9 +39,9 @@ void TraceReader::look_at_connections(const BagReader& bag, const Use& use) {
   }
 }
 
-void TraceReader::take(BagReader& bag, const BagChunk& chunk, const Use& use) {
+void TraceReader::read_chunk(BagReader& bag, const BagChunk& chunk, const Use& use) {
   if (use.row || use.message || use.snapshot) {
-    look_at_connections(bag, use);
+    find_connections(bag, use);
     TraceRow row;
     try {
       bag.read(chunk, [&](const BagMessage& message) {
@@ -71,7 +71,7 @@ bool TraceReader::of_this_version() const {
 
 void TraceReader::read(const Use& use) {
   if (use.header) use.header(*header_);
-  for (const BagChunk& chunk : bag_.chunks()) take(bag_, chunk, use);
+  for (const BagChunk& chunk : bag_.chunks()) read_chunk(bag_, chunk, use);
 }
 
 }  // namespace robot_control

@@ -1,5 +1,5 @@
 #pragma once
-/// A row of the log that owns what JoinedRow points to: what a reader gives.
+/// A reader gives rows that own the parts to which JoinedRow points.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace robot_control {
 
-/// Bits of the nodes.
+/// Each node has a bit.
 enum TracePart : std::uint8_t {
   kPartDriver = 1u << 0,
   kPartEstimator = 1u << 1,
@@ -17,14 +17,14 @@ enum TracePart : std::uint8_t {
 };
 
 /// The members of the frames that are in the log (trace_fields.cpp) are as recorded; the others have their defaults.
-/// Outputs that are recorded as float32 have that precision; what an injected fault changed is exact, too.
+/// Outputs that are recorded as float32 have that precision; frames that an injected fault changed are exact.
 struct TraceRow {
   std::int64_t run = 0;      ///< JoinedRow::run
   std::uint64_t run_id = 0;  ///< FrameHead::run
   std::uint64_t cycle = 0;
   std::int64_t stamp_ns = 0;   ///< FrameHead::stamp_ns
-  std::uint8_t parts = 0;      ///< TracePart of the nodes that have a row
-  std::uint8_t published = 0;  ///< of these, TracePart of the nodes whose frame was published
+  std::uint8_t parts = 0;      ///< TracePart bits of the nodes that have a row
+  std::uint8_t published = 0;  ///< TracePart bits of the nodes whose frame was published
   bool repeats = false;        ///< JoinedRow::repeats
   std::uint64_t lost = 0;      ///< rows lost before this one, since its telemetry began (TraceSource::lost)
   DriverTrace driver;
@@ -32,7 +32,7 @@ struct TraceRow {
   ControllerTrace controller;
   MonitorTrace monitor;
 
-  /// As `Join` gives it; valid as long as this row. `period`: s.
+  /// The row as `Join` gives it; it is valid as long as this object. `period` is in s.
   JoinedRow joined(double period) const;
 };
 

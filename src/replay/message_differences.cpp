@@ -72,8 +72,8 @@ std::vector<FieldDifference> differences(std::string_view message, const TraceSo
   computed.clear();
   for (const TraceField& field : trace_fields()) {
     const std::size_t begin = message.size() - from.left(), computed_begin = computed.size();
-    field.take(from, passed_over);
-    field.put(expected, computed);
+    field.read(from, passed_over);
+    field.write(expected, computed);
     const std::string_view logged = message.substr(begin, message.size() - from.left() - begin);
     const std::string_view again = std::string_view(computed).substr(computed_begin);
     if (logged != again) found.push_back(difference(field, logged, again));

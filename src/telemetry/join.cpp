@@ -40,7 +40,7 @@ void Join::add_to(const Row& row) {
   const FrameHead& head = head_of(row);
   const bool run_over = std::find(finished_runs_.begin(), finished_runs_.end(), head.run) != finished_runs_.end();
   const bool emitted = run_ == head.run && last_cycle_ && head.cycle <= *last_cycle_;
-  // A restarted node begins with the frame that is there, perhaps one it answered before.
+  // A restarted node begins with the newest frame, which its predecessor may have answered.
   const bool again =
       !queue.empty() && head_of(queue.back()).run == head.run && head.cycle <= head_of(queue.back()).cycle;
   if (run_over || emitted || again) {

@@ -1,12 +1,11 @@
 #pragma once
 /// Joins the four nodes' rows by cycle, in order.
 ///
-/// Each node's rows arrive in the order in which it wrote them: run after run, cycles rising. Cycle k is emitted
-/// as soon as every node has given its row k or has moved past k, to a later cycle or a later run. A run is over
-/// when every node has left it; of the runs that follow, the one whose sensor stamp is earliest comes next. A
-/// dead or missing node would hold that up for ever: once another one is `window` rows ahead, its cells stay
-/// empty. What it delivers for cycles already emitted is late: dropped and counted. A later row
-/// of a node may answer the same cycle again: it is emitted by itself (JoinedRow::repeats).
+/// The rows of a node arrive in the order in which it wrote them: run after run, with rising cycles. Cycle k is emitted
+/// as soon as every node has given its row k, or a row of a later cycle or run. A run is over when every node has left
+/// it; the run with the earliest sensor stamp follows. A dead node would hold the join up for ever. Once another node
+/// is `window` rows ahead, the cycle is emitted without it. Its rows of emitted cycles are late: they are dropped and
+/// counted. A later row of a node may answer the same cycle again; it is emitted by itself (JoinedRow::repeats).
 
 #include <array>
 #include <cstdint>
@@ -20,17 +19,17 @@
 
 namespace robot_control {
 
-inline constexpr std::size_t kJoinWindow = 4096;  ///< rows: 4 s at 1 kHz, twice the rings
+inline constexpr std::size_t kJoinWindow = 4096;  ///< rows; 4 s at 1 kHz, twice the size of the rings
 
 struct JoinCounts {
   std::uint64_t emitted = 0;              ///< rows
-  std::array<std::uint64_t, 4> absent{};  ///< emitted without this node (order of TraceRing); tokens excepted
+  std::array<std::uint64_t, 4> absent{};  ///< rows emitted without this node, by TraceRing; tokens do not count
   std::array<std::uint64_t, 4> late{};    ///< rows dropped because their cycle was emitted already
 };
 
 class Join {
  public:
-  /// `period`: s. `sink` gets each row; its pointers are valid during the call.
+  /// `period` is in s. `sink` receives each row; its pointers are valid during the call.
   Join(double period, std::function<void(const JoinedRow&)> sink, std::size_t window = kJoinWindow);
 
   void add(const DriverTrace& row);
@@ -38,7 +37,7 @@ class Join {
   void add(const ControllerTrace& row);
   void add(const MonitorTrace& row);
 
-  /// The end of the log: emits everything that still waits.
+  /// Emits all rows that still wait, at the end of the log.
   void finish();
 
   const JoinCounts& counts() const noexcept { return counts_; }
@@ -64,7 +63,7 @@ class Join {
   Queues queues_;
   std::optional<std::uint64_t> run_;  ///< the run being emitted
   std::int64_t run_index_ = -1;
-  std::optional<std::uint64_t> last_cycle_;  ///< emitted of it
+  std::optional<std::uint64_t> last_cycle_;  ///< the last cycle of this run that was emitted
   std::vector<std::uint64_t> finished_runs_;
   struct Newest {
     std::uint64_t process = 0;
@@ -72,8 +71,8 @@ class Join {
     std::uint64_t run = 0;
     std::uint64_t cycle = 0;
   };
-  std::array<Newest, 4> newest_{};  ///< of each node
-  Queues repeated_;                 ///< wait until the cycle that they repeat is emitted
+  std::array<Newest, 4> newest_{};  ///< the newest row of each node
+  Queues repeated_;                 ///< these rows wait until the cycle that they repeat is emitted
   JoinCounts counts_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// One row of the log: what all four nodes did in one cycle.
+/// One row of the log holds what all four nodes did in one cycle.
 
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace robot_control {
 
-/// Row k joins sensors k, state k, command k and permit k; the gate's report is that of tick k, which used
-/// command and permit k-1. Null: that node has no frame for this cycle (lost, or a token passed).
+/// Row k joins sensors k, state k, command k and permit k. The gate's report is that of tick k, which used command and
+/// permit k-1. A null pointer means that the node has no frame for this cycle: it was lost, or a token passed.
 struct JoinedRow {
   std::int64_t run = 0;     ///< 0, 1, … in the order in which the runs began
   std::uint64_t cycle = 0;  ///< k
@@ -18,7 +18,7 @@ struct JoinedRow {
   const ControllerTrace* controller = nullptr;
   const MonitorTrace* monitor = nullptr;
 
-  /// The same rows, also where an injected fault suppressed the frame: the law ran, and a token was published.
+  /// The same rows, also if an injected fault suppressed the frame: the law ran, and a token was published.
   struct Laws {
     const EstimatorTrace* estimator = nullptr;
     const ControllerTrace* controller = nullptr;
@@ -26,11 +26,11 @@ struct JoinedRow {
   };
   Laws laws{};
 
-  /// A node answered a cycle again: one that was started again, or the monitor, without a new sensor frame. The row
-  /// holds that node alone, in `laws`, and is no row of the run.
+  /// True: a node answered a cycle again. It was restarted, or it is the monitor without a new sensor frame. Its row
+  /// alone is in `laws`, and this is no row of the run.
   bool repeats = false;
 
-  /// Fills in the rows of the laws, and of them those whose frame was published; where it `repeats`, the former alone.
+  /// Sets `laws` and, unless the row `repeats`, the pointers to those whose frame was published.
   void set(const Laws& ran) noexcept {
     laws = ran;
     if (repeats) return;
@@ -43,7 +43,7 @@ struct JoinedRow {
   static bool published(const FrameHead& head) noexcept { return head.kind == FrameKind::kFrame; }
 };
 
-/// The one way to compute `time`, so that equal cycles have equal bits wherever a row is made.
+/// `time` is always computed here, so that equal cycles have equal bits.
 inline double row_time(std::uint64_t cycle, double period) noexcept {
   return static_cast<double>(cycle) * period;
 }

@@ -4,7 +4,7 @@
 
 namespace robot_control {
 
-/// What could not be written, why, what to do.
+/// The message names the file, the reason and the remedy.
 class LogError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

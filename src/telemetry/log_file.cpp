@@ -15,19 +15,18 @@
 namespace robot_control {
 namespace {
 
-/// 0: the open file is at its path; else why not, as errno.
+/// The result is 0 where the open file is at its path, else the reason as errno.
 int absence_of(int file, const std::string& path) noexcept {
   struct stat own {};
-  struct stat there {};
+  struct stat present {};
   if (::fstat(file, &own) != 0) return errno;
-  if (::stat(path.c_str(), &there) != 0) return errno;
-  return there.st_ino == own.st_ino && there.st_dev == own.st_dev ? 0 : ENOENT;
+  if (::stat(path.c_str(), &present) != 0) return errno;
+  return present.st_ino == own.st_ino && present.st_dev == own.st_dev ? 0 : ENOENT;
 }
 
 }  // namespace
 
-LogFile::LogFile(std::string path, Room room, std::string share)
-    : path_(std::move(path)), room_(std::move(room)), share_(std::move(share)) {
+LogFile::LogFile(std::string path, Room room) : path_(std::move(path)), room_(std::move(room)) {
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
@@ -44,27 +43,29 @@ void LogFile::check_presence() {
   if (const int absence = absence_of(file_, path_); absence != 0) fail("is not there any more", absence);
 }
 
-void LogFile::append(std::string_view bytes, const Whole& whole) {
-  if (room_ && !room_(bytes_ + static_cast<std::int64_t>(bytes.size()))) {
+void LogFile::append(std::string_view part) {
+  if (room_ && !room_(bytes_ + static_cast<std::int64_t>(part.size()))) {
     end();
-    throw LogError("log " + path_ + " has ended: telemetry.quota is reached" + share_ +
-                   " and no older log can be removed; another one is begun in 10 s, then this one may be removed; "
+    throw LogError("log " + path_ +
+                   " has ended: telemetry.quota is reached and no older log can be removed; another one is begun in 10 "
+                   "s, then this one may be removed; "
                    "remedy: raise telemetry.quota or make room");
   }
   std::size_t done = 0;
   int error = 0;
-  while (error == 0 && done < bytes.size()) {
-    const ssize_t taken = ::write(file_, bytes.data() + done, bytes.size() - done);
+  while (error == 0 && done < part.size()) {
+    const ssize_t taken = ::write(file_, part.data() + done, part.size() - done);
     if (taken >= 0) {
       done += static_cast<std::size_t>(taken);
     } else if (errno != EINTR) {
       error = errno;
     }
   }
-  const std::size_t kept = whole ? whole(bytes.substr(0, done)) : done == bytes.size() ? done : 0;
-  bytes_ += static_cast<std::int64_t>(kept);
-  if (error == 0) return;
-  // A part of a part would be read as something else. A pipe cannot be cut, nor need it be.
+  if (error == 0) {
+    bytes_ += static_cast<std::int64_t>(part.size());
+    return;
+  }
+  // A reader would misunderstand an incomplete part. A pipe cannot be cut and need not be.
   [[maybe_unused]] const int cut = ::ftruncate(file_, bytes_);
   fail("cannot be written", error);
 }

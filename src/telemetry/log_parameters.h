@@ -5,17 +5,16 @@
 
 namespace robot_control {
 
-/// Which cycles run.bag holds.
+/// The mode decides which cycles run.bag holds.
 enum class RecordMode {
-  kMotion,   ///< while the robot moves, with what came before (recording/bag_log.h)
-  kAlways,   ///< all
-  kRequest,  ///< from a call of the service until it is taken back
+  kMotion,   ///< cycles while the robot moves, and those before (recording/bag_log.h)
+  kAlways,   ///< all cycles
+  kRequest,  ///< cycles between two calls of the service
   kOff,      ///< there is no run.bag
 };
 
 struct TelemetryParameters {
   std::string directory;  ///< where runs are written; empty or relative: from where the node was started
-  bool csv = true;        ///< write run.csv beside run.bag
   RecordMode record = RecordMode::kMotion;
   double split_size = 1;         ///< GB (10⁹ bytes), of one run.bag; 0: no limit
   double split_time = 3600;      ///< s, of one run.bag; 0: no limit

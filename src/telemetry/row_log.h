@@ -1,5 +1,5 @@
 #pragma once
-/// A log that takes row after row: run.csv, run.bag.
+/// A log receives row after row.
 
 #include "signals/law_snapshot.h"
 #include "telemetry/joined_row.h"
@@ -10,11 +10,11 @@ class RowLog {
  public:
   virtual ~RowLog() = default;
 
-  /// Throws LogError once, when the disk takes no more; the log ends then.
+  /// Throws LogError once if the disk refuses the row; the log ends then.
   virtual void write(const JoinedRow& row) = 0;
 
-  /// The state of a law before the next row; a log of rows alone leaves it out.
-  virtual void write(const LawSnapshot& /*snapshot*/) {}
+  /// Writes the state of a law before the next row.
+  virtual void write(const LawSnapshot& snapshot) = 0;
 
   /// Completes the file. Throws LogError.
   virtual void close() = 0;

@@ -52,10 +52,10 @@ def prepare(folder):
     rows = [f"{t:.2f},{c},{c}" for t, c in zip(time, counts, strict=True)]
     (folder / "drive.csv").write_text("\n".join(["t,enc_l,enc_r", *rows]) + "\n")
     write_bag(folder / "drive.bag", time, angle)
-    log = ClosedLoop().run(2.0, (0.4, 0.3))
-    names, columns = list(log), [values.tolist() for values in log.values()]
-    lines = [",".join(names), *(",".join(map(repr, row)) for row in zip(*columns, strict=True))]
-    (folder / "run.csv").write_text("\n".join(lines) + "\n")
+    loop = ClosedLoop()
+    loop.log_into(folder)
+    loop.run(2.0, (0.4, 0.3))
+    loop.end_log()
 
 
 def write_bag(path, time, angle):

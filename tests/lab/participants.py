@@ -14,7 +14,6 @@ START_LIMIT = 30.0  # s until all nodes run
 RECORDING = {
     "robot.wait_for_nodes": "true",
     "robot.wait_for_telemetry": "true",
-    "telemetry.csv": "false",
     "telemetry.record": "always",
 }
 

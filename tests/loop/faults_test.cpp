@@ -1,4 +1,4 @@
-/// Every sensor and motor fails in every way, in four processes and in one: the same bytes, and never a standstill of
+/// Every sensor and motor fails in every way, in four processes and in one: the same numbers, and never a standstill of
 /// time.
 
 #include <gtest/gtest.h>
@@ -11,11 +11,9 @@
 #include "runtime/simulation_services.h"
 #include "signals/names.h"
 #include "simulation/closed_loop.h"
-#include "support/file_content.h"
 #include "support/four_nodes.h"
+#include "support/log_table.h"
 #include "support/temporary_folder.h"
-#include "telemetry/columns.h"
-#include "telemetry/csv_writer.h"
 
 namespace robot_control {
 namespace {
@@ -60,6 +58,7 @@ class Faults : public ::testing::Test {
     parameters_.loop.clock = ClockMode::kLockstep;
     parameters_.loop.wait_for_nodes = true;
     parameters_.loop.wait_for_telemetry = true;
+    parameters_.telemetry.record = RecordMode::kAlways;
     parameters_.telemetry.directory = (folder_.path() / "log").string();
     robot_ = read_robot(load_description(parameters_.urdf), parameters_.robot);
   }
@@ -70,7 +69,7 @@ class Faults : public ::testing::Test {
   RobotModel robot_;
 };
 
-TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
+TEST_F(Faults, OfFourProcessesGiveTheNumbersOfTheClosedLoop) {
   FourNodes(parameters_, robot_, true).run(kTimeout, [&](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     services.set_pause(true);
@@ -88,9 +87,7 @@ TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
     }
   });
 
-  std::vector<std::string> joints;
-  for (const JointModel& joint : robot_.joints) joints.push_back(joint.name);
-  CsvWriter writer((folder_.path() / "one.csv").string(), log_columns(joints, false));
+  LogTable one(joint_names(robot_), parameters_.loop.period(), false);
   ClosedLoop loop(parameters_);
   for (const Fault& fault : faults_) {
     bool drove = false;
@@ -101,12 +98,11 @@ TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
       }
       if (k == kRecovers) loop.inject_fault(fault.component, "ok");
       loop.step();
-      writer.write(loop.row());
+      one.add(loop.row());
     }
     EXPECT_TRUE(drove) << "before " << fault.component << ' ' << fault.kind << " nothing was shown";
   }
-  writer.close();
-  EXPECT_TRUE(content(folder_.path() / "log" / "run.csv") == content(folder_.path() / "one.csv"));
+  EXPECT_EQ(LogTable::difference(LogTable::of_bag(folder_.path() / "log" / "run.bag"), one), "");
 }
 
 }  // namespace

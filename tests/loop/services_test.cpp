@@ -1,4 +1,4 @@
-/// Pause, step, reset and faults while four processes run: in lockstep with the bytes of the closed loop, on the wall
+/// Pause, step, reset and faults while four processes run: in lockstep with the numbers of the closed loop, on the wall
 /// clock without a jump.
 
 #include <gtest/gtest.h>
@@ -7,36 +7,18 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "simulation/closed_loop.h"
-#include "support/file_content.h"
 #include "support/four_nodes.h"
-#include "telemetry/columns.h"
-#include "telemetry/csv_writer.h"
+#include "support/log_table.h"
 
 namespace robot_control {
 namespace {
 
 constexpr double kServicePatience = 120;         // s
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
-
-/// Two logs, line by line: where they part, in words; "" where they do not.
-std::string parting(const std::string& first, const std::string& second) {
-  std::istringstream a(first), b(second);
-  std::string row, other;
-  for (int line = 1;; ++line) {
-    const bool more = static_cast<bool>(std::getline(a, row));
-    const bool more_other = static_cast<bool>(std::getline(b, other));
-    if (!more && !more_other) return "";
-    if (more && more_other && row == other) continue;
-    return "line " + std::to_string(line) + ":\n" + (more ? row : "(end)") + "\n" + (more_other ? other : "(end)");
-  }
-}
 
 constexpr const char* kCurve = "1,0.5,0.2,\n1000,0.5,0.2,\n2000,0.5,0.2,\n3000,0.5,0.2,\n";
 
@@ -50,6 +32,7 @@ class Services : public ::testing::Test {
                                   {{"robot.command_script", (folder_ / "script.csv").string(), "test"}});
     parameters_.loop.wait_for_nodes = true;
     parameters_.loop.wait_for_telemetry = true;
+    parameters_.telemetry.record = RecordMode::kAlways;
     parameters_.telemetry.directory = (folder_ / "log").string();
     robot_ = read_robot(load_description(parameters_.urdf), parameters_.robot);
   }
@@ -60,11 +43,11 @@ class Services : public ::testing::Test {
     script << "cycle,linear,angular,event\n" << rows;
   }
 
-  /// run.csv of four processes under these hands.
-  std::string four_processes(ClockMode clock, const FourNodes::Operator& operate) {
+  /// run.bag of four processes under these hands.
+  LogTable four_processes(ClockMode clock, const FourNodes::Operator& operate) {
     parameters_.loop.clock = clock;
     FourNodes(parameters_, robot_, true).run(kServicePatience, operate);
-    return content(folder_ / "log" / "run.csv");
+    return LogTable::of_bag(folder_ / "log" / "run.bag");
   }
 
   std::filesystem::path folder_;
@@ -82,10 +65,10 @@ void step_from_the_beginning(SimulationServices& services, std::uint64_t cycles)
   ASSERT_TRUE(answer.success) << answer.message;
 }
 
-TEST_F(Services, InLockstepStepsAndResetsGiveTheBytesOfTheClosedLoop) {
+TEST_F(Services, InLockstepStepsAndResetsGiveTheNumbersOfTheClosedLoop) {
   constexpr std::uint64_t kFirst = 1500;  // cycles: at 0.5 m/s
   constexpr std::uint64_t kSecondRun = 700;
-  const std::string four = four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
+  const LogTable four = four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     step_from_the_beginning(services, kFirst);
     EXPECT_TRUE(services.reset().success);
@@ -95,14 +78,12 @@ TEST_F(Services, InLockstepStepsAndResetsGiveTheBytesOfTheClosedLoop) {
     EXPECT_TRUE(services.step(kFirst).success);
   });
 
-  std::vector<std::string> joints;
-  for (const JointModel& joint : robot_.joints) joints.push_back(joint.name);
-  CsvWriter writer((folder_ / "one.csv").string(), log_columns(joints, false));
+  LogTable one(joint_names(robot_), parameters_.loop.period(), false);
   ClosedLoop loop(parameters_);
   const auto steps = [&](std::uint64_t cycles) {
     for (std::uint64_t k = 0; k < cycles; ++k) {
       loop.step();
-      writer.write(loop.row());
+      one.add(loop.row());
     }
   };
   steps(kFirst);
@@ -111,70 +92,48 @@ TEST_F(Services, InLockstepStepsAndResetsGiveTheBytesOfTheClosedLoop) {
   steps(kSecondRun);
   loop.reset();
   steps(kFirst);
-  writer.close();
-  EXPECT_EQ(parting(four, content(folder_ / "one.csv")), "");
-}
-
-/// Rows of a log as numbers by column name; an empty cell is NaN.
-std::vector<std::map<std::string, double>> rows_of(const std::string& text) {
-  std::istringstream lines(text);
-  std::string line;
-  std::getline(lines, line);
-  std::vector<std::string> names;
-  std::istringstream header(line);
-  for (std::string name; std::getline(header, name, ',');) names.push_back(name);
-  std::vector<std::map<std::string, double>> rows;
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    auto& row = rows.emplace_back();
-    for (const std::string& name : names) {
-      std::string cell;
-      std::getline(cells, cell, ',');
-      row[name] = cell.empty() ? std::nan("") : std::stod(cell);
-    }
-  }
-  return rows;
+  EXPECT_EQ(LogTable::difference(four, one), "");
 }
 
 TEST_F(Services, InLockstepAStoppedRobotStaysStoppedInTheNextRun) {
   set_script("1,0.5,0.2,\n1000,0.5,0.2,\n1200,,,e_stop\n");
-  const auto rows = rows_of(four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
+  const LogTable rows = four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
     step_from_the_beginning(*driver.services(), 1210);
     EXPECT_TRUE(driver.services()->reset().success);
     EXPECT_TRUE(driver.services()->step(1100).success);
-  }));
-  ASSERT_EQ(rows.size(), 1210u + 1100u);
-  EXPECT_GT(rows[1199].at("truth_linear"), 0.4);
-  for (std::size_t row = 1210; row < rows.size(); ++row) {
-    ASSERT_EQ(rows[row].at("run"), 1);
-    ASSERT_EQ(rows[row].at("supervisor_state"), static_cast<double>(SupervisorState::kStopped)) << row;
-    ASSERT_EQ(rows[row].at("gate_verdict"), static_cast<double>(GateVerdict::kBrake)) << row;
+  });
+  ASSERT_EQ(rows.rows(), 1210u + 1100u);
+  EXPECT_GT(rows.at(1199, "truth_linear"), 0.4);
+  for (std::size_t row = 1210; row < rows.rows(); ++row) {
+    ASSERT_EQ(rows.at(row, "run"), 1);
+    ASSERT_EQ(rows.at(row, "supervisor_state"), static_cast<double>(SupervisorState::kStopped)) << row;
+    ASSERT_EQ(rows.at(row, "gate_verdict"), static_cast<double>(GateVerdict::kBrake)) << row;
   }
 }
 
 /// Motion begins again from rest: nothing of the first run's 0.5 m/s is left in pose, command or torque.
 TEST_F(Services, OnTheWallClockAResetAtSpeedIsFollowedWithoutAJump) {
   constexpr double kEffortStep = 1;  // N·m; max_linear_acceleration takes 0.65 from one cycle to the next
-  const auto rows = rows_of(four_processes(ClockMode::kWall, [](DriverProcess& driver) {
+  const LogTable rows = four_processes(ClockMode::kWall, [](DriverProcess& driver) {
     sleep_ns(3 * kSecond / 2);
     const ServiceAnswer answer = driver.services()->reset();
     EXPECT_TRUE(answer.success) << answer.message;
     sleep_ns(kSecond);
-  }));
+  });
   std::size_t second = 0;
-  while (second < rows.size() && rows[second].at("run") == 0) ++second;
-  ASSERT_LT(second + 400, rows.size()) << "the second run was too short to judge";
-  EXPECT_GT(rows[second - 1].at("truth_linear"), 0.4);
-  EXPECT_EQ(rows[second].at("cycle"), 0);
-  EXPECT_EQ(rows[second].at("stamp_ns"), rows[second - 1].at("stamp_ns") + 1e6) << "one period after the last stamp";
+  while (second < rows.rows() && rows.at(second, "run") == 0) ++second;
+  ASSERT_LT(second + 400, rows.rows()) << "the second run was too short to judge";
+  EXPECT_GT(rows.at(second - 1, "truth_linear"), 0.4);
+  EXPECT_EQ(rows.at(second, "cycle"), 0);
+  EXPECT_EQ(rows.at(second, "stamp_ns"), rows.at(second - 1, "stamp_ns") + 1e6) << "one period after the last stamp";
   for (std::size_t row = second; row < second + 50; ++row) {
-    if (std::isnan(rows[row].at("estimate_x")) || std::isnan(rows[row].at("requested_linear"))) continue;
-    EXPECT_LT(std::abs(rows[row].at("estimate_x")), 0.001);
-    EXPECT_LT(std::abs(rows[row].at("truth_linear")), 0.05);
-    EXPECT_LT(std::abs(rows[row].at("left_wheel_joint_effort") - rows[row - 1].at("left_wheel_joint_effort")),
+    if (std::isnan(rows.at(row, "estimate_x")) || std::isnan(rows.at(row, "requested_linear"))) continue;
+    EXPECT_LT(std::abs(rows.at(row, "estimate_x")), 0.001);
+    EXPECT_LT(std::abs(rows.at(row, "truth_linear")), 0.05);
+    EXPECT_LT(std::abs(rows.at(row, "left_wheel_joint_effort") - rows.at(row - 1, "left_wheel_joint_effort")),
               row == second ? 20 : kEffortStep);
   }
-  EXPECT_EQ(static_cast<std::uint64_t>(rows[second + 20].at("permit_causes")) & kCauseDriverLost, 0u);
+  EXPECT_EQ(static_cast<std::uint64_t>(rows.at(second + 20, "permit_causes")) & kCauseDriverLost, 0u);
 }
 
 /// What the operator reads of the sensors channel.
@@ -188,7 +147,7 @@ TEST_F(Services, OnTheWallClockAPauseStopsTimeAndIsNeitherCaughtUpNorSlip) {
   constexpr std::int64_t kPause = kSecond / 2;
   constexpr std::uint64_t kPeriod = 1'000'000;   // ns
   constexpr std::int64_t kStall = kSecond / 20;  // what a busy machine may take off a thread of this test
-  const auto rows = rows_of(four_processes(ClockMode::kWall, [](DriverProcess& driver) {
+  const LogTable rows = four_processes(ClockMode::kWall, [](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     sleep_ns(kSecond);
     EXPECT_TRUE(services.set_pause(true).success);
@@ -215,11 +174,11 @@ TEST_F(Services, OnTheWallClockAPauseStopsTimeAndIsNeitherCaughtUpNorSlip) {
     EXPECT_LT(after.slipped_ns, before.slipped_ns + static_cast<std::uint64_t>(kPause) / 2);
     EXPECT_LT(after.head.cycle, before.head.cycle + 5 + static_cast<std::uint64_t>(kStall) / kPeriod) << "no burst";
     sleep_ns(kSecond / 5);
-  }));
-  for (std::size_t row = 1; row < rows.size(); ++row) {
-    ASSERT_EQ(rows[row].at("cycle"), rows[row - 1].at("cycle") + 1);
-    if (std::isnan(rows[row].at("driver_state"))) continue;  // dropped: the machine was busy
-    ASSERT_EQ(rows[row].at("driver_state"), static_cast<double>(DriverState::kRunning)) << "no row is a pause";
+  });
+  for (std::size_t row = 1; row < rows.rows(); ++row) {
+    ASSERT_EQ(rows.at(row, "cycle"), rows.at(row - 1, "cycle") + 1);
+    if (std::isnan(rows.at(row, "driver_state"))) continue;  // dropped: the machine was busy
+    ASSERT_EQ(rows.at(row, "driver_state"), static_cast<double>(DriverState::kRunning)) << "no row is a pause";
   }
 }
 

@@ -95,7 +95,7 @@ TEST_F(ABlackBox, HoldsASnapshotOfEachLawBeforeAStopRightAfterTheStartOfTelemetr
   nodes().start(LoopNode::kTelemetry);
   std::error_code absent;
   const auto log_bytes = [&] {
-    const auto bytes = std::filesystem::file_size(folder_ / "run.csv", absent);
+    const auto bytes = std::filesystem::file_size(folder_ / "run.bag", absent);
     return absent ? 0 : bytes;
   };
   ASSERT_TRUE(robot_.await([&] { return log_bytes() > 100'000; })) << "it takes rows";

@@ -15,8 +15,7 @@ TEST(ParametersText, IsReadBackAsTheSameValues) {
                                      {"robot.clock", "lockstep", "test"},
                                      {"diff_drive_controller.pid_kp", "1.25", "test"},
                                      {"safety_monitor.tilt", "{limit: 0.1, reaction: ramp}", "test"},
-                                     {"telemetry.record", "request", "test"},
-                                     {"telemetry.csv", "false", "test"}};
+                                     {"telemetry.record", "request", "test"}};
   const std::string text = parameters_text(read_parameters(shipped_path(), unusual));
   ParameterFile file;
   file.write(text);
@@ -29,7 +28,6 @@ TEST(ParametersText, IsReadBackAsTheSameValues) {
   EXPECT_EQ(again.controller.pid_kp, 1.25);
   EXPECT_EQ(again.safety.tilt.limit, 0.1);
   EXPECT_EQ(again.telemetry.record, RecordMode::kRequest);
-  EXPECT_FALSE(again.telemetry.csv);
 }
 
 }  // namespace

@@ -197,7 +197,6 @@ TEST_F(ReadParameters, OverlaysAloneAreEnough) {
       const bool limit = overlay.path.ends_with(".limit");
       overlay.text = none ? "0" : small || limit ? "1" : "10";  // within the range of all the others
       if (overlay.path.ends_with(".reaction")) overlay.text = "warn";
-      if (overlay.path == "telemetry.csv") overlay.text = "false";
       if (overlay.path == "telemetry.record") overlay.text = "always";
     }
   }

@@ -33,7 +33,7 @@ struct ABlackBoxKeeper : testing::Test {
   std::unique_ptr<BlackBoxKeeper> start(std::uint64_t build = build_id(), std::size_t keep = kKeep) {
     auto keeper = std::make_unique<BlackBoxKeeper>(folder.path() / "box", 12 << 20, keep, build,
                                                    log_header(drive_parameters(), loop.robot()));
-    keeper->see(0, now_ns);
+    keeper->watch(0, now_ns);
     return keeper;
   }
 
@@ -42,7 +42,7 @@ struct ABlackBoxKeeper : testing::Test {
     keeper.add(*row.estimator);
     keeper.add(*row.controller);
     keeper.add(*row.monitor);
-    keeper.see(row.monitor->permit.causes, now_ns += kSecond / 1000);
+    keeper.watch(row.monitor->permit.causes, now_ns += kSecond / 1000);
   }
 
   void drive_on(BlackBoxKeeper& keeper, std::uint64_t cycles) {

@@ -10,18 +10,12 @@
 #include "recording/message_types.h"
 #include "recording/packed_chunk.h"
 #include "signals/names.h"
-#include "telemetry/columns.h"
+#include "support/log_table.h"
 
 namespace robot_control {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::vector<std::string> joints_of(const RobotModel& robot) {
-  std::vector<std::string> names;
-  for (const JointModel& joint : robot.joints) names.push_back(joint.name);
-  return names;
-}
 
 struct TraceMessages : testing::Test {
   TraceMessages() : TraceMessages(drive_parameters()) {}
@@ -68,19 +62,13 @@ TEST_F(TraceMessages, HoldWhatEachLawWasGivenBitForBit) {
 
 TEST_F(TraceMessages, HoldEveryColumnOfTheTable) {
   constexpr double kFloat = 1.2e-7;  // relative error of a float32, 2^-23
-  const std::vector<Column> columns = log_columns(joints_of(loop.robot()), true);
+  const std::vector<TraceColumn> columns = log_columns(joint_names(loop.robot()), true);
   each(3000, [&](const JoinedRow& row, const JoinedRow& again) {
-    for (const Column& column : columns) {
-      ASSERT_EQ(column.filled(present_sources(row)), column.filled(present_sources(again)));
-      if (!column.filled(present_sources(row))) continue;
-      if (column.integer != nullptr) {
-        ASSERT_EQ(column.integer(row, column.joint), column.integer(again, column.joint)) << column.name;
-        continue;
-      }
-      const double expected = column.real(row, column.joint);
-      const double found = column.real(again, column.joint);
-      if (std::isnan(expected)) {
-        ASSERT_TRUE(std::isnan(found)) << column.name;
+    for (const TraceColumn& column : columns) {
+      const double expected = column.value(row, column.element);
+      const double found = column.value(again, column.element);
+      if (std::isnan(expected) || column.integer) {
+        ASSERT_TRUE(LogTable::same(expected, found)) << column.name;
         continue;
       }
       // Angles are computed of four float32 up to 1.

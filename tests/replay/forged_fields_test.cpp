@@ -78,7 +78,7 @@ std::vector<std::vector<Place>> places_in(const std::vector<LoggedMessage>& log)
     for (std::size_t field = 0; field < all.size(); ++field) {
       const std::size_t length = trace_fields()[field].type.ends_with("[]") ? sizeof(std::uint32_t) : 0;
       const std::size_t begin = at() + length;
-      trace_fields()[field].take(from, passed_over);
+      trace_fields()[field].read(from, passed_over);
       if (at() > begin) all[field].push_back({.message = i, .begin = begin, .end = at()});
     }
   }

@@ -32,7 +32,6 @@ class TelemetryProcessTest : public testing::Test {
   TelemetryProcess telemetry() const {
     Parameters parameters;
     parameters.telemetry.directory = folder_.path();
-    parameters.telemetry.csv = false;
     parameters.telemetry.record = RecordMode::kOff;
     parameters.telemetry.black_box = 0;
     return {parameters, two_wheels(), bus_.name()};

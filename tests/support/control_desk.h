@@ -38,7 +38,6 @@ struct ControlDesk {
   /// By telemetry's own count.
   std::atomic<std::uint64_t> lost_rows{0};
   std::atomic<std::uint64_t> unwritten_rows{0};
-  std::atomic<std::uint64_t> unwritten_bag_rows{0};
 };
 
 inline std::uint64_t missing_bits(const std::vector<std::string>& names) {

@@ -165,8 +165,7 @@ class NodeProcesses {
       if (!telemetry.problem().empty() && desk_->unwritten_rows.load() == 0) {
         std::fprintf(stderr, "%s\n", telemetry.problem().c_str());
       }
-      if (!telemetry.problem().empty()) desk_->unwritten_rows.store(counts.unwritten);
-      desk_->unwritten_bag_rows.store(counts.bag_unwritten);
+      if (!telemetry.problem().empty()) desk_->unwritten_rows.store(counts.bag_unwritten);
       sleep_ns(kLookNs);
     }
   }

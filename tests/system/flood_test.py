@@ -40,8 +40,8 @@ class FloodTest(RobotTestCase):
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp())
         self.robot.await_ready()
-        self.telemetry = Program("telemetry", f"_directory:={self.folder}")
-        wait_for("a log", (self.folder / "run.csv").exists)
+        self.telemetry = Program("telemetry", f"_directory:={self.folder}", "_record:=always")
+        wait_for("a log", (self.folder / "run.bag").exists)
         self.drive()
         self.flood = subprocess.Popen([os.environ["FLOOD"], str(RATE)], stdout=subprocess.PIPE, text=True)
         time.sleep(2.0)  # it connects
@@ -72,8 +72,8 @@ class FloodTest(RobotTestCase):
         stolen_before = stolen()
         spells = [(self.spell(False), self.spell(True)) for _ in range(PAIRS)]
         self.flood.send_signal(signal.SIGSTOP)
-        time.sleep(0.5)  # the log is handed on
-        log = read_log(self.folder / "run.csv")
+        time.sleep(2.5)  # the log is handed on
+        log = read_log(self.folder / "run.bag")
         due = (log["stamp_ns"] + log["slipped_ns"]) * 1e-9
         latency = (log["command_published_ns"] - log["driver_woke_ns"]) * 1e-3
 

@@ -14,6 +14,7 @@ import rosbag
 import rosgraph
 import rospy
 import rostest
+from robot_control.common.run_log import read_log
 from robot_control.msg import SafetyStatus
 from robot_control.record.main import TOPICS
 from system_support import ESTIMATOR, LIMIT, MONITOR, Robot, init_test_node, refusal, repository, wait_for
@@ -102,10 +103,9 @@ class LaunchTest(unittest.TestCase):
         for alarm in ("REQUIRED process", "has died", " overrides "):
             self.assertNotIn(alarm, launch.output)
         self.assertIn(f"the run has ended after {cycles} cycles", launch.output)
-        lines = (self.out / "run.csv").read_text().splitlines()
-        rows = [line for line in lines if line[0].isdigit()]
-        self.assertEqual(len(rows), cycles, launch.output)
-        return next(line for line in lines if line.startswith("run,")).split(",")
+        log = read_log(self.out / "run.bag")
+        self.assertEqual(log["cycle"].size, cycles, launch.output)
+        return list(log)
 
     def record(self, namespace: str) -> set[str]:
         """Topics in the bag of a launch that ran until the recorder had received all that is published."""
@@ -128,9 +128,9 @@ class LaunchTest(unittest.TestCase):
 
     def test_ends_by_itself_with_every_row_and_keeps_an_earlier_log(self) -> None:
         self.run_lockstep(3000)
-        first = (self.out / "run.csv").read_bytes()
+        first = (self.out / "run.bag").read_bytes()
         self.run_lockstep(200)
-        self.assertEqual((self.out / "run.1.csv").read_bytes(), first)
+        self.assertEqual((self.out / "run.1.bag").read_bytes(), first)
 
         # Both outlive the launch; a reader of one of them is pointed to the other.
         self.assertEqual((rospy.get_param("/use_sim_time"), rospy.get_param("/robot/clock")), (True, "lockstep"))
@@ -139,13 +139,15 @@ class LaunchTest(unittest.TestCase):
 
     def test_no_argument_of_a_launch_outlives_it_and_paths_count_from_the_caller(self) -> None:
         folder = self.out.parents[2]
-        (folder / "two_lines.yaml").write_text("diff_drive_controller:\n  max_linear_speed: 0.4\n")
+        (folder / "two_lines.yaml").write_text(
+            "diff_drive_controller: {max_linear_speed: 0.4}\ntelemetry: {record: always}\n"
+        )
         (folder / "stop.csv").write_text("cycle,linear,angular\n0,0,0\n")
         given = ["scene:=slope_5deg", "seed:=7", "params:=two_lines.yaml", "command_script:=stop.csv"]
         first = Launch("clock:=lockstep", "cycles:=200", "telemetry:=true", "out:=rel", *given, folder=folder)
         self.addCleanup(first.end)
         self.assertEqual(first.wait(), 0, first.output)
-        self.assertTrue((folder / "rel" / "run.csv").is_file(), first.output)
+        self.assertTrue((folder / "rel" / "run.bag").is_file(), first.output)
         self.assertTrue(rospy.get_param("/mujoco_plant/scene").endswith("/slope_5deg.xml"))
 
         second = Launch("clock:=lockstep", "cycles:=200")
@@ -163,14 +165,14 @@ class LaunchTest(unittest.TestCase):
     def test_records_every_topic_that_has_messages(self) -> None:
         topics = self.record("")
         self.assertLessEqual({"/odom", "/tf", "/joint_states", "/cmd_vel_out", "/imu/data_raw"}, topics)
-        self.assertTrue((self.out / "run.csv").is_file())
+        self.assertTrue((self.out / "run.bag").is_file())
 
     def test_second_robot_logs_and_records_in_a_folder_of_its_own(self) -> None:
         topics = self.record("robot2")
         self.assertLessEqual({"/robot2/odom", "/robot2/tf", "/diagnostics"}, topics)
         self.assertNotIn("/odom", topics)
-        self.assertTrue((self.out / "robot2" / "run.csv").is_file())
-        self.assertFalse((self.out / "run.csv").exists())
+        self.assertTrue((self.out / "robot2" / "run.bag").is_file())
+        self.assertFalse((self.out / "run.bag").exists())
 
     def test_in_a_namespace_by_argument_a_killed_node_is_started_again(self) -> None:
         init_test_node("launch_test")

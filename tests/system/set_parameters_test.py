@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """diff_drive_controller/set_parameter_map and set_parameters (dynamic_reconfigure), called while the robot drives."""
 
-import csv
-import os
+import contextlib
 import random
 import re
 import subprocess
@@ -14,6 +13,7 @@ import rostest
 import yaml
 from dynamic_reconfigure.client import Client
 from robot_control._robot_control import BagError, TraceError, read_run_header
+from robot_control.common.run_log import LogError, read_log
 from robot_control.msg import SafetyStatus
 from robot_control.srv import SetParameters
 from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
@@ -21,27 +21,6 @@ from system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
 SERVICE = f"/{CONTROLLER}/set_parameter_map"
 START = "{max_linear_speed: 1.0, cmd_vel_timeout: 1.25}"
 """What the tests begin with, whatever one before left on the parameter server."""
-
-
-class GrowingLog:
-    """Rows of a run.csv that are written from now on. Each is read once: a log grows by a megabyte per second."""
-
-    def __init__(self, path: Path) -> None:
-        self._file = path.open()
-        self._names = next(csv.reader(self._file))
-        self._file.seek(0, os.SEEK_END)
-        self._begun = ""  # of a row
-        self._rows: list[dict[str, str]] = []
-
-    def close(self) -> None:
-        self._file.close()
-
-    def rows(self, tuning: int) -> list[dict[str, str]]:
-        """Those that were computed with this set, as far as they are written."""
-        *whole, self._begun = (self._begun + self._file.read()).split("\n")
-        rows = (dict(zip(self._names, row, strict=False)) for row in csv.reader(whole) if len(row) == len(self._names))
-        self._rows += rows
-        return [row for row in self._rows if row["tuning"] == str(tuning)]
 
 
 class SetParametersTest(RobotTestCase):
@@ -88,18 +67,25 @@ class SetParametersTest(RobotTestCase):
         wait_for("a line of it", lambda: reported in self.robot.nodes[CONTROLLER].output)
 
     def test_the_log_shows_which_rows_belong_to_which_set(self) -> None:
-        run = Path(self.folder.name, "run.csv")
-        wait_for("a log", lambda: run.exists() and run.stat().st_size > 0)
-        log = GrowingLog(run)
-        self.addCleanup(log.close)
         first = self.accept("{max_linear_jerk: 8.5}")
-        wait_for("rows of it", lambda: len(log.rows(first)) > 0)
+        wait_for("rows of it", lambda: bool(self.rows(first)))
         second = self.accept("{max_linear_jerk: 10, pid_kd: 0.0005}")
-        wait_for("rows of the next", lambda: len(log.rows(second)) > 0)
+        wait_for("rows of the next", lambda: bool(self.rows(second)))
         for number, jerk in ((first, 8.5), (second, 10)):
-            self.assertEqual({float(row["max_linear_jerk"]) for row in log.rows(number)}, {jerk})
-        self.assertLess(int(log.rows(first)[-1]["cycle"]), int(log.rows(second)[0]["cycle"]))
+            self.assertEqual({set_jerk for _, set_jerk in self.rows(number)}, {jerk})
+        self.assertLess(self.rows(first)[-1][0], self.rows(second)[0][0])
         self.accept("{pid_kd: 0.0}")
+
+    def rows(self, tuning: int) -> list[tuple[float, float]]:
+        """Cycle and max_linear_jerk of those that were computed with this set."""
+        found: list[tuple[float, float]] = []
+        for path in Path(self.folder.name).glob("run*.bag"):
+            with contextlib.suppress(LogError, OSError):  # it has just begun, or was renamed
+                log = read_log(path, ["tuning", "cycle", "max_linear_jerk"])
+                chosen = log["tuning"] == tuning
+                cycles, jerks = log["cycle"][chosen], log["max_linear_jerk"][chosen]
+                found += zip(cycles.tolist(), jerks.tolist(), strict=True)
+        return sorted(found)
 
     def test_the_next_file_of_the_log_begins_with_the_values_in_force(self) -> None:
         self.accept("{max_linear_jerk: 9.5, feed_forward: {mass: 13.5}}")

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """teleop.py in a pseudo-terminal, beside a running robot: keys move it, and every end of the keys stops it."""
 
-import csv
 import math
 import signal
 import statistics
@@ -9,10 +8,12 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 import roslib.packages
 import rospy
 import rostest
 from pseudo_terminal import PseudoTerminal
+from robot_control.common.run_log import read_log
 from robot_control.teleop.operator import RESET_PAUSE
 from std_msgs.msg import Empty
 from system_support import MONITOR, Program, RobotTestCase, nightly, wait_for
@@ -167,9 +168,9 @@ class TeleopTest(RobotTestCase):
     @nightly
     def test_from_a_key_to_the_wheels_torque(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
-            telemetry = Program("telemetry", f"_directory:={folder}")
+            telemetry = Program("telemetry", f"_directory:={folder}", "_record:=always")
             try:
-                wait_for("the log", lambda: any(Path(folder).rglob("run.csv")))
+                wait_for("the log", lambda: any(Path(folder).rglob("run.bag")))
                 typed: list[int] = []
                 end = time.monotonic() + 90.0
                 while len(typed) < PRESSES:
@@ -181,21 +182,10 @@ class TeleopTest(RobotTestCase):
                         typed.append(at)
             finally:
                 telemetry.end()
-            log = next(Path(folder).rglob("run.csv"))
-            with log.open() as file:
-                rows = [
-                    (
-                        float(row["stamp_ns"]),
-                        float(row["left_wheel_joint_effort_command"]),
-                        float(row["requested_linear"]),
-                    )
-                    for row in csv.DictReader(file)
-                    if row["stamp_ns"] and row["left_wheel_joint_effort_command"] and row["requested_linear"]
-                ]
-        delays = [
-            next(stamp for stamp, effort, requested in rows if stamp > at and requested > 0 and abs(effort) > 0.01) - at
-            for at in typed
-        ]
+            log = read_log(next(Path(folder).rglob("run.bag")))
+        torque = (log["requested_linear"] > 0) & (np.abs(log["left_wheel_joint_effort_command"]) > 0.01)
+        stamps = log["stamp_ns"][torque]
+        delays = [stamps[stamps > at][0] - at for at in typed]
         median = 1e-6 * statistics.median(delays)
         print(f"key to wheel torque: median {median:.1f} ms, worst {1e-6 * max(delays):.1f} ms of {len(delays)}")
         self.assertLess(median, 1000 * LATENCY)

@@ -4,6 +4,7 @@ import sys
 import time
 
 import pytest
+from robot_control import ClosedLoop
 from robot_control.demo import main as demo
 from robot_control.demo.arguments import parse
 
@@ -63,12 +64,16 @@ def test_what_was_started_is_ended_after_an_error(tmp_path):
 
 
 def test_the_last_complete_row_of_a_growing_file_is_found(tmp_path):
-    log = tmp_path / "run.csv"
+    log = tmp_path / "run.bag"
     assert demo._last_row(log) is None
-    log.write_text("run,cycle\n")
+    loop = ClosedLoop()
+    loop.log_into(tmp_path)
     assert demo._last_row(log) is None
-    log.write_text("run,cycle\n0,1\n0,2\n0,")
-    assert demo._last_row(log) == {"run": "0", "cycle": "2"}
+    loop.run(2.5, (0.5, 0.2))
+    assert 1990 <= demo._last_row(log).cycle <= 2010, "whole seconds are in the file"
+    assert demo._commanded(demo._last_row(log))
+    loop.end_log()
+    assert demo._last_row(log).cycle == 2499
 
 
 @pytest.mark.parametrize("seconds", ["0", "-3", "1.9", "nan", "inf", "ten"])

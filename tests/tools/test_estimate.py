@@ -14,6 +14,7 @@ from robot_control import ClosedLoop, Estimator
 from robot_control.estimate.main import main
 from robot_control.estimate.samples import Stream, merged
 from robot_control.estimate.wheels import wheel_angles
+from robot_control.installed_files import share_file
 
 SCRIPT = Path(__file__).parents[2] / "scripts/estimate.py"
 ROBOT = [f"--wheel-radius={RADIUS}", f"--wheel-base={WHEEL_BASE}", f"--imu-position={','.join(map(str, IMU))}"]
@@ -180,24 +181,6 @@ def test_rate_thins_what_is_written_and_keeps_the_last_row(run, columns):
     assert np.array_equal(thin["x"], everything["x"][rows])
 
 
-def write_log(path, log, run_id):
-    with Path(path).open("a") as file:
-        if file.tell() == 0:
-            file.write(",".join(["run", *[name for name in log if name != "run"]]) + "\n")
-        cells = [values.tolist() for name, values in log.items() if name != "run"]
-        file.writelines(",".join([str(run_id), *map(repr, row)]) + "\n" for row in zip(*cells, strict=True))
-
-
-def test_a_log_of_the_node_is_estimated_again_bit_for_bit(run):
-    log = ClosedLoop(seed=2).run(4.0, lambda t: (0.4, 0.3 if t > 1 else 0.0))
-    write_log("run.csv", log, 17)
-    _, message = run("run.csv", "--csv", "out.csv")
-    assert message == ""
-    out = read_csv("out.csv")
-    for name in ("x", "y", "yaw", "flags", "distance", "x_variance", "yaw_variance"):
-        assert np.array_equal(out[name], log[f"estimate_{name}"]), name
-
-
 def test_a_bag_of_the_node_is_estimated_again_bit_for_bit(run):
     loop = ClosedLoop(seed=2)
     loop.log_into(".")
@@ -212,21 +195,27 @@ def test_a_bag_of_the_node_is_estimated_again_bit_for_bit(run):
 
 def test_of_several_runs_in_a_log_the_last_one_counts(run):
     loop = ClosedLoop()
-    write_log("run.csv", loop.run(1.0, (0.0, 0.0)), 9)
+    loop.log_into(".")
+    loop.run(1.0, (0.0, 0.0))
     loop.reset()
-    write_log("run.csv", loop.run(2.0, (0.4, 0.3)), 8)
-    report, message = run("run.csv")
+    loop.run(2.0, (0.4, 0.3))
+    loop.end_log()
+    report, message = run("run.bag")
     assert message == ""
     assert "2 runs in the file; this is the last one" in report
     assert "2000 rows" in report
 
 
 def test_a_log_of_another_robot_is_refused_with_its_joints(run):
-    write_log("run.csv", ClosedLoop().run(0.1), 1)
-    text = Path("run.csv").read_text().replace("left_wheel_joint_position", "port_position")
-    Path("run.csv").write_text(text)
-    _, message = run("run.csv")
-    assert "no column left_wheel_joint_position; it has port_position, right_wheel_joint_position" in message
+    Path("other.urdf").write_text(
+        Path(share_file("urdf/diffbot.urdf")).read_text().replace("left_wheel_joint", "port_joint")
+    )
+    loop = ClosedLoop(urdf="other.urdf")
+    loop.log_into(".")
+    loop.run(0.1)
+    loop.end_log()
+    _, message = run("run.bag")
+    assert "no column left_wheel_joint_position; it has port_joint_position, right_wheel_joint_position" in message
 
 
 def spoil(line, old, new):

@@ -1,6 +1,8 @@
 """export.py: one log in other formats."""
 
+import csv
 import importlib
+import math
 import os
 
 import numpy as np
@@ -29,12 +31,36 @@ def run_bag(tmp_path_factory):
     return folder / "run.bag"
 
 
+def table_of(path):
+    """Names and rows of a CSV, as texts."""
+    with path.open(newline="") as file:
+        names, *rows = csv.reader(file)
+    return names, rows
+
+
 def test_a_csv_reads_as_the_bag_does(run_bag, tmp_path):
     main([str(run_bag), "--csv", str(tmp_path / "run.csv")])
-    bag, table = read_log(run_bag), read_log(tmp_path / "run.csv")
-    assert list(table) == list(bag)
-    for name, values in bag.items():
-        np.testing.assert_array_equal(table[name], values, err_msg=name)
+    bag = read_log(run_bag)
+    names, rows = table_of(tmp_path / "run.csv")
+    assert names == list(bag)
+    for name, texts in zip(names, zip(*rows, strict=True), strict=True):
+        numbers = [float(text) if text else math.nan for text in texts]
+        np.testing.assert_array_equal(numbers, bag[name], err_msg=name)
+    assert rows[5][names.index("cycle")] == "5", "an integer has no decimal point"
+    assert rows[5][names.index("speed_limit")] == "", "there is none"
+
+
+def test_a_csv_holds_all_runs_one_after_the_other(tmp_path):
+    loop = ClosedLoop()
+    loop.log_into(tmp_path)
+    loop.run(0.2)
+    loop.reset()
+    loop.run(17.0)  # more rows than are written at once
+    loop.end_log()
+    main([str(tmp_path / "run.bag"), "--csv", str(tmp_path / "run.csv")])
+    names, rows = table_of(tmp_path / "run.csv")
+    expected = [("0", str(k)) for k in range(200)] + [("1", str(k)) for k in range(17000)]
+    assert [(row[names.index("run")], row[names.index("cycle")]) for row in rows] == expected
 
 
 def test_without_an_output_nothing_is_done_silently(run_bag, capsys):

@@ -118,7 +118,7 @@ def telemetry_of(launch, *arguments):
 @pytest.mark.parametrize("launch", ["sim.launch", "backend.launch"])
 def test_on_the_wall_clock_a_black_box_is_written_and_nothing_else(launch):
     values = telemetry_of(launch)
-    assert (values["csv"], values["record"]) == (False, "request")
+    assert values["record"] == "request"
     assert "black_box" not in values, "its size is that of the YAML file"
     assert telemetry_of(launch, "black_box:=false") is None
     assert telemetry_of(launch, "clock:=lockstep") is None
@@ -126,7 +126,7 @@ def test_on_the_wall_clock_a_black_box_is_written_and_nothing_else(launch):
 
 @pytest.mark.parametrize("launch", ["sim.launch", "backend.launch"])
 def test_with_telemetry_the_yaml_file_says_what_is_written(launch):
-    assert not telemetry_of(launch, "telemetry:=true").keys() & {"csv", "record", "black_box"}
+    assert not telemetry_of(launch, "telemetry:=true").keys() & {"record", "black_box"}
     assert telemetry_of(launch, "telemetry:=true", "black_box:=false")["black_box"] == 0
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from robot_control.common.run_log import RunLog, read_run
 from robot_control.common.signal_names import mask_of
 from robot_control.report import main as program
 from robot_control.report.budgets import BudgetError, Verdict, judge, read_budgets
@@ -192,48 +193,49 @@ def test_a_wrong_budget_is_refused(tmp_path, text, said):
 
 
 @pytest.fixture
-def run_csv(tmp_path, monkeypatch, log):
-    """run.csv in the working folder, of the log as it is when this is called."""
+def written(tmp_path, monkeypatch, log):
+    """The name of a run.bag that reads as the log is when this is called."""
     monkeypatch.chdir(tmp_path)
+    runs = {}
+    monkeypatch.setattr(program, "read_run", lambda path: runs[path.name] if path.name in runs else read_run(path))
 
-    def write(name="run.csv"):
-        with Path(name).open("w") as file:
-            file.write(",".join(log) + "\n")
-            for row in np.column_stack(list(log.values())):
-                file.write(",".join("" if np.isnan(cell) else f"{cell:.9g}" for cell in row) + "\n")
+    def write(name="run.bag"):
+        Path(name).write_text("")
+        columns = {column: values.copy() for column, values in log.items()}
+        runs[name] = RunLog(columns, columns["time"], {}, 1, 0, "")
         return name
 
     return write
 
 
-def test_ci_ends_with_the_verdict(run_csv, log, capsys):
+def test_ci_ends_with_the_verdict(written, log, capsys):
     Path("budgets.yaml").write_text(yaml.safe_dump({"gate_brakes": {"most": 0}, "distance": {"least": 3}}))
-    program.main([run_csv(), "--ci", "--budgets", "budgets.yaml"])
+    program.main([written(), "--ci", "--budgets", "budgets.yaml"])
     said = capsys.readouterr().out
     assert re.search(r"gate_brakes +0 +≤ 0 +ok", said)
     assert re.search(r"distance +4\S* m +≥ 3 m +ok", said)
     brake_at(log, 3000)
     with pytest.raises(SystemExit, match="1 figures break their budget: gate_brakes"):
-        program.main([run_csv(), "--ci", "--budgets", "budgets.yaml"])
+        program.main([written(), "--ci", "--budgets", "budgets.yaml"])
     assert not list(Path().glob("*.html"))
 
 
-def test_a_ci_that_judges_nothing_is_refused(run_csv, log, tmp_path):
+def test_a_ci_that_judges_nothing_is_refused(written, log, tmp_path):
     budgets = tmp_path / "budgets.yaml"
     for name in [name for name in log if name.startswith("truth")]:
         del log[name]
     for text, said in (("", "holds no budgets"), ("position_error: {most: 0.02}", "nothing was judged")):
         budgets.write_text(text)
         with pytest.raises(SystemExit, match=said):
-            program.main([run_csv(), "--ci", "--budgets", str(budgets)])
+            program.main([written(), "--ci", "--budgets", str(budgets)])
 
 
-def test_what_cannot_be_read_is_refused_in_one_message(run_csv):
+def test_what_cannot_be_read_is_refused_in_one_message(written):
     Path("text.csv").write_text("time,left\n1,2\n")
     for arguments, said in (
-        (["nowhere.csv", "--ci"], "nowhere.csv"),
-        (["text.csv", "--ci"], "no columns `run` and `cycle`"),
-        ([run_csv(), "--ci", "--budgets", "absent.yaml"], "absent.yaml"),
+        (["nowhere.bag", "--ci"], "nowhere.bag"),
+        (["text.csv", "--ci"], "is no run.bag"),
+        ([written(), "--ci", "--budgets", "absent.yaml"], "absent.yaml"),
     ):
         with pytest.raises(SystemExit, match=f"^report.py: .*{said}"):
             program.main(arguments)
@@ -253,10 +255,10 @@ def written_page(arguments):
     return Path("page.html").read_text()
 
 
-def test_the_page_needs_no_network(run_csv, log):
+def test_the_page_needs_no_network(written, log):
     log["supervisor_state"][2000:5000] = 4
     log["permit_causes"][2000:5000] = E_STOP_SERVICE
-    text = written_page([run_csv()])
+    text = written_page([written()])
     for section in ("Verdict", "Incidents", "Path", "States and reasons", "Speeds", "Wheels", "Latency"):
         assert f"<h2>{section}</h2>" in text
     assert "e_stop_service" in text
@@ -264,19 +266,19 @@ def test_the_page_needs_no_network(run_csv, log):
     assert len(text) < 4_000_000
 
 
-def test_names_in_a_log_are_no_markup(run_csv, log):
+def test_names_in_a_log_are_no_markup(written, log):
     log[f"{HOSTILE}_effort"] = log["left_wheel_joint_effort"]
-    text = written_page([run_csv()])
+    text = written_page([written()])
     assert "<script>alert(1)" not in text
     assert text.count("</script>") == text.count("<script")
 
 
-def test_two_logs_stand_beside_each_other(run_csv, log):
-    first = run_csv("a.csv")
+def test_two_logs_stand_beside_each_other(written, log):
+    first = written("a.bag")
     log["largest"] = log["cycle"]
     log["left_wheel_joint_effort"][100] = 9.0
     brake_at(log, 3000)
-    text = written_page(["--compare", first, run_csv("b.csv")])
+    text = written_page(["--compare", first, written("b.bag")])
     assert "<h1>a against b</h1>" in text
     assert re.search(r"largest torque</td><td class=\"n\">0\.3 N·m</td><td class=\"n\">9 N·m</td>", text)
     assert re.search(r"<h3>a</h3><p class=\"how\">None", text)
@@ -284,21 +286,21 @@ def test_two_logs_stand_beside_each_other(run_csv, log):
     assert re.search(r"gate brakes</td><td class=\"n\">0</td><td class=\"n bad\">1</td>", text)
 
 
-def test_a_log_without_a_truth_or_a_clock_has_a_page(run_csv, log):
+def test_a_log_without_a_truth_or_a_clock_has_a_page(written, log):
     for name in [name for name in log if name.startswith("truth") or name.endswith("_ns")]:
         del log[name]
-    text = written_page([run_csv()])
+    text = written_page([written()])
     assert "<h2>Latency</h2>" not in text
     assert "<h2>Speeds</h2>" in text
 
 
-def test_chromium_opens_the_page_without_a_complaint(run_csv, log):
+def test_chromium_opens_the_page_without_a_complaint(written, log):
     chromium = shutil.which("chromium")
     if chromium is None and not MUST_RUN:
         pytest.skip("Chromium, optional, is not installed: scripts/setup --browser")
     log["supervisor_state"][2000:5000] = 4
     log["permit_causes"][2000:5000] = E_STOP_SERVICE
-    written_page([run_csv()])
+    written_page([written()])
     done = subprocess.run(
         [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--window-size=1280,4000",
          "--virtual-time-budget=10000", "--screenshot=page.png", f"file://{Path('page.html').resolve()}"],
@@ -336,11 +338,11 @@ def test_a_bag_is_judged_as_a_table_is(run_bag, capsys):
     assert re.search(r"sensors_to_command_p99 +– +≤ 500 µs +not in this log", said)
 
 
-def test_a_log_of_one_cycle_has_nothing_to_draw(run_csv, tmp_path):
-    one = tmp_path / "one.csv"
-    one.write_text("".join(Path(run_csv()).read_text().splitlines(keepends=True)[:2]))
+def test_a_log_of_one_cycle_has_nothing_to_draw(written, log):
+    for name in log:
+        log[name] = log[name][:1]
     with pytest.raises(SystemExit, match="one: there are no two cycles with a time"):
-        program.main([str(one)])
+        program.main([written("one.bag")])
 
 
 def test_of_several_runs_the_last_one_is_judged_and_that_is_said(tmp_path, monkeypatch, capsys):

@@ -8,60 +8,28 @@ from robot_control.installed_files import share_file
 from std_msgs.msg import String
 
 
-def write(tmp_path, text):
-    path = tmp_path / "run.csv"
-    path.write_text(text)
-    return path
-
-
-def test_columns_come_back_by_name(tmp_path):
-    log = read_log(write(tmp_path, "run,cycle,truth_x\n0,0,0.5\n0,1,-1e-3\n"))
-    assert log["cycle"].tolist() == [0, 1]
-    assert log["truth_x"].tolist() == [0.5, -0.001]
-
-
-def test_an_empty_cell_is_nan(tmp_path):
-    assert np.isnan(read_log(write(tmp_path, "run,cycle,truth_x\n0,0,\n"))["truth_x"][0])
-
-
-def test_a_last_line_cut_short_is_left_out(tmp_path):
-    assert read_log(write(tmp_path, "run,cycle,truth_x\n0,0,1\n0,1"))["cycle"].tolist() == [0]
-
-
-def test_zeros_behind_the_last_line_are_left_out(tmp_path):
-    text = "run,cycle,truth_x\n0,0,1\n0,1,2\n" + "\0" * 4096
-    assert read_log(write(tmp_path, text))["cycle"].tolist() == [0, 1]
-
-
-def test_of_several_runs_the_last_is_read(tmp_path):
-    assert read_log(write(tmp_path, "run,cycle\n0,0\n0,1\n1,0\n"))["cycle"].tolist() == [0]
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "no columns"),
-        ("a,b\n1,2\n", "no columns"),
-        ("run,cycle\n", "no rows"),
-        ("run,cycle,truth_x\n0,0,1\n0,1\n0,2,1\n", "line 3: it has not the 3 cells of the header"),
-        ("run,cycle\n0,0\n,1\n", "a row has no finite number in its column run"),
-        ("run,cycle\n0,0\n0,inf\n", "a row has no finite number in its column cycle"),
-        ("\0" * (1 << 21), "no columns"),
-        ("a" * (1 << 21), "it has a line of 1048576 characters"),
+        ("", "is no run.bag"),
+        ("run,cycle\n0,0\n", "is no run.bag .a run.csv is a table that export.py makes"),
         ("RCBLACK2", "is a black box: blackbox.py makes a run.bag of it"),
     ],
-    ids=["nothing", "other", "header", "short", "no run", "no cycle", "zeros", "endless", "black box"],
+    ids=["nothing", "table", "black box"],
 )
 def test_what_is_no_log_is_refused(tmp_path, text, message):
+    path = tmp_path / "run.csv"
+    path.write_text(text)
     with pytest.raises(LogError, match=message):
-        read_log(write(tmp_path, text))
+        read_log(path)
 
 
-def test_a_column_that_is_not_there_is_named_with_the_file(tmp_path):
-    log = read_log(write(tmp_path, "run,cycle\n0,0\n"))
-    assert "truth_x" not in log
-    with pytest.raises(LogError, match=r"run\.csv: no column truth_x, which is needed here"):
-        log["truth_x"]
+def test_a_column_that_is_not_there_is_named_with_the_file(bag_and_log):
+    path, _ = bag_and_log
+    log = read_log(path)
+    assert "left_wing_effort" not in log
+    with pytest.raises(LogError, match=r"run\.bag: no column left_wing_effort, which is needed here"):
+        log["left_wing_effort"]
 
 
 def test_joints_are_found_by_their_effort():
@@ -90,7 +58,7 @@ def bag_and_log(tmp_path_factory):
 def test_a_bag_gives_the_columns_of_the_table(bag_and_log):
     path, log = bag_and_log
     read = read_log(path)
-    assert list(read)[: len(log)] == list(log)  # those of its timing follow
+    assert [name for name in read if name in log] == list(log)  # those of timing stand between
     for name, values in log.items():
         # Outputs are recorded as float32, of relative error 2^-24; angles are computed of four of them.
         np.testing.assert_allclose(read[name], values, rtol=3e-7, atol=3e-7, err_msg=name)
@@ -117,7 +85,6 @@ def test_a_bag_says_of_which_robot_and_how_it_was_made(bag_and_log):
     assert run.header["period"] == 0.001
     assert "max_linear_speed" in run.header["parameters"]
     assert (run.runs, run.lost, run.cut) == (1, 0, "")
-    assert run.ros_time is not None
     assert np.all(np.diff(run.ros_time) > 0)
 
 

@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Self
 
 LARGEST_TABLE = 16 << 30
-"""bytes of a log, a CSV or a bag; a run.csv grows by 6 GB in an hour"""
+"""bytes of a log, a CSV or a bag"""
 LARGEST_ECHO = 200
 """characters of any one input in a message"""
 LARGEST_MESSAGE = 1500

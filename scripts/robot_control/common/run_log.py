@@ -1,30 +1,27 @@
-"""A run's log as arrays: reads the run.bag and run.csv that the node `telemetry` writes."""
+"""A run's log as arrays: reads the run.bag that the node `telemetry` writes."""
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robot_control._robot_control import BagError, TraceError, read_run_bag, read_run_header
-from robot_control.common.files import LARGEST_TABLE, check_input, printable, utf8
+from robot_control.common.files import LARGEST_TABLE, check_input, utf8
 
 BAG_MAGIC = b"#ROSBAG"
 BLACK_BOX_MAGIC = b"RCBLACK"
-LONGEST_LINE = 1 << 20
-"""characters of a run.csv"""
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 Log = Mapping[str, FloatArray]
-"""Column name → values, shape (rows,), a row per cycle; NaN where a node published nothing. The columns, with
-their units, stand in src/telemetry/columns.cpp; the same log comes out of `ClosedLoop.run`."""
+"""Column name → values, shape (rows,), a row per cycle; NaN where a node published nothing. msg/Trace.msg names the
+columns and their units; `ClosedLoop.run` gives the same columns."""
 
 
 class LogError(ValueError):
@@ -48,15 +45,15 @@ class RunLog:
 
     columns: dict[str, FloatArray]
     """Of the last run; as `Log`."""
-    ros_time: FloatArray | None
-    """s, of each row; None: a CSV, which does not hold it."""
+    ros_time: FloatArray
+    """s, of each row"""
     header: Mapping[str, Any]
     """Of run.bag: robot, joints, wheels, period, clock, record, part, parameters, urdf, scene, calibration, version,
-    build, host, kernel, processor, libraries, missing, as msg/TraceHeader.msg says; empty of a CSV."""
+    build, host, kernel, processor, libraries, missing, as msg/TraceHeader.msg says."""
     runs: int
     """In the file."""
     lost: int
-    """Rows that telemetry counted as lost before the last one in the file; 0 of a CSV, which does not hold it."""
+    """Rows that telemetry counted as lost before the last one in the file."""
     cut: str
     """Which part of a file that was not completed could be read; empty: it is whole."""
 
@@ -96,19 +93,17 @@ def is_run_log(path: Path) -> bool:
 
 
 def read_log(path: Path, columns: Sequence[str] = ()) -> dict[str, FloatArray]:
-    """All rows of the last run in the file, run.bag or run.csv; `columns`: only these, where they are there.
+    """All rows of the last run in a run.bag; `columns`: only these, where they are there.
 
-    A last line that was cut short, because its writer was killed, is left out.
+    A last chunk that was cut short, because its writer was killed, is left out.
     """
     return read_run(path, columns).columns
 
 
 def read_run(path: Path, columns: Sequence[str] = ()) -> RunLog:
     """As `read_log`, with what stands around the rows."""
-    return _read_bag(path, columns) if is_bag(path) else _read_csv(path, columns)
-
-
-def _read_bag(path: Path, columns: Sequence[str]) -> RunLog:
+    if not is_bag(path):
+        raise LogError(f"{path} is no run.bag (a run.csv is a table that export.py makes of one, for other programs)")
     try:
         read = read_run_bag(utf8(path), list(columns))
     except (BagError, TraceError, RuntimeError) as error:
@@ -118,51 +113,6 @@ def _read_bag(path: Path, columns: Sequence[str]) -> RunLog:
     if not read["runs"]:
         raise LogError(f"{path}: no rows" + (f"; {read['cut']}" if read["cut"] else ""))
     return RunLog(table, read["ros_time"], read["header"], read["runs"], read["lost"], read["cut"])
-
-
-def _read_csv(path: Path, columns: Sequence[str]) -> RunLog:
-    with path.open(newline="", errors="replace") as file:
-        try:
-            lines = csv.reader(_lines_of(file))
-            header = next(lines, [])
-            rows = []
-            short = 0
-            for row in lines:
-                if short:
-                    raise LogError(f"{path}, line {short}: it has not the {len(header)} cells of the header")
-                if len(row) == len(header):
-                    rows.append(row)
-                elif row:
-                    short = lines.line_num  # the last line may be cut short
-        except csv.Error as error:
-            raise LogError(f"{path}: is no CSV: {error}") from None
-    if "run" not in header or "cycle" not in header:
-        raise LogError(f"{path}: no columns `run` and `cycle`; its header is {printable(str(header[:5]))}")
-    if not rows:
-        raise LogError(f"{path}: no rows")
-    try:
-        table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows])
-    except ValueError as error:
-        raise LogError(f"{path}: {error}") from None
-    for name in ("run", "cycle"):
-        if not np.isfinite(table[:, header.index(name)]).all():
-            raise LogError(f"{path}: a row has no finite number in its column {name}")
-    run = table[:, header.index("run")]
-    table = table[run == run.max()]
-    wanted = {name: table[:, i] for i, name in enumerate(header) if not columns or name in columns}
-    return RunLog(Columns(path, wanted), None, {}, len(np.unique(run)), 0, "")
-
-
-def _lines_of(file: TextIO) -> Iterator[str]:
-    """Up to a line with NUL: a disk that lost power leaves such.
-
-    Raises:
-        csv.Error: a line is longer than any of a log.
-    """
-    while (line := file.readline(LONGEST_LINE)) and "\0" not in line:
-        if len(line) == LONGEST_LINE:
-            raise csv.Error(f"it has a line of {LONGEST_LINE} characters")
-        yield line
 
 
 def joint_names(log: Log) -> list[str]:

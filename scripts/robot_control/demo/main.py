@@ -15,14 +15,17 @@ from pathlib import Path
 from types import FrameType
 from typing import IO
 
+from robot_control._robot_control import BagError, BagReader
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import printable
+from robot_control.common.files import printable, utf8
 from robot_control.common.program import run
 from robot_control.common.run_log import LogError, read_log
 from robot_control.demo.arguments import parse
 from robot_control.demo.loop_timing import processor_time, stolen_share
 from robot_control.demo.run_picture import draw_run
 from robot_control.demo.run_summary import summarize, to_json, to_table
+from robot_control.export.csv_table import write_csv
+from robot_control.msg import Trace
 
 LINEAR, ANGULAR = 0.5, 0.2
 """m/s, rad/s: what send_cmd.py sends by default; the source article's command."""
@@ -30,13 +33,17 @@ START_LIMIT = 60.0
 """s for master, nodes and first rows, and again for the sender; 3 s and 1 s on an idle machine."""
 REST_TIME = 2.0
 """s of the robot's clock before it drives: at rest it learns the bias of its gyro, to 0.35 mrad/s in that time."""
+PERIOD = 1e-3
+"""s, of the package's parameters"""
 RAMP_TIME = 1.5
 """s between the sender's zero and the end of the log: 0.5 s of ramp at 1 m/s², tripled."""
 END_LIMIT = 20.0
 """s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
 BUS = f"demo_{os.getpid()}"
 """Of this demo alone. It goes with it: an object of 12 MB that outlives its nodes would fill a small /dev/shm."""
-OUTPUTS = ("run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log")
+OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log")
+EVERY_CYCLE = "telemetry: {record: always}\n"
+"""parameters laid over the package's"""
 
 
 class DemoError(RuntimeError):
@@ -95,14 +102,15 @@ def run_demo(seconds: float, out: Path) -> int:
 
     _print_refusals((out / "launch.log").read_text(errors="replace"))
     try:
-        log = read_log(out / "run.csv")
+        log = read_log(out / "run.bag")
+        write_csv(out / "run.bag", out / "run.csv")
     except (OSError, LogError) as error:
         raise DemoError(f"no log of the run: {in_words(error)}; see {out / 'launch.log'}") from error
     summary = summarize(log, LINEAR, ANGULAR, driven, stolen)
     (out / "summary.json").write_text(to_json(summary))
     verdict = "tracked" if summary.passed else "NOT TRACKED"
     draw_run(log, summary, f"{LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png")
-    print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.csv, run.png")
+    print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
     return 0 if summary.passed else 1
 
 
@@ -116,30 +124,33 @@ def refusals(launch_log: str) -> list[str]:
 
 def _drive(seconds: float, out: Path) -> float:
     """Starts everything, drives, ends everything. Returns the seconds from the command's arrival to its end."""
-    log = out / "run.csv"
+    log = out / "run.bag"
+    parameters = out / "ros" / "every_cycle.yaml"
+    parameters.parent.mkdir()
+    parameters.write_text(EVERY_CYCLE)
     with _ended_at_the_end() as children:
         print("starting roscore, mujoco_plant, state_estimator, diff_drive_controller, safety_monitor, telemetry")
         port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
         launch = Child(
             [
                 *("roslaunch", "-p", port, "robot_control", "sim.launch"),
-                *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}"),
+                *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={parameters}"),
             ],
             out / "launch.log",
         )
         children.append(launch)
-        _wait_until(
-            lambda: float((_last_row(log) or {}).get("time", 0)) >= REST_TIME, f"rest of {REST_TIME:g} s", launch
-        )
+        _wait_until(lambda: _rested(_last_row(log)), f"rest of {REST_TIME:g} s", launch)
         print(f"sending {LINEAR} m/s and {ANGULAR} rad/s for {seconds:g} s")
         sender = Child(["rosrun", "robot_control", "send_cmd.py"], out / "send_cmd.log")
         children.append(sender)
-        _wait_until(lambda: (_last_row(log) or {}).get("requested_linear") == str(LINEAR), "command", launch, sender)
-        start = time.monotonic()
+        _wait_until(lambda: _commanded(_last_row(log)), "command", launch, sender)
+        start, due = time.monotonic(), 0.0
         while (driven := time.monotonic() - start) < seconds:
             time.sleep(max(0.0, min(1.0, seconds - driven)))
             _see_alive(launch, sender)
-            print(_progress(log, time.monotonic() - start))
+            if driven >= due:  # the longer the log, the longer it takes to read it
+                print(_progress(log, time.monotonic() - start))
+                due = 1.1 * driven
         print("stopping")
         if not sender.end():
             print(f"send_cmd.py had to be killed; see {sender.output}")
@@ -182,25 +193,27 @@ def _progress(log: Path, driven: float) -> str:
     row = _last_row(log)
     if row is None:
         return f"{driven:5.1f} s"
-    values = {name: float(row.get(name) or "nan") for name in ("truth_x", "truth_y", "truth_linear", "truth_angular")}
-    return (
-        f"{driven:5.1f} s  true: {values['truth_linear']:6.3f} m/s {values['truth_angular']:6.3f} rad/s"
-        f" at ({values['truth_x']:.2f}, {values['truth_y']:.2f}) m"
-    )
+    (x, y, _), speed, turn = row.truth_position, row.truth_linear[0], row.truth_angular[2]
+    return f"{driven:5.1f} s  true: {speed:6.3f} m/s {turn:6.3f} rad/s at ({x:.2f}, {y:.2f}) m"
 
 
-def _last_row(log: Path) -> dict[str, str] | None:
-    """The last complete row of a CSV that is being written."""
+def _last_row(log: Path) -> Trace | None:
+    """The last complete row of a run.bag that is being written, a second old at most."""
     try:
-        with log.open("rb") as file:
-            header = file.readline().decode().rstrip("\n").split(",")
-            begin = file.tell()
-            file.seek(max(begin, log.stat().st_size - 8192))
-            lines = file.read().decode().split("\n")[:-1]
-    except OSError:
+        bag = BagReader(utf8(log))
+    except (OSError, BagError, RuntimeError):  # it has just begun
         return None
-    cells = lines[-1].split(",") if lines else []
-    return dict(zip(header, cells, strict=True)) if len(cells) == len(header) > 1 else None
+    rows = {number for number, connection in bag.connections.items() if connection["topic"] == b"trace"}
+    messages = bag.messages(bag.chunks - 1, rows) if bag.chunks > 0 else []
+    return Trace().deserialize(messages[-1][2]) if messages else None
+
+
+def _rested(row: Trace | None) -> bool:
+    return row is not None and row.cycle * PERIOD >= REST_TIME
+
+
+def _commanded(row: Trace | None) -> bool:
+    return row is not None and row.requested_linear[0] == LINEAR
 
 
 def _print_refusals(launch_log: str) -> None:

@@ -1,4 +1,4 @@
-"""Samples out of a CSV file: any, by the names of its columns, or the run.csv of this package's telemetry."""
+"""Samples out of a CSV file, by the names of its columns."""
 
 from __future__ import annotations
 
@@ -13,13 +13,11 @@ from typing import TextIO
 import numpy as np
 
 from robot_control.common.files import LARGEST_TABLE, check_input, listed
-from robot_control.common.run_log import notes_on_runs
-from robot_control.estimate.log_input import log_columns
-from robot_control.estimate.samples import ACCEL, GYRO, FloatArray, InputError, IntArray, Robot, Samples
+from robot_control.estimate.samples import ACCEL, GYRO, FloatArray, InputError, IntArray, Samples
 
 NAMES = ("time", "left", "right", *GYRO, *ACCEL)
 LONGEST_LINE = 100_000
-"""characters; below the field limit of Python's csv, and a row of a log has some 3000"""
+"""characters; below the field limit of Python's csv, and a row of run.csv has some 3000"""
 TIME_UNITS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}  # in ns
 GYRO_UNITS = {"rad/s": 1.0, "deg/s": math.pi / 180}
 ACCEL_UNITS = {"m/s2": 1.0, "g": 9.80665}
@@ -36,7 +34,7 @@ class CsvForm:
     accel_unit: str = "m/s2"
 
 
-def read_csv(path: Path, robot: Robot, form: CsvForm) -> Samples:
+def read_csv(path: Path, form: CsvForm) -> Samples:
     """Reads a file with one header line.
 
     Raises:
@@ -47,8 +45,6 @@ def read_csv(path: Path, robot: Robot, form: CsvForm) -> Samples:
     check_input(path, LARGEST_TABLE)
     with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
         table = _Table(path, _lines(path, file))
-        if {"run", "cycle", "time"} <= set(table.header) and not form.columns:
-            return _read_log(table, robot)
         return _read_table(table, form)
 
 
@@ -66,7 +62,7 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
 
 def _read_table(table: _Table, form: CsvForm) -> Samples:
     columns = _columns_of(table, form)
-    time_ns, values, _ = table.read(columns["time"], form.time_unit, [columns[name] for name in columns])
+    time_ns, values = table.read(columns["time"], form.time_unit, [columns[name] for name in columns])
     cells = dict(zip(columns, values.T, strict=True))
     to_radians = 2 * math.pi / form.counts_per_turn
     accel = None
@@ -106,14 +102,6 @@ def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
     return found
 
 
-def _read_log(table: _Table, robot: Robot) -> Samples:
-    """The last run in a log of this package's telemetry, or of ClosedLoop."""
-    wanted = log_columns(table.path, table.header, robot)
-    time_ns, values, runs = table.read("time", "s", wanted.all, run="run")
-    table.notes += notes_on_runs(runs)
-    return wanted.samples(time_ns, values, table.notes)
-
-
 class _Table:
     """The rows of a file, from the one below its header on."""
 
@@ -131,21 +119,13 @@ class _Table:
             raise InputError(f"{path}: two columns are named {listed(twice)}")
         self._file = file
 
-    def read(self, time: str, unit: str, names: list[str], run: str | None = None) -> tuple[IntArray, FloatArray, int]:
-        """Time in ns, the named columns, and how many values `run` had: only the rows of its last one come out."""
+    def read(self, time: str, unit: str, names: list[str]) -> tuple[IntArray, FloatArray]:
+        """Time in ns, and the named columns."""
         at = self.header.index(time)
         cells = [self.header.index(name) for name in names]
-        of_run = None if run is None else self.header.index(run)
         stamps: list[int] = []
         rows: list[list[float]] = []
-        runs = 0
-        present: str | None = None
         for line, row in self._rows():
-            if of_run is not None and row[of_run] != present:
-                present = row[of_run]
-                runs += 1
-                stamps.clear()
-                rows.clear()
             stamp = self._stamp(line, row[at], TIME_UNITS[unit])
             if stamps and stamp <= stamps[-1]:
                 raise InputError(
@@ -156,7 +136,7 @@ class _Table:
             rows.append([self._number(line, name, row[cell]) for name, cell in zip(names, cells, strict=True)])
         if not rows:
             raise InputError(f"{self.path}: no rows below the header")
-        return np.array(stamps, dtype=np.int64), np.array(rows, dtype=np.float64), runs
+        return np.array(stamps, dtype=np.int64), np.array(rows, dtype=np.float64)
 
     def _rows(self) -> Iterator[tuple[int, list[str]]]:
         """Number and cells of each line that is not empty. A last line that was cut short is left out."""

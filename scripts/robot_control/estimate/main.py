@@ -43,12 +43,12 @@ IMU may have rates of their own. Its columns, under these names or by --columns:
   left, right               rad, angles of the wheels, as their joints report them
   gyro_x, gyro_y, gyro_z    rad/s, in the IMU's own axes; gyro_z alone will do; may be absent
   accel_x, accel_y, accel_z m/s², likewise, +9.81 upwards at rest; may be absent
-A run.bag or run.csv of this package (telemetry, the demo) is known by its contents: the last run in it is estimated
+A run.bag of this package (telemetry, the demo) is known by its contents: the last run in it is estimated
 again.
 A bag is read by the stamps of its messages, needs no running ROS, and its topics are found where only one can be meant.
 
 The robot is --urdf, or --wheel-radius with --wheel-base (base_link mid-axle), or what --params says; it must be given,
-but for a run.bag or run.csv.
+but for a run.bag.
 """
 
 
@@ -217,7 +217,7 @@ def _read(options: argparse.Namespace, estimator: Estimator) -> Samples:
         options.gyro_unit or "rad/s",
         options.accel_unit or "m/s2",
     )
-    return read_csv(options.input, estimator.robot, form)
+    return read_csv(options.input, form)
 
 
 def _picture(options: argparse.Namespace, samples: Samples) -> Picture | None:

@@ -6,15 +6,16 @@ import argparse
 import sys
 from pathlib import Path
 
-from robot_control._robot_control import BagError, BagReader, TraceError, write_run_csv
+from robot_control._robot_control import BagError, BagReader, TraceError
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import NewFiles, escaped, fit_for_message, utf8
 from robot_control.common.output_files import check_outputs
 from robot_control.common.run_log import LogError, is_bag
+from robot_control.export.csv_table import write_csv
 from robot_control.export.mcap_file import McapError, write_mcap
 
 EPILOG = """
---csv     the table run.csv: a row per cycle, columns with the names of docs/log.md; outputs with the precision of
+--csv     the table run.csv: a row per cycle, columns with the names of msg/Trace.msg; outputs with the precision of
           float32
 --mcap    every message as it is, for Foxglove; of any ROS 1 bag. Needs PyPI's mcap
 --topics  odom, tf, joint_states and cmd_vel, for `rosbag play --clock` and RViz, of the last run
@@ -36,7 +37,7 @@ def main(arguments: list[str] | None = None) -> None:
         cut = BagReader(utf8(options.input)).cut
         with NewFiles() as files:
             if options.csv is not None:
-                write_run_csv(utf8(options.input), utf8(files.name(options.csv)))
+                write_csv(options.input, files.name(options.csv))
             if options.mcap is not None:
                 write_mcap(options.input, files.name(options.mcap))
             if options.topics is not None:

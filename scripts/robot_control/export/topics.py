@@ -17,7 +17,7 @@ from rospy import Time
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from robot_control.common.run_log import FloatArray, LogError, RunLog, read_run
+from robot_control.common.run_log import FloatArray, RunLog, read_run
 
 ODOM_RATE = 50.0
 """Hz, odom and tf; the default of a running robot"""
@@ -27,9 +27,7 @@ JOINT_STATES_RATE = 100.0
 def write_topics(source: Path, target: Path) -> None:
     """Raises LogError, OSError."""
     run = read_run(source)
-    if run.ros_time is None:
-        raise LogError(f"{source} is no run.bag")
-    topics = Topics(run, run.ros_time)
+    topics = Topics(run)
     with rosbag.Bag(str(target), "w") as bag:
         for row in range(run.ros_time.size):
             for topic, message, stamp in topics.of_row(row):
@@ -39,8 +37,8 @@ def write_topics(source: Path, target: Path) -> None:
 class Topics:
     """Messages out of the rows of a log."""
 
-    def __init__(self, run: RunLog, ros_time: FloatArray) -> None:
-        self._columns, self._time = run.columns, ros_time
+    def __init__(self, run: RunLog) -> None:
+        self._columns, self._time = run.columns, run.ros_time
         self._joints: list[str] = list(run.header["joints"])
         self._base = root_link(run.header["urdf"])
         self._odom = odom_frame(run.header["parameters"])

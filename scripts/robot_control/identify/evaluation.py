@@ -57,7 +57,7 @@ def parse_options(arguments: list[str]) -> Options:
     parser.add_argument("--repeats", type=number_of_sends, default=2, help="times all moves (default %(default)s)")
     parser.add_argument("--mass", type=positive, help="kg of the robot as it drives, if it was weighed")
     parser.add_argument("--output", type=Path, default=Path("identified.yaml"), help="(default %(default)s)")
-    parser.add_argument("--log", type=Path, help="run.bag or run.csv to fit; nothing is driven")
+    parser.add_argument("--log", type=Path, help="run.bag to fit; nothing is driven")
     parser.add_argument("--params", type=Path, help="parameter file of the log; default: the installed one")
     parser.add_argument("--urdf", type=Path, help="robot of the log; default: that of the parameters")
     given = parser.parse_args(arguments)

@@ -97,7 +97,7 @@ class Identification:
 
 
 def identify(log: Log, base: Base) -> Identification:
-    """Fits `log` (columns of run.csv or ClosedLoop.run).
+    """Fits `log` (columns of run.bag or ClosedLoop.run).
 
     Raises:
         UnfitError: a log of another robot, of too little, of slipping, saturated or interrupted motion.

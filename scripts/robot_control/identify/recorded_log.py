@@ -23,11 +23,7 @@ START_LIMIT = 20.0
 """s until the first row is in the file; 1 s on an idle machine"""
 END_LIMIT = 10.0
 """s for an orderly end after SIGINT"""
-SETTLE = 1.0
-"""s after the last command; telemetry hands its rows on at 10 Hz"""
-
-
-BAG_SETTLE = 4.0
+SETTLE = 4.0
 """s after the last command; a chunk of run.bag is written 2 s after its begin at the latest"""
 
 
@@ -41,12 +37,12 @@ class RunningTelemetry:
 
     node: str
     path: str
-    """Of run.csv, which has every cycle, or, where there is none, of run.bag."""
+    """Of run.bag."""
     records: bool
     """run.bag holds the cycles of now."""
 
 
-class BagRecording:
+class Recording:
     """Rows of the run.bag of a telemetry from a moment on; which records all of them until they are read."""
 
     def __init__(self, path: Path, telemetry: str, *, records: bool) -> None:
@@ -67,9 +63,9 @@ class BagRecording:
         Raises:
             LogError: nothing.
         """
-        time.sleep(BAG_SETTLE)
+        time.sleep(SETTLE)
         log = read_run(self.path)
-        wanted = log.ros_time >= self._begin if log.ros_time is not None else slice(None)
+        wanted = log.ros_time >= self._begin
         rows = {name: values[wanted] for name, values in log.columns.items()}
         if not rows["cycle"].size:
             raise LogError(f"{self.path}: no rows since {self._begin:.3f}")
@@ -90,34 +86,8 @@ class BagRecording:
             raise RecordingError(f"{self._record.resolved_name}: {answer.message}")
 
 
-class Recording:
-    """Rows of a file from a moment on."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self._begin = path.stat().st_size
-
-    def read(self) -> dict[str, FloatArray]:
-        """What was written since.
-
-        Raises:
-            LogError: nothing.
-        """
-        time.sleep(SETTLE)
-        with tempfile.NamedTemporaryFile("wb", suffix=".csv") as part, self.path.open("rb") as file:
-            part.write(file.readline())
-            file.seek(max(self._begin, file.tell()))
-            if file.tell() > part.tell():
-                file.readline()  # perhaps the rest of a row
-            shutil.copyfileobj(file, part)
-            part.flush()
-            return read_log(Path(part.name))
-
-
 @contextlib.contextmanager
-def recording(
-    running: RunningTelemetry | None, config: str, going_on: Callable[[], bool]
-) -> Iterator[Recording | BagRecording]:
+def recording(running: RunningTelemetry | None, config: str, going_on: Callable[[], bool]) -> Iterator[Recording]:
     """Rows of `running`, a telemetry that runs already; None: starts one with the parameter file `config`.
 
     Raises:
@@ -127,21 +97,18 @@ def recording(
         path = Path(running.path)
         if not path.is_file():
             raise RecordingError(f"telemetry writes {path}, which is not on this machine: run identify.py there")
-        if path.suffix == ".csv":
-            yield Recording(path)
-            return
-        bag = BagRecording(path, running.node, records=running.records)
+        log = Recording(path, running.node, records=running.records)
         try:
-            yield bag
+            yield log
         finally:
-            bag.end()
+            log.end()
         return
     folder = Path(tempfile.mkdtemp(prefix="identify-"))
     with (folder / "telemetry.txt").open("wb") as output:
         process = subprocess.Popen(_command(folder, config), stdin=subprocess.DEVNULL, stdout=output, stderr=output)
         try:
             path = _first_rows(folder, process, going_on)
-            yield Recording(path)
+            yield Recording(path, rospy.resolve_name(NODE), records=True)
         finally:
             _end(process)
             with contextlib.suppress(KeyError, rospy.ROSException, OSError):  # private parameters outlive their node
@@ -152,17 +119,17 @@ def recording(
 def _command(folder: Path, config: str) -> list[str]:
     telemetry = ["rosrun", "robot_control", "telemetry", f"__name:={NODE}", f"__ns:={rospy.get_namespace()}"]
     # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
-    return ["env", "--default-signal=INT", *telemetry, f"_directory:={folder}", f"_config:={config}"]
+    return ["env", "--default-signal=INT", *telemetry, f"_directory:={folder}", f"_config:={config}", "_record:=always"]
 
 
 def _first_rows(folder: Path, process: subprocess.Popen[bytes], going_on: Callable[[], bool]) -> Path:
     deadline = time.monotonic() + START_LIMIT
     while time.monotonic() < deadline and process.poll() is None and going_on():
         # A namespace has a folder of its own in it.
-        for path in folder.rglob("run.csv"):
-            with path.open("rb") as file:
-                if file.readline() and file.readline():
-                    return path
+        for path in folder.rglob("run.bag"):
+            with contextlib.suppress(LogError):  # it has no rows yet
+                read_log(path, ["cycle"])
+                return path
         time.sleep(0.1)
     said = (folder / "telemetry.txt").read_text(errors="replace").strip().splitlines()
     raise RecordingError("telemetry gives no rows: " + (said[-1] if said else f"nothing within {START_LIMIT:g} s"))

@@ -80,7 +80,7 @@ class RunningRobot:
     def _receive_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
             values = {pair.key: pair.value for pair in status.values}
-            path = values.get("log") or values.get("bag")
+            path = values.get("bag")
             if path:
                 node = "/" + status.name.lstrip("/")
                 self.logs[node] = RunningTelemetry(node, path, values.get("recording") == "1")

@@ -1,4 +1,4 @@
-"""scripts/render: PNGs, and where ffmpeg is installed an MP4, of a run.csv."""
+"""scripts/render: PNGs, and where ffmpeg is installed an MP4, of a log."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
         description="Draws a run: the robot in its scene, a camera that follows it. Writes render_1.png, render_2.png "
         "… and, where ffmpeg is installed, render.mp4. Needs no display.",
     )
-    parser.add_argument("run", type=Path, help="run.csv of the telemetry (telemetry:=true) or of scripts/demo")
+    parser.add_argument("run", type=Path, help="run.bag of the telemetry (telemetry:=true) or of scripts/demo")
     parser.add_argument("--urdf", type=Path, help="of the run; left out: that of the parameter file")
     parser.add_argument("--params", type=Path, metavar="YAML", help="parameter file of the run")
     parser.add_argument("--scene", help="of the run, as for sim.launch: flat, slope_5deg, bumps …, or an MJCF file")

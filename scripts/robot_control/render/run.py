@@ -1,14 +1,14 @@
-"""The poses of a run.csv at the times of its pictures. Pure but for reading the file."""
+"""The poses of a log at the times of its pictures."""
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from robot_control.common.files import LARGEST_TABLE, check_input
-from robot_control.common.run_log import LogError
+import numpy as np
+
+from robot_control.common.run_log import Log, LogError, read_log
 
 FLAT = 0.01
 """rad; a robot that never tilts more stands on a plane, and what its estimator says of height and tilt is drift"""
@@ -37,40 +37,29 @@ def read_moments(path: Path, period: float) -> list[Moment]:
         LogError: it is no log, or holds no pose.
         OSError: it cannot be read.
     """
-    check_input(path, LARGEST_TABLE)
-    rows: list[dict[str, float]] = []
-    run, due = "", -math.inf
-    try:
-        with path.open(newline="", errors="replace") as file:
-            table = csv.DictReader(file)
-            names = [name for name in table.fieldnames or [] if _wanted(name)]
-            if not {"run", "time"} <= set(table.fieldnames or []):
-                raise LogError(f"{path}: no columns `run` and `time`: is it a run.csv?")
-            for row in table:
-                if row["run"] != run:
-                    run, rows, due = row["run"], [], -math.inf
-                time = _number(row["time"])
-                if time >= due:
-                    rows.append({name: _number(row[name]) for name in names})
-                    due = (time if due == -math.inf else due) + period
-    except csv.Error as error:
-        raise LogError(f"{path}: is no CSV: {error}") from None
-    pose = next((pose for pose in POSES if any(math.isfinite(row.get(f"{pose}_x", math.nan)) for row in rows)), None)
+    return moments_of(read_log(path), period)
+
+
+def moments_of(log: Log, period: float) -> list[Moment]:
+    """As `read_moments`, of a log in memory.
+
+    Raises:
+        LogError: it holds no pose.
+    """
+    pose = next((pose for pose in POSES if np.isfinite(log.get(f"{pose}_x", np.nan)).any()), None)
     if pose is None:
-        raise LogError(f"{path}: no pose, neither true nor estimated")
-    known = [row for row in rows if math.isfinite(row[f"{pose}_x"])]
-    return [_moment(row, known[0], pose, flat=_flat(known)) for row in known]
-
-
-def _wanted(name: str) -> bool:
-    return name == "time" or name.startswith(POSES) or name.endswith("_position")
-
-
-def _number(text: str | None) -> float:
-    try:
-        return float(text or "nan")
-    except ValueError:
-        return math.nan  # of a line that was cut short
+        raise LogError("no pose, neither true nor estimated, is in the log")
+    columns = {
+        name: log[name] for name in log if name == "time" or name.startswith(POSES) or name.endswith("_position")
+    }
+    rows: list[dict[str, float]] = []
+    due = -math.inf
+    for row in np.flatnonzero(np.isfinite(log[f"{pose}_x"])):
+        time = float(log["time"][row])
+        if time >= due:
+            rows.append({name: float(values[row]) for name, values in columns.items()})
+            due = (time if due == -math.inf else due) + period
+    return [_moment(row, rows[0], pose, flat=_flat(rows)) for row in rows]
 
 
 def _flat(rows: list[dict[str, float]]) -> bool:

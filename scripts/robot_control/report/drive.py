@@ -101,6 +101,5 @@ def drive_of(path: Path, run: RunLog) -> Drive:
     log: Log = run.columns
     if "command_published_ns" in log and "permit_published_ns" in log:
         log = while_all_ran(log)
-    lost = run.lost if run.header else None
     name = path.stem if path.stem != "run" else path.resolve().parent.name + "/" + path.name
-    return Drive(name, log, lost, "; ".join(run.notes))
+    return Drive(name, log, run.lost, "; ".join(run.notes))

@@ -87,7 +87,7 @@ def _write(out: Path, drives: list[Drive], judged: list[list[Judged]]) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="report.py", description=__doc__)
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument("log", nargs="?", type=Path, help="run.csv, or a bag of trace")
+    which.add_argument("log", nargs="?", type=Path, help="run.bag, or another bag of trace")
     which.add_argument("--compare", nargs=2, type=Path, metavar=("A", "B"), help="two logs beside each other")
     parser.add_argument("--out", type=Path, help="the page; default: the log's name with .html")
     parser.add_argument("--budgets", type=Path, help=f"default: {BUDGETS} of this package")

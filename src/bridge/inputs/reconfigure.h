@@ -2,7 +2,7 @@
 /// These functions show the live parameters to dynamic_reconfigure as flat names, plain numbers and ranges. They are
 /// pure.
 ///
-/// `feed_forward.mass` is named `feed_forward_mass`, as in run.csv. A value that is left out is derived, and shown as
+/// `feed_forward.mass` is named `feed_forward_mass`, as in a log. A value that is left out is derived, and shown as
 /// the derived number (that of the first wheel if wheels differ). Setting it replaces the derived number.
 
 #include <string>

@@ -55,8 +55,8 @@ class TelemetryNode final : public Node {
         process_(with_blocks_of_other_nodes(setup.parameters), setup.robot, setup.bus) {}
 
   void connect(ros::NodeHandle& /*handle*/) override {
-    for (const std::string& path : {process_.csv_path(), process_.bag_path()}) {
-      if (!path.empty()) ROS_INFO("log: %s; telemetry.quota = %g GB", absolute(path).c_str(), quota_);
+    if (const std::string& path = process_.bag_path(); !path.empty()) {
+      ROS_INFO("log: %s; telemetry.quota = %g GB", absolute(path).c_str(), quota_);
     }
     if (const std::string& path = process_.black_box_path(); !path.empty()) {
       ROS_INFO("black box: %s", absolute(path).c_str());
@@ -98,13 +98,9 @@ class TelemetryNode final : public Node {
     for (const std::string& note : process_.take_notes()) ROS_WARN("black box: %s", note.c_str());
     const TelemetryCounts counts = process_.counts();
     const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-    if (!process_.csv_path().empty()) {
-      ROS_INFO("%llu rows in %s, %llu dropped, %llu overwritten, %llu not taken by the disk",
-               number(counts.join.emitted - counts.unwritten), process_.csv_path().c_str(), number(counts.dropped),
-               number(counts.overwritten), number(counts.unwritten));
-    }
     if (!process_.bag_path().empty()) {
-      ROS_INFO("%llu rows in %s, %llu not taken by the disk", number(counts.bag_rows), process_.bag_path().c_str(),
+      ROS_INFO("%llu rows in %s, %llu dropped, %llu overwritten, %llu not taken by the disk", number(counts.bag_rows),
+               process_.bag_path().c_str(), number(counts.dropped), number(counts.overwritten),
                number(counts.bag_unwritten));
     }
   }
@@ -112,11 +108,9 @@ class TelemetryNode final : public Node {
   void diagnose(DiagnosticReport& report) override {
     const TelemetryCounts counts = process_.counts();
     const auto sum = [](const auto& nodes) { return std::accumulate(nodes.begin(), nodes.end(), std::uint64_t{0}); };
-    if (counts.dropped + counts.overwritten + counts.unwritten + counts.bag_unwritten != 0)
-      report.warn("rows were lost");
+    if (counts.dropped + counts.overwritten + counts.bag_unwritten != 0) report.warn("rows were lost");
     if (!process_.problem().empty()) report.error(process_.problem());
-    if (!process_.csv_path().empty()) report.value("log", absolute(process_.csv_path()));  // identify.py reads it
-    if (!process_.bag_path().empty()) report.value("bag", absolute(process_.bag_path()));
+    if (!process_.bag_path().empty()) report.value("bag", absolute(process_.bag_path()));  // identify.py reads it
     if (!process_.black_box_path().empty()) {
       report.value("black_box", absolute(process_.black_box_path()));
       report.value("incidents", counts.incidents);
@@ -128,7 +122,6 @@ class TelemetryNode final : public Node {
     report.value("late", sum(counts.join.late));
     report.value("dropped", counts.dropped);
     report.value("overwritten", counts.overwritten);
-    report.value("unwritten", counts.unwritten);
     report.value("bag_unwritten", counts.bag_unwritten);
   }
 

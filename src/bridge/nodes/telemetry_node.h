@@ -1,5 +1,5 @@
 #pragma once
-/// telemetry writes every cycle of the four nodes to run.bag and run.csv. Its only topic is /diagnostics, its service
+/// telemetry writes every cycle of the four nodes to run.bag. Its only topic is /diagnostics, its service
 /// ~record.
 
 #include <memory>

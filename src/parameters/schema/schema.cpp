@@ -264,7 +264,6 @@ constexpr auto kSafetyMonitor = rows(kSafetyLimits
 
 constexpr auto kTelemetry = std::to_array<Key>({
     {"directory", in<&P::telemetry, &TelemetryParameters::directory>, {}, 0, 0, kMayBeEmpty},
-    {"csv", in<&P::telemetry, &TelemetryParameters::csv>},
     {"record", in<&P::telemetry, &TelemetryParameters::record>},
     {"split_size", in<&P::telemetry, &TelemetryParameters::split_size>, "GB", 0.001, 1.0e6, kZeroIsOff},
     {"split_time", in<&P::telemetry, &TelemetryParameters::split_time>, "s", 1, 1.0e9, kZeroIsOff},

@@ -9,7 +9,7 @@ namespace robot_control {
 
 namespace {
 
-constexpr std::size_t kLargest = std::max(
+constexpr std::size_t kMaxRecord = std::max(
     {sizeof(DriverTrace), sizeof(EstimatorTrace), sizeof(ControllerTrace), sizeof(MonitorTrace), sizeof(LawSnapshot)});
 
 }  // namespace
@@ -21,7 +21,7 @@ std::string black_box_build(std::uint64_t build) {
 }
 
 BlackBox::BlackBox(const std::string& path, std::size_t bytes, std::uint64_t build, const LogHeader& header)
-    : packed_(static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(kLargest)))),
+    : packed_(static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(kMaxRecord)))),
       file_(path, bytes, black_box_build(build) + encode(header)) {}
 
 void BlackBox::add(const DriverTrace& row) noexcept {

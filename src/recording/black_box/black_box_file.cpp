@@ -33,7 +33,7 @@ BlackBoxFile::BlackBoxFile(const std::string& path, std::size_t bytes, std::stri
                    " the black box of " + std::to_string(size_ / 1'000'000) + " MB: " + std::strerror(problem) +
                    "; make room, or set telemetry.black_box to 0 or telemetry.directory");
   }
-  munlock(memory, size_);  // a process that locks its memory (rt/realtime_thread.h) shall not hold all of it
+  munlock(memory, size_);  // a process that locks its memory (rt/realtime_thread.h) must not lock the ring
   memory_ = static_cast<char*>(memory);
   Head head{.magic = {},
             .head_bytes = head_bytes_,
@@ -54,9 +54,9 @@ BlackBoxFile::~BlackBoxFile() {
 
 bool BlackBoxFile::at_its_path() const noexcept {
   struct stat own {};
-  struct stat there {};
-  return fstat(descriptor_, &own) == 0 && stat(path_.c_str(), &there) == 0 && own.st_ino == there.st_ino &&
-         own.st_dev == there.st_dev;
+  struct stat present {};
+  return fstat(descriptor_, &own) == 0 && stat(path_.c_str(), &present) == 0 && own.st_ino == present.st_ino &&
+         own.st_dev == present.st_dev;
 }
 
 void BlackBoxFile::mark_ended() noexcept {

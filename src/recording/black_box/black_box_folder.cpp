@@ -20,7 +20,7 @@ std::string prefix_of(IncidentKind kind) {
   return kind == IncidentKind::kStop ? "stop." : "crash.";
 }
 
-/// False also where it is no black box.
+/// The result is false also for a file that is no black box.
 bool ended_without_order(const std::string& path) {
   try {
     return !BlackBoxReader(path).ended();
@@ -87,7 +87,7 @@ void BlackBoxFolder::put_ring_aside() {
     throw LogError("black box " + ring() +
                    " is written by another telemetry; name another folder (telemetry.directory)");
   }
-  // Of a telemetry that was killed while it saved an incident.
+  // A telemetry that was killed while it saved an incident leaves such a folder.
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->path().extension() == kSavingSuffix) fs::remove_all(entry->path(), error);
   }

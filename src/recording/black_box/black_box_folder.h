@@ -1,13 +1,13 @@
 #pragma once
-/// The files beside a black box that is written:
+/// A black box that is written has these files beside it:
 ///
-///   ring          it
-///   ring.before   the one before, whose writer has ended orderly
-///   stop.N.bag    what it held some seconds after a latched stop
-///   crash.N.bag   what one held whose writer did not end orderly, or had no time to save a stop; until it is saved,
-///                 crash.N.ring
+///   ring          the black box
+///   ring.before   the black box before it, whose writer ended orderly
+///   stop.N.bag    its contents some seconds after a latched stop
+///   crash.N.bag   the contents of one whose writer was killed, or had no time to save a stop
+///   crash.N.ring  the same, not saved yet
 ///
-/// The higher N, the newer. Of stops and of crashes the newest `keep` are kept.
+/// A higher N is newer. The newest `keep` stops and the newest `keep` crashes are kept.
 
 #include <cstdint>
 #include <string>
@@ -21,25 +21,25 @@ namespace robot_control {
 enum class IncidentKind { kStop, kCrash };
 
 struct SavedIncident {
-  std::string bag;      ///< its path
+  std::string bag;      ///< path of the bag
   std::string missing;  ///< SavedBlackBox::missing
 };
 
 class BlackBoxFolder {
  public:
-  /// `keep` 0: incidents are not saved.
+  /// If `keep` is 0, incidents are not saved.
   BlackBoxFolder(std::string folder, std::size_t keep) : folder_(std::move(folder)), keep_(keep) {}
 
   std::string ring() const;
 
-  /// Makes the folder and gives an earlier ring another name. Throws LogError: it is in use, or cannot be renamed.
+  /// Makes the folder and renames an earlier ring. Throws LogError if that is in use or cannot be renamed.
   void put_ring_aside();
 
-  /// crash.N.ring, oldest first.
+  /// The paths of crash.N.ring, oldest first.
   std::vector<std::string> unsaved() const;
 
-  /// Writes what `ring` holds to the next bag of this kind, of a crash to that of its number; removes the oldest.
-  /// Throws LogError; then no bag is there. Throws SavingGivenUp.
+  /// Writes the contents of `ring` to the next bag of this kind; a crash keeps its number. Removes the oldest. If it
+  /// throws LogError, there is no bag. Throws SavingGivenUp.
   SavedIncident save(const std::string& ring, IncidentKind kind, std::uint64_t build, const GiveUp& give_up = {}) const;
 
  private:

@@ -27,8 +27,8 @@ BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std
     make_box();
   } catch (const LogError&) {
     if (unsaved_.empty()) throw;
-    // The ring of a telemetry that was killed may be what takes the room: saved, it is a third as large.
-    for (const std::string& ring : std::exchange(unsaved_, {})) note(save(ring, IncidentKind::kCrash, kCrashed, {}));
+    // The ring of a killed telemetry may fill the disk; the saved bag is a third as large.
+    for (const std::string& ring : std::exchange(unsaved_, {})) report(save(ring, IncidentKind::kCrash, kCrashed, {}));
     make_box();
   }
 }
@@ -43,28 +43,28 @@ void BlackBoxKeeper::set_header(const LogHeader& header) {
   header_ns_ = 0;
 }
 
-void BlackBoxKeeper::look_for_box(std::int64_t now_ns) {
-  constexpr std::int64_t kLookNs = 1'000'000'000;
-  if (now_ns < look_ns_) return;
-  look_ns_ = now_ns + kLookNs;
+void BlackBoxKeeper::check_ring(std::int64_t now_ns) {
+  constexpr std::int64_t kCheckNs = 1'000'000'000;
+  if (now_ns < check_ns_) return;
+  check_ns_ = now_ns + kCheckNs;
   if (box_ != nullptr && box_->at_its_path()) return;
-  box_.reset();  // it still takes its room on the disk
+  box_.reset();  // a removed file keeps its room on the disk while it is open
   try {
     folder_.put_ring_aside();
     make_box();
     absent_ = false;
     notes_.push_back(folder_.ring() + " was removed, and what it held with it; another one was begun");
   } catch (const LogError& error) {
-    look_ns_ = now_ns + kRetryNs;
+    check_ns_ = now_ns + kRetryNs;
     if (std::exchange(absent_, true)) return;
     notes_.push_back(folder_.ring() +
                      " was removed, and no other can be made, which is tried every 10 s: " + error.what());
   }
 }
 
-void BlackBoxKeeper::look_at_size() {
-  if (size_looked_at_ || box_ == nullptr || box_->seconds_added() < kRateKnown) return;
-  size_looked_at_ = true;
+void BlackBoxKeeper::check_size() {
+  if (size_checked_ || box_ == nullptr || box_->seconds_added() < kRateKnown) return;
+  size_checked_ = true;
   const double held = box_->seconds_held();
   if (held >= kPromised) return;
   std::array<char, 200> text{};
@@ -99,36 +99,36 @@ void BlackBoxKeeper::begin(const std::string& ring, IncidentKind kind, const std
   saving_ = kind == IncidentKind::kStop ? why : "";
   outcome_ = std::async(std::launch::async, [this, ring, kind, why] {
     constexpr int kLowest = 19;
-    setpriority(PRIO_PROCESS, 0, kLowest);  // of this thread
+    setpriority(PRIO_PROCESS, 0, kLowest);  // this applies to the calling thread alone
     return save(ring, kind, why, [this] { return ends_.load(); });
   });
 }
 
-/// False: it was given up.
-bool BlackBoxKeeper::take_outcome() {
+/// Reports what the thread has saved; false: it gave up.
+bool BlackBoxKeeper::finish_saving() {
   if (!outcome_.valid()) return true;
   Outcome outcome = outcome_.get();
   const bool given_up = outcome.given_up;
-  note(std::move(outcome));
+  report(std::move(outcome));
   return !given_up;
 }
 
-void BlackBoxKeeper::note(Outcome outcome) {
+void BlackBoxKeeper::report(Outcome outcome) {
   if (outcome.saved) ++saved_;
   if (!outcome.note.empty()) notes_.push_back(std::move(outcome.note));
 }
 
 void BlackBoxKeeper::poll(std::int64_t now_ns) {
-  look_for_box(now_ns);
-  look_at_size();
+  check_ring(now_ns);
+  check_size();
   if (box_ != nullptr && now_ns >= header_ns_) {
     box_->add_header(encoded_);
     header_ns_ = now_ns + kHeaderNs;
   }
   if (outcome_.valid() && outcome_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  take_outcome();
+  finish_saving();
   if (watch_.due(now_ns)) {
-    const std::uint64_t causes = watch_.take();
+    const std::uint64_t causes = watch_.clear();
     if (keep_ != 0) begin(folder_.ring(), IncidentKind::kStop, names_of(kStopCauseNames, causes, ", "));
   } else if (!unsaved_.empty()) {
     begin(unsaved_.front(), IncidentKind::kCrash, kCrashed);
@@ -136,18 +136,18 @@ void BlackBoxKeeper::poll(std::int64_t now_ns) {
   }
 }
 
-/// The thread gets little of a busy machine, and roslaunch kills a node that takes 15 s to end.
+/// The caller saves, because the thread may get little processor time, and roslaunch kills a node after 15 s.
 void BlackBoxKeeper::finish(const GiveUp& late) {
   ends_.store(true);
-  std::string why = take_outcome() ? "" : saving_;
-  if (watch_.pending()) why += (why.empty() ? "" : ", ") + names_of(kStopCauseNames, watch_.take(), ", ");
+  std::string why = finish_saving() ? "" : saving_;
+  if (watch_.pending()) why += (why.empty() ? "" : ", ") + names_of(kStopCauseNames, watch_.clear(), ", ");
   if (!why.empty() && keep_ != 0) {
     Outcome outcome = save(folder_.ring(), IncidentKind::kStop, why, late);
     if (outcome.given_up) {
       notes_.push_back("not saved (" + why + "): telemetry ends; the next one in this folder saves it as a crash");
       return;
     }
-    note(std::move(outcome));
+    report(std::move(outcome));
   }
   if (box_ != nullptr) box_->mark_ended();
 }

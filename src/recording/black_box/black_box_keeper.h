@@ -1,6 +1,8 @@
 #pragma once
-/// The black box of a robot, and its incidents: what it holds some seconds after a latched stop is saved as a bag, and
-/// so is that of a telemetry that was killed. A thread of the lowest priority writes them, one at a time.
+/// The keeper writes the black box of a robot and saves its incidents as bags.
+///
+/// It saves the contents of the black box some seconds after a latched stop, and those that a killed telemetry left. A
+/// thread of the lowest priority writes the bags, one at a time.
 
 #include <atomic>
 #include <cstdint>
@@ -21,17 +23,17 @@ class BlackBoxKeeper {
  public:
   static constexpr std::int64_t kRetryNs = 10'000'000'000;
   static constexpr std::int64_t kHeaderNs = 10'000'000'000;
-  static constexpr double kPromised = 60;   ///< s of rows; a smaller one is named
-  static constexpr double kRateKnown = 10;  ///< s of rows, after which it is known how many it holds
+  static constexpr double kPromised = 60;   ///< s of rows; a smaller black box is reported
+  static constexpr double kRateKnown = 10;  ///< s of rows after which the rate is known
 
-  /// Of `bytes` in `folder`, with the newest `keep` incidents of each kind. Throws LogError.
+  /// Makes a black box of `bytes` in `folder` and keeps the newest `keep` incidents of each kind. Throws LogError.
   BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, std::uint64_t build,
                  const LogHeader& header);
   ~BlackBoxKeeper();
   BlackBoxKeeper(const BlackBoxKeeper&) = delete;
   BlackBoxKeeper& operator=(const BlackBoxKeeper&) = delete;
 
-  /// As BlackBox::add; nothing where there is no ring just now.
+  /// Calls BlackBox::add if there is a ring.
   template <class Record>
   void add(const Record& record) noexcept {
     if (box_ != nullptr) box_->add(record);
@@ -41,24 +43,24 @@ class BlackBoxKeeper {
   }
   std::string path() const { return folder_.ring(); }
 
-  /// What holds from now on. The ring gets it every `kHeaderNs`, so that what it holds can begin with it.
+  /// `header` holds from now on. It is added to the ring every `kHeaderNs`, so that a saved bag has it.
   void set_header(const LogHeader& header);
 
-  /// Permit::causes of now; `now_ns` on any clock that runs.
-  void see(std::uint64_t causes, std::int64_t now_ns) noexcept { watch_.see(causes, now_ns); }
+  /// `causes` are the present Permit::causes; `now_ns` is on any clock that runs.
+  void watch(std::uint64_t causes, std::int64_t now_ns) noexcept { watch_.update(causes, now_ns); }
 
-  /// At 10 Hz: begins what is due. Where the ring is not at its path any more, another one is made, and tried again
-  /// every `kRetryNs`.
+  /// The caller calls this at 10 Hz; it begins to save what is due. If the ring was removed, another one is made; after
+  /// a failure it is tried again every `kRetryNs`.
   void poll(std::int64_t now_ns);
 
-  /// The end: what the thread is saving is given up; a stop that waits for what follows, or was given up, is saved
-  /// here, with the priority of the caller, and the ring is marked as ended orderly. Where `late` becomes true first,
-  /// the ring is not marked: the next keeper of this folder saves it, as that of a crash.
+  /// Ends the keeper. The thread gives up what it is saving. A stop that is not saved yet is saved here, with the
+  /// priority of the caller, and the ring is marked as ended orderly. If `late` becomes true first, the ring is not
+  /// marked, and the next keeper of this folder saves it as a crash.
   void finish(const GiveUp& late = {});
 
   std::uint64_t saved() const noexcept { return saved_; }
 
-  /// Sentences about what was saved, or could not be, since the last call.
+  /// Returns sentences about what was saved, or could not be saved, since the last call.
   std::vector<std::string> take_notes() { return std::exchange(notes_, {}); }
 
  private:
@@ -68,29 +70,29 @@ class BlackBoxKeeper {
     std::string note;
   };
   void make_box();
-  void look_for_box(std::int64_t now_ns);
-  void look_at_size();
+  void check_ring(std::int64_t now_ns);
+  void check_size();
   Outcome save(const std::string& ring, IncidentKind kind, const std::string& why, const GiveUp& give_up) const;
   void begin(const std::string& ring, IncidentKind kind, const std::string& why);
-  bool take_outcome();
-  void note(Outcome outcome);
+  bool finish_saving();
+  void report(Outcome outcome);
 
   BlackBoxFolder folder_;
   std::size_t keep_;
   std::uint64_t build_;
   std::size_t bytes_;
   LogHeader header_;
-  std::string encoded_;            ///< header_
-  std::int64_t header_ns_ = 0;     ///< when the ring gets it again
-  std::unique_ptr<BlackBox> box_;  ///< null: it was removed, and no other could be made
+  std::string encoded_;            ///< message of `header_`
+  std::int64_t header_ns_ = 0;     ///< time at which the ring gets it again
+  std::unique_ptr<BlackBox> box_;  ///< null: the ring was removed, and no other could be made
   IncidentWatch watch_;
-  std::vector<std::string> unsaved_;  ///< oldest first
-  std::string saving_;                ///< why, where it is a stop
+  std::vector<std::string> unsaved_;  ///< rings of crashes, oldest first
+  std::string saving_;                ///< causes of the stop that is saved; empty: none is
   std::atomic<bool> ends_{false};
-  std::future<Outcome> outcome_;  ///< of what the thread saves; its destructor waits for the thread
-  std::int64_t look_ns_ = 0;      ///< when to look for the ring again
-  bool absent_ = false;           ///< and said
-  bool size_looked_at_ = false;
+  std::future<Outcome> outcome_;  ///< outcome of the thread; its destructor waits for the thread
+  std::int64_t check_ns_ = 0;     ///< time at which the ring is checked again
+  bool absent_ = false;           ///< true: the missing ring is reported
+  bool size_checked_ = false;
   std::uint64_t saved_ = 0;
   std::vector<std::string> notes_;
 };

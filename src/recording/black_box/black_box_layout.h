@@ -1,5 +1,5 @@
 #pragma once
-/// How a black box lies in its file (black_box_file.h): only for its writer and its reader.
+/// Writer and reader of a black box share this layout of its file (black_box_file.h).
 
 #include <cstddef>
 #include <cstdint>
@@ -16,12 +16,12 @@ inline constexpr char kMagic[8] = {'R', 'C', 'B', 'L', 'A', 'C', 'K', '2'};
 struct Head {
   char magic[8];
   std::uint64_t head_bytes, segments, description_bytes;
-  std::uint64_t checksum;  // of these and of the description
+  std::uint64_t checksum;  ///< covers these members and the description
   std::uint64_t ended;
 };
 
 struct RecordHead {
-  std::uint64_t checksum = 0;  // of what follows and of the data
+  std::uint64_t checksum = 0;  ///< covers the members below and the data
   std::uint64_t sequence = 0;
   std::int64_t time_ns = 0;
   std::uint32_t kind = 0, length = 0;

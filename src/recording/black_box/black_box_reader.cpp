@@ -20,7 +20,7 @@ namespace {
 struct Found {
   RecordHead head;
   std::string_view data;
-  std::size_t end;  ///< of the record, in the segment
+  std::size_t end;  ///< end of the record in the segment
 };
 
 /// The sound record that begins at `at`, whatever its sequence number.
@@ -35,7 +35,7 @@ std::optional<Found> record_at(std::string_view segment, std::size_t at) {
   return found;
 }
 
-/// Of the record that begins at `at`, sound or not.
+/// The sequence number of the record that begins at `at`, sound or not.
 std::uint64_t sequence_at(std::string_view segment, std::size_t at) {
   RecordHead head;
   if (at + sizeof head > segment.size()) return 0;
@@ -48,14 +48,14 @@ std::uint64_t sequence_at(std::string_view segment, std::size_t at) {
 BlackBoxReader::BlackBoxReader(const std::string& path)
     : descriptor_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
   if (descriptor_ < 0) fail(path, std::strerror(errno));
-  constexpr std::uint64_t kMostSegments = 1U << 17U;
-  constexpr std::uint64_t kMostHead = 1U << 28U;
+  constexpr std::uint64_t kMaxSegments = 1U << 17U;
+  constexpr std::uint64_t kMaxHeadBytes = 1U << 28U;
   struct stat status {};
   Head head{};
   const bool regular = fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
   const bool known = regular && read_at(&head, sizeof head, 0) && std::memcmp(head.magic, kMagic, sizeof kMagic) == 0 &&
-                     head.segments >= 2 && head.segments <= kMostSegments && head.head_bytes >= sizeof head &&
-                     head.head_bytes <= kMostHead && head.description_bytes <= head.head_bytes - sizeof head;
+                     head.segments >= 2 && head.segments <= kMaxSegments && head.head_bytes >= sizeof head &&
+                     head.head_bytes <= kMaxHeadBytes && head.description_bytes <= head.head_bytes - sizeof head;
   if (known) {
     bytes_ = static_cast<std::uint64_t>(status.st_size);
     head_bytes_ = head.head_bytes;
@@ -96,7 +96,7 @@ std::string BlackBoxReader::load(std::uint64_t number) const {
 }
 
 /// The newest sequence number of its sound records: that of the first, unless that is damaged.
-BlackBoxReader::Segment BlackBoxReader::look(std::uint64_t number) const {
+BlackBoxReader::Segment BlackBoxReader::inspect(std::uint64_t number) const {
   Segment result{.number = number};
   const std::string segment = load(number);
   const auto consider = [&](std::size_t at) {
@@ -111,17 +111,17 @@ BlackBoxReader::Segment BlackBoxReader::look(std::uint64_t number) const {
   return result;
 }
 
-/// From record to record, oldest first.
+/// Walks from record to record, oldest first.
 class BlackBoxReader::Walk {
  public:
-  /// `first_lap`: nothing was written twice yet, so that the oldest record is the first one.
+  /// In the first lap nothing is overwritten, so that the oldest record is the first one.
   Walk(const Use& use, BlackBoxDamage& damage, bool first_lap) : use_(use), damage_(damage), first_lap_(first_lap) {}
 
-  void read(const Segment& of, std::string_view segment) {
-    check_end_before(of, segment);
+  void read(const Segment& place, std::string_view segment) {
+    check_end_before(place, segment);
     bool any = false;
     for (std::size_t at = 0; at + sizeof(RecordHead) <= segment.size();) {
-      const auto found = sequence_at(segment, at) == of.sequence ? record_at(segment, at) : std::nullopt;
+      const auto found = sequence_at(segment, at) == place.sequence ? record_at(segment, at) : std::nullopt;
       if (!found) {
         at += kAlignment;
         continue;
@@ -132,11 +132,11 @@ class BlackBoxReader::Walk {
       at = end_ = found->end;
     }
     if (any) {
-      sequence_ = of.sequence;
+      sequence_ = place.sequence;
       return;
     }
-    // Written again meanwhile: of what is given it is missing only where older records were given before.
-    const bool newer = sequence_at(segment, 0) > of.sequence && record_at(segment, 0);
+    // The segment was overwritten meanwhile: that counts only if older records were given before.
+    const bool newer = sequence_at(segment, 0) > place.sequence && record_at(segment, 0);
     if (!newer || given_) ++damage_.segments;
   }
 
@@ -154,13 +154,13 @@ class BlackBoxReader::Walk {
   }
 
   /// The writer leaves a segment where the next record has no room.
-  void check_end_before(const Segment& of, std::string_view segment) {
+  void check_end_before(const Segment& place, std::string_view segment) {
     if (!given_) return;
-    if (of.sequence != sequence_ + 1) {
-      gap_ = true;  // the segments between are counted
+    if (place.sequence != sequence_ + 1) {
+      gap_ = true;  // the segments between them are counted elsewhere
       return;
     }
-    const auto first = sequence_at(segment, 0) == of.sequence ? record_at(segment, 0) : std::nullopt;
+    const auto first = sequence_at(segment, 0) == place.sequence ? record_at(segment, 0) : std::nullopt;
     if (first && end_ + first->end <= BlackBoxFile::kSegmentBytes) miss_here();
   }
 
@@ -169,8 +169,8 @@ class BlackBoxReader::Walk {
   bool first_lap_;
   bool given_ = false;
   bool gap_ = false;
-  std::uint64_t sequence_ = 0;  ///< of the segment before
-  std::size_t end_ = 0;         ///< of its last sound record
+  std::uint64_t sequence_ = 0;  ///< sequence number of the segment before
+  std::size_t end_ = 0;         ///< end of its last sound record
 };
 
 BlackBoxDamage BlackBoxReader::read(const Use& use) const {
@@ -178,10 +178,10 @@ BlackBoxDamage BlackBoxReader::read(const Use& use) const {
   std::uint64_t newest = 0;
   for (std::uint64_t i = 0; i < segments_; ++i) {
     if (use.segment) use.segment();
-    all.push_back(look(i));
+    all.push_back(inspect(i));
     newest = std::max(newest, all.back().sequence);
   }
-  // The newest `segments_` sequence numbers from 1 on have been written; a lower one is of a lap before.
+  // The newest `segments_` sequence numbers are written; a lower one belongs to the lap before.
   BlackBoxDamage damage;
   std::vector<Segment> sound;
   for (const Segment& each : all) {

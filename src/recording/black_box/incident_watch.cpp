@@ -5,18 +5,18 @@
 
 namespace robot_control {
 
-bool IncidentWatch::see(std::uint64_t causes, std::int64_t now_ns) noexcept {
+bool IncidentWatch::update(std::uint64_t causes, std::int64_t now_ns) noexcept {
   const bool stop = std::exchange(seen_, true) && causes_ == 0 && causes != 0;
   causes_ = causes;
   if (stop) {
-    if (!pending()) latest_ns_ = now_ns + kLongest;
+    if (!pending()) latest_ns_ = now_ns + kMaxDelay;
     due_ns_ = std::min(now_ns + kAfter, latest_ns_);
   }
   if (stop || pending()) causes_to_save_ |= causes;
   return stop;
 }
 
-std::uint64_t IncidentWatch::take() noexcept {
+std::uint64_t IncidentWatch::clear() noexcept {
   return std::exchange(causes_to_save_, 0);
 }
 

@@ -10,17 +10,17 @@ void LostRows::gap() {
 }
 
 void LostRows::row(std::size_t node, const FrameHead& head) {
-  Node& of = nodes_.at(node);
-  const bool follows = of.gap && of.any && of.before.run == head.run && head.cycle > of.before.cycle + 1;
+  Node& state = nodes_.at(node);
+  const bool follows = state.gap && state.any && state.before.run == head.run && head.cycle > state.before.cycle + 1;
   if (follows) {
-    const std::uint64_t first = of.before.cycle + 1, last = head.cycle - 1;
+    const std::uint64_t first = state.before.cycle + 1, last = head.cycle - 1;
     Place& place = places_.back();
     place.first = place.known ? std::min(place.first, first) : first;
     place.last = place.known ? std::max(place.last, last) : last;
     place.known = true;
     count_ += last - first + 1;
   }
-  of = {.before = head, .any = true, .gap = false};
+  state = {.before = head, .any = true, .gap = false};
 }
 
 std::string LostRows::text() const {

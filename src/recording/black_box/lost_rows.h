@@ -1,5 +1,5 @@
 #pragma once
-/// Which rows are missing in a black box, by the cycles of those before and after a gap between its records.
+/// Counts the rows that are missing in a black box, by the cycles before and after a gap between its records.
 
 #include <array>
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace robot_control {
 
 class LostRows {
  public:
-  /// The next row of each node may not be the one after the row before.
+  /// Records are missing here: rows of each node may be among them.
   void gap();
 
-  /// The next row of the node, by TraceRing. A gap within which a run ended counts nothing.
+  /// `head` is that of the next row of the node, by TraceRing. A gap in which a run ended does not count.
   void row(std::size_t node, const FrameHead& head);
 
-  /// Rows of all nodes.
+  /// Number of missing rows of all nodes.
   std::uint64_t count() const noexcept { return count_; }
 
-  /// "4 rows, in the cycles 17 to 18, 30": the first places.
+  /// The text names the first places: "4 rows, in the cycles 17 to 18, 30".
   std::string text() const;
 
  private:

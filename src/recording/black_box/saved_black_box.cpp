@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a record holds, given to `use`: a row of a node, a LawSnapshot or a BlackBoxState. Of another size: nothing.
+/// Gives the contents of a record to `use`: a row of a node, a LawSnapshot or a BlackBoxState. Other sizes are ignored.
 class Unpacker {
  public:
   template <class Use>
@@ -72,8 +72,8 @@ class Saver {
           if (!row.repeats) ++saved_.rows;
         }) {}
 
-  void take(const BlackBoxRecord& record) {
-    unpacker_.give(record, [&](const auto& value) { take(record, value); });
+  void add(const BlackBoxRecord& record) {
+    unpacker_.give(record, [&](const auto& value) { add(record, value); });
   }
   void gap() { lost_.gap(); }
 
@@ -92,14 +92,14 @@ class Saver {
   }
 
   template <class Row>
-  void take(const BlackBoxRecord& record, const Row& row) {
+  void add(const BlackBoxRecord& record, const Row& row) {
     saved_.newest_ns.at(record.kind) = record.time_ns;
     lost_.row(record.kind, head_of(row));
     log_.set_lost(lost_before_ + lost_.count());
     join_.add(row);
   }
-  void take(const BlackBoxRecord& /*record*/, const LawSnapshot& snapshot) { log_.write(snapshot); }
-  void take(const BlackBoxRecord& /*record*/, const BlackBoxState& state) {
+  void add(const BlackBoxRecord& /*record*/, const LawSnapshot& snapshot) { log_.write(snapshot); }
+  void add(const BlackBoxRecord& /*record*/, const BlackBoxState& state) {
     log_.set_time_offset(state.time_offset_ns);
     lost_before_ = state.lost;
     log_.set_lost(lost_before_ + lost_.count());
@@ -113,16 +113,16 @@ class Saver {
   Join join_;
 };
 
-/// What is in a black box, before it is saved.
+/// The contents of a black box are counted before it is saved.
 struct Survey {
   BlackBoxDamage damage;
   std::uint64_t records = 0;
-  std::uint64_t rows = 0;  ///< of all nodes
+  std::uint64_t rows = 0;  ///< rows of all nodes
   LostRows lost;
-  std::string header;  ///< the oldest one, encoded; empty: there is none
+  std::string header;  ///< message of the oldest header; empty: there is none
 };
 
-/// Records are unpacked only where some are missing, to name those.
+/// Records are unpacked only if some are missing, to name those.
 Survey survey_of(const BlackBoxReader& reader, const std::function<void()>& go_on) {
   Survey survey;
   const auto count = [&](const BlackBoxRecord& record) {
@@ -135,12 +135,12 @@ Survey survey_of(const BlackBoxReader& reader, const std::function<void()>& go_o
   survey.damage = reader.read({.record = count, .segment = go_on});
   if (survey.damage.none()) return survey;
   const auto unpacker = std::make_unique<Unpacker>();  // 100 KB
-  const auto look = [&](const BlackBoxRecord& record) {
+  const auto find_lost = [&](const BlackBoxRecord& record) {
     unpacker->give(record, [&](const auto& value) {
       if constexpr (requires { head_of(value); }) survey.lost.row(record.kind, head_of(value));
     });
   };
-  reader.read({.record = look, .gap = [&] { survey.lost.gap(); }, .segment = go_on});
+  reader.read({.record = find_lost, .gap = [&] { survey.lost.gap(); }, .segment = go_on});
   return survey;
 }
 
@@ -148,7 +148,7 @@ std::string counted(std::uint64_t count, const std::string& one, const std::stri
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-/// Empty: nothing is missing.
+/// The result is empty if nothing is missing.
 std::string missing_in(const BlackBoxReader& reader, const Survey& survey) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
@@ -167,28 +167,28 @@ std::string missing_in(const BlackBoxReader& reader, const Survey& survey) {
   return text.empty() ? text : "the black box is damaged: " + text;
 }
 
-/// Folder in which a bag grows before it gets its name; of this process alone: another may save the same.
+/// A bag grows in a folder before it gets its name. The folder belongs to this process: another may save the same.
 class Growing {
  public:
   explicit Growing(const std::string& bag)
       : bag_(bag), folder_(bag_.string() + "." + std::to_string(getpid()) + kSavingSuffix) {
     std::error_code error;
     above_ = bag_.has_parent_path() && fs::create_directories(bag_.parent_path(), error);
-    remove();  // of a process of this number that was killed
+    remove();  // a killed process of the same number may have left it
     fs::create_directory(folder_, error);
     if (error) throw LogError(bag + " cannot be written: " + error.message());
   }
   ~Growing() {
     remove();
     std::error_code ignored;
-    if (above_) fs::remove(bag_.parent_path(), ignored);  // unless there is something in it
+    if (above_) fs::remove(bag_.parent_path(), ignored);  // a folder that holds something stays
   }
   Growing(const Growing&) = delete;
   Growing& operator=(const Growing&) = delete;
 
   std::string folder() const { return folder_.string(); }
 
-  /// The bag is not wanted: closing it takes nothing to the disk, which may last seconds.
+  /// Empties the bag, which is not wanted: its closing would write to the disk for seconds.
   void empty() {
     std::error_code ignored;
     fs::resize_file(folder_ / "run.bag", 0, ignored);
@@ -208,10 +208,10 @@ class Growing {
 
   fs::path bag_;
   fs::path folder_;
-  bool above_ = false;  ///< the folder of the bag was not there before
+  bool above_ = false;  ///< true: the folder of the bag was made here
 };
 
-/// What the ring began with.
+/// The ring began with this header.
 std::string_view first_header(const BlackBoxReader& reader, std::uint64_t build, const std::string& path) {
   const std::string& description = reader.description();
   const std::string writer = description.substr(0, kBlackBoxBuildLength);
@@ -249,12 +249,12 @@ SavedBlackBox save_black_box(const std::string& path, std::uint64_t build, const
   Growing growing(bag);
   LogFolder logs(growing.folder(), 0);
   const auto saver = std::make_unique<Saver>(logs, header);  // 100 KB
-  const auto take = [&](const BlackBoxRecord& record) {
+  const auto add = [&](const BlackBoxRecord& record) {
     go_on();
-    saver->take(record);
+    saver->add(record);
   };
   try {
-    reader.read({.record = take, .gap = [&] { saver->gap(); }, .segment = go_on});
+    reader.read({.record = add, .gap = [&] { saver->gap(); }, .segment = go_on});
   } catch (const SavingGivenUp&) {
     growing.empty();
     throw;

@@ -77,24 +77,24 @@ void add_operator(TraceFields& to, const std::string& name, Get) {
 template <class Frame>
 using Words = std::array<u64, kFrameWords<Frame>>;
 
-/// The whole published frame, where an injected fault made it differ from what the law computed, and near a snapshot
-/// (signals/law_snapshot.h).
+/// The whole published frame is recorded if an injected fault changed it, and near a snapshot (signals/law_snapshot.h).
+/// Otherwise the list is empty.
 template <class Part, class Frame, class Get>
 TraceField whole_frame(std::string name, Get) {
   TraceField result{
       .name = std::move(name),
       .type = "uint64[]",
       .comment = "the published frame, word by word, where a fault changed it, and near a snapshot; else empty"};
-  result.put = [](const TraceSource& source, std::string& to) {
+  result.write = [](const TraceSource& source, std::string& to) {
     const Part* part = part_of<Part>(source.row);
     const bool published = part != nullptr && Get{}(*part).head.kind == FrameKind::kFrame;
     const bool whole =
         published && (near_snapshot(source.row.cycle) || Get{}(*part).head.checksum != part->calls.law.output);
-    put_number(to, static_cast<std::uint32_t>(whole ? kFrameWords<Frame> : 0));
+    write_number(to, static_cast<std::uint32_t>(whole ? kFrameWords<Frame> : 0));
     if (!whole) return;
-    for (const u64 word : std::bit_cast<Words<Frame>>(Get{}(*part))) put_number(to, word);
+    for (const u64 word : std::bit_cast<Words<Frame>>(Get{}(*part))) write_number(to, word);
   };
-  result.take = [](ByteSource& from, TraceRow& row) {
+  result.read = [](ByteSource& from, TraceRow& row) {
     const auto size = from.number<std::uint32_t>();
     if (size == 0) return true;
     if (size != kFrameWords<Frame>) return false;

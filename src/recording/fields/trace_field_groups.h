@@ -1,5 +1,5 @@
 #pragma once
-/// The fields of Trace by what they tell; each function appends its own.
+/// The fields of Trace form groups; each function appends those of one group.
 
 #include "recording/fields/trace_fields.h"
 

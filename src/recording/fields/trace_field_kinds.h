@@ -1,8 +1,8 @@
 #pragma once
-/// How a member of a row becomes a field of the message and back: only for the tables of fields, trace_*_fields.cpp.
+/// These templates make fields of members of a row; only the tables of fields, trace_*_fields.cpp, use them.
 ///
 /// `Get` is a stateless lambda that returns a reference to a member of one part of a row, as `MEMBER` makes it. `Wire`
-/// is the type in the message. Where the part is missing, numbers are NaN and integers 0.
+/// is the type in the message. If the part is missing, numbers are NaN and integers 0.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace robot_control {
 
-/// The words in which the tables of fields are written: the parts of a row, and the types in the message.
+/// The tables of fields use these names for the parts of a row and for the types in the message.
 namespace trace_words {
 using D = DriverTrace;
 using E = EstimatorTrace;
@@ -34,19 +34,46 @@ using i64 = std::int64_t;
   [](auto& part) -> auto& { \
     return part.member;     \
   }
-/// Of element i of a list.
+/// The reference is to a member of element i of a list.
 #define ELEMENT(member)                    \
   [](auto& part, std::size_t i) -> auto& { \
     return part.member;                    \
   }
 
-/// Also where an injected fault suppressed the frame: the law ran.
+/// A law has its part also where an injected fault suppressed the frame: the law ran.
 template <class Part>
 const Part* part_of(const JoinedRow& row) {
   if constexpr (std::is_same_v<Part, DriverTrace>) return row.driver;
   if constexpr (std::is_same_v<Part, EstimatorTrace>) return row.laws.estimator;
   if constexpr (std::is_same_v<Part, ControllerTrace>) return row.laws.controller;
   if constexpr (std::is_same_v<Part, MonitorTrace>) return row.laws.monitor;
+}
+
+/// Columns show the frames that were published.
+template <class Part>
+const Part* published_part(const JoinedRow& row) {
+  if constexpr (std::is_same_v<Part, DriverTrace>) return row.driver;
+  if constexpr (std::is_same_v<Part, EstimatorTrace>) return row.estimator;
+  if constexpr (std::is_same_v<Part, ControllerTrace>) return row.controller;
+  if constexpr (std::is_same_v<Part, MonitorTrace>) return row.monitor;
+}
+
+/// A column of a part. `Compute` is a stateless lambda of the part and the element.
+template <class Part, class Compute>
+TraceColumn column(std::string name, std::string meaning, Compute) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .integer = !std::is_floating_point_v<std::invoke_result_t<Compute, const Part&, std::size_t>>,
+          .value = [](const JoinedRow& row, std::size_t element) -> double {
+            const Part* part = published_part<Part>(row);
+            if (part == nullptr) return std::numeric_limits<double>::quiet_NaN();
+            return static_cast<double>(Compute{}(*part, element));
+          }};
+}
+
+/// The number is NaN where `exists` is false.
+inline double where(bool exists, double value) {
+  return exists ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 template <class Part>
@@ -74,8 +101,18 @@ constexpr Wire none() {
 }
 
 template <class Wire>
-void put_number(std::string& to, Wire value) {
+void write_number(std::string& to, Wire value) {
   ByteSink(to).number(value);
+}
+
+/// Enums become integers.
+template <class Value>
+auto as_number(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return static_cast<std::underlying_type_t<Value>>(value);
+  } else {
+    return value;
+  }
 }
 
 template <class Value>
@@ -83,30 +120,34 @@ struct ArraySize : std::integral_constant<std::size_t, 0> {};
 template <class Element, std::size_t N>
 struct ArraySize<std::array<Element, N>> : std::integral_constant<std::size_t, N> {};
 
-/// A number, or an array of fixed length.
+/// The field is a number, or an array of fixed length.
 template <class Part, class Wire, class Get>
 TraceField field(std::string name, std::string comment, Get) {
   using Value = std::decay_t<std::invoke_result_t<Get, Part&>>;
   constexpr std::size_t kSize = ArraySize<Value>::value;
   TraceField result{.name = std::move(name), .type = wire_name<Wire>(), .comment = std::move(comment)};
   if constexpr (kSize == 0) {
-    result.put = [](const TraceSource& source, std::string& to) {
+    result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return as_number(Get{}(part)); });
+    result.write = [](const TraceSource& source, std::string& to) {
       const Part* part = part_of<Part>(source.row);
-      put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
+      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
     };
-    result.take = [](ByteSource& from, TraceRow& row) {
+    result.read = [](ByteSource& from, TraceRow& row) {
       Get{}(part_of<Part>(row)) = static_cast<Value>(from.number<Wire>());
       return true;
     };
   } else {
     result.type += "[" + std::to_string(kSize) + "]";
-    result.put = [](const TraceSource& source, std::string& to) {
+    if constexpr (std::is_arithmetic_v<typename Value::value_type>) {
+      result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part)[i]); });
+    }
+    result.write = [](const TraceSource& source, std::string& to) {
       const Part* part = part_of<Part>(source.row);
       for (std::size_t i = 0; i < kSize; ++i) {
-        put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
+        write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
       }
     };
-    result.take = [](ByteSource& from, TraceRow& row) {
+    result.read = [](ByteSource& from, TraceRow& row) {
       auto& values = Get{}(part_of<Part>(row));
       for (auto& value : values) value = static_cast<std::decay_t<decltype(value)>>(from.number<Wire>());
       return true;
@@ -115,23 +156,24 @@ TraceField field(std::string name, std::string comment, Get) {
   return result;
 }
 
-/// A list: `Size` is a stateless lambda of a part (null: missing) and the number of joints; at most `Most` elements.
-template <class Part, class Wire, std::size_t Most, class Size, class Get>
+/// A list has at most `Max` elements. `Size` is a stateless lambda of a part (null: missing) and the number of joints.
+template <class Part, class Wire, std::size_t Max, class Size, class Get>
 TraceField list(std::string name, std::string comment, Size, Get) {
   using Value = std::decay_t<std::invoke_result_t<Get, Part&, std::size_t>>;
   TraceField result{
       .name = std::move(name), .type = std::string(wire_name<Wire>()) + "[]", .comment = std::move(comment)};
-  result.put = [](const TraceSource& source, std::string& to) {
+  result.plain = column<Part>("", "", [](const Part& part, std::size_t i) { return as_number(Get{}(part, i)); });
+  result.write = [](const TraceSource& source, std::string& to) {
     const Part* part = part_of<Part>(source.row);
     const std::size_t size = Size{}(part, source.joints);
-    put_number(to, static_cast<std::uint32_t>(size));
+    write_number(to, static_cast<std::uint32_t>(size));
     for (std::size_t i = 0; i < size; ++i) {
-      put_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
+      write_number(to, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
     }
   };
-  result.take = [](ByteSource& from, TraceRow& row) {
+  result.read = [](ByteSource& from, TraceRow& row) {
     const auto size = from.number<std::uint32_t>();
-    if (size > Most) return false;
+    if (size > Max) return false;
     for (std::size_t i = 0; i < size; ++i) {
       Get{}(part_of<Part>(row), i) = static_cast<Value>(from.number<Wire>());
     }
@@ -140,34 +182,37 @@ TraceField list(std::string name, std::string comment, Size, Get) {
   return result;
 }
 
-/// A value for each joint.
+/// The list holds a value for each joint.
 template <class Part, class Wire, class Get>
 TraceField per_joint(std::string name, std::string comment, Get get) {
   return list<Part, Wire, kMaxJoints>(
       std::move(name), std::move(comment), [](const Part*, std::size_t joints) { return joints; }, get);
 }
 
-/// A value for each joint that a wheel loop may drive.
+/// The list holds a value for each joint that a wheel loop may drive.
 template <class Part, class Wire, class Get>
 TraceField per_wheel(std::string name, std::string comment, Get get) {
-  return list<Part, Wire, kTunedWheels>(
+  TraceField result = list<Part, Wire, kTunedWheels>(
       std::move(name), std::move(comment),
       [](const Part*, std::size_t joints) { return std::min(joints, kTunedWheels); }, get);
+  result.max_joints = kTunedWheels;
+  return result;
 }
 
-/// The yaw of an orientation that is recorded as float32, for people alone: computed from what is recorded, not read
-/// back.
+/// The field holds the yaw of an orientation, computed from the recorded float32. A reader ignores it. The column is
+/// the yaw of the member.
 template <class Part, class Get>
 TraceField yaw(std::string name, Get) {
   TraceField result{.name = std::move(name), .type = wire_name<float>(), .comment = "rad"};
-  result.put = [](const TraceSource& source, std::string& to) {
+  result.plain = column<Part>("", "", [](const Part& part, std::size_t) { return yaw_of(Get{}(part)); });
+  result.write = [](const TraceSource& source, std::string& to) {
     const Part* part = part_of<Part>(source.row);
-    if (part == nullptr) return put_number(to, none<float>());
+    if (part == nullptr) return write_number(to, none<float>());
     Quaternion recorded = Get{}(*part);
     for (double& entry : recorded) entry = static_cast<float>(entry);
-    put_number(to, static_cast<float>(yaw_of(recorded)));
+    write_number(to, static_cast<float>(yaw_of(recorded)));
   };
-  result.take = [](ByteSource& from, TraceRow&) {
+  result.read = [](ByteSource& from, TraceRow&) {
     from.number<float>();
     return true;
   };

@@ -1,5 +1,8 @@
 #include "recording/fields/trace_fields.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "recording/fields/trace_field_groups.h"
 #include "recording/fields/trace_field_kinds.h"
 #include "recording/message_checksum.h"
@@ -27,8 +30,11 @@ TraceField of_row(std::string name, std::string comment, Put, Take) {
   return {.name = std::move(name),
           .type = wire_name<Wire>(),
           .comment = std::move(comment),
-          .put = [](const TraceSource& source, std::string& to) { put_number(to, Wire(Put{}(source))); },
-          .take =
+          .plain = {.integer = true,
+                    .value = [](const JoinedRow& row,
+                                std::size_t) { return static_cast<double>(Put{}(TraceSource{.row = row})); }},
+          .write = [](const TraceSource& source, std::string& to) { write_number(to, Wire(Put{}(source))); },
+          .read =
               [](ByteSource& from, TraceRow& row) {
                 Take{}(row, from.number<Wire>());
                 return true;
@@ -39,8 +45,9 @@ void add_row(TraceFields& to) {
   using S = const TraceSource&;
   using R = TraceRow&;
   to.push_back(of_row<std::int64_t>(
-      "run", "0, 1, ... in the order in which the runs began; a run ends with the driver or a reset",
-      [](S s) { return s.row.run; }, [](R r, i64 value) { r.run = value; }));
+                   "run", "0, 1, ... in the order in which the runs began; a run ends with the driver or a reset",
+                   [](S s) { return s.row.run; }, [](R r, i64 value) { r.run = value; })
+                   .shown());
   to.push_back(of_row<u64>(
       "run_id", "random number of the run",
       [](S s) {
@@ -48,15 +55,23 @@ void add_row(TraceFields& to) {
         return head != nullptr ? head->run : 0;
       },
       [](R r, u64 value) { r.run_id = value; }));
-  to.push_back(of_row<u64>(
-      "cycle", "k, from 0 in each run", [](S s) { return s.row.cycle; }, [](R r, u64 value) { r.cycle = value; }));
+  to.push_back(
+      of_row<u64>(
+          "cycle", "k, from 0 in each run", [](S s) { return s.row.cycle; }, [](R r, u64 value) { r.cycle = value; })
+          .shown()
+          .shown_as({.name = "time",
+                     .meaning = "s since the run began, cycle times period",
+                     .value = [](const JoinedRow& row, std::size_t) { return row.time; }}));
   to.push_back(of_row<i64>(
-      "stamp_ns", "ns, of the sensor sample, on the clock of the loop (CLOCK_MONOTONIC, or simulated time)",
-      [](S s) {
-        const FrameHead* head = head_of(s.row);
-        return head != nullptr ? head->stamp_ns : 0;
-      },
-      [](R r, i64 value) { r.stamp_ns = value; }));
+                   "stamp_ns",
+                   "ns, of the sensor sample, on the clock of the loop (CLOCK_MONOTONIC, or simulated time)",
+                   [](S s) {
+                     const FrameHead* head = head_of(s.row);
+                     return head != nullptr ? head->stamp_ns : 0;
+                   },
+                   [](R r, i64 value) { r.stamp_ns = value; })
+                   .shown()
+                   .as_timing());
   to.push_back(of_row<u8>(
       "parts", "bits of the nodes that have a row in this cycle: 1 driver, 2 estimator, 4 controller, 8 monitor",
       [](S s) { return bits_of(s.row.driver, s.row.laws.estimator, s.row.laws.controller, s.row.laws.monitor); },
@@ -76,14 +91,14 @@ void add_row(TraceFields& to) {
       [](S s) { return s.lost; }, [](R r, u64 value) { r.lost = value; }));
 }
 
-/// Not read back: a replay computes it again.
+/// A reader ignores it: a replay computes it again.
 void add_checksum(TraceFields& to) {
   to.push_back({.name = "checksum",
                 .type = wire_name<u32>(),
                 .comment = "of the fields before it and of the message's time in the bag",
-                .put = [](const TraceSource& source,
-                          std::string& message) { put_number(message, message_checksum(message, source.time_ns)); },
-                .take =
+                .write = [](const TraceSource& source,
+                            std::string& message) { write_number(message, message_checksum(message, source.time_ns)); },
+                .read =
                     [](ByteSource& from, TraceRow&) {
                       from.number<u32>();
                       return true;
@@ -114,18 +129,72 @@ TraceFields all_fields() {
 
 }  // namespace
 
+TraceField TraceField::shown() && {
+  return std::move(*this).shown({name});
+}
+
+TraceField TraceField::shown(const std::vector<std::string>& names) && {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    columns.push_back(plain);
+    columns.back().name = names[i];
+    columns.back().element = i;
+  }
+  return std::move(*this);
+}
+
+TraceField TraceField::shown_per_joint(std::string suffix) && {
+  columns.push_back(plain);
+  columns.back().name = std::move(suffix);
+  columns.back().per_joint = true;
+  return std::move(*this);
+}
+
+TraceField TraceField::shown_as(TraceColumn column) && {
+  columns.push_back(std::move(column));
+  return std::move(*this);
+}
+
+TraceField TraceField::as_timing() && {
+  for (TraceColumn& column : columns) column.timing = true;
+  return std::move(*this);
+}
+
 const std::vector<TraceField>& trace_fields() {
   static const TraceFields fields = all_fields();
   return fields;
 }
 
+std::vector<TraceColumn> log_columns(const std::vector<std::string>& joints, bool timing) {
+  std::vector<TraceColumn> columns;
+  for (const TraceField& field : trace_fields()) {
+    for (const TraceColumn& column : field.columns) {
+      if (column.timing && !timing) continue;
+      const std::size_t count = column.per_joint ? std::min(joints.size(), field.max_joints) : 1;
+      for (std::size_t j = 0; j < count; ++j) {
+        columns.push_back(column);
+        if (column.meaning.empty()) columns.back().meaning = field.comment;
+        if (!column.per_joint) continue;
+        columns.back().name = joints[j] + "_" + column.name;
+        columns.back().element = j;
+      }
+    }
+  }
+  return columns;
+}
+
 std::string trace_definition() {
   std::string text =
       "# One control cycle of all four nodes: sensors k, state k, command k, permit k. Topic `trace` of a log, beside\n"
-      "# TraceHeader. Enums and bits: src/signals. Written by tests/docs/trace_message.py; do not edit.\n";
+      "# TraceHeader. Enums and bits: src/signals. Behind | stand the columns of Python's arrays and of run.csv.\n"
+      "# Written by tests/docs/trace_message.py; do not edit.\n";
   for (const TraceField& field : trace_fields()) {
     if (!field.heading.empty()) text += "\n# " + field.heading + "\n";
-    text += field.type + " " + field.name + (field.comment.empty() ? "" : "  # " + field.comment) + "\n";
+    std::string comment = field.comment;
+    for (const TraceColumn& column : field.columns) {
+      comment += (&column == field.columns.data() ? " | " : ", ");
+      comment += (column.per_joint ? "<joint>_" : "") + column.name;
+    }
+    text += field.type + " " + field.name + (comment.empty() ? "" : "  # " + comment) + "\n";
   }
   return text;
 }

@@ -16,12 +16,6 @@ namespace {
 
 static_assert(kLawNodes.size() == kTraceRings);  // each law writes one ring, in the same order
 
-std::vector<std::string> joint_names(const RobotModel& robot) {
-  std::vector<std::string> names;
-  for (const JointModel& joint : robot.joints) names.push_back(joint.name);
-  return names;
-}
-
 std::int64_t bytes_of(double gigabytes) {
   return std::llround(gigabytes * 1.0e9);
 }
@@ -135,7 +129,10 @@ TelemetryProcess::TelemetryProcess(const Parameters& parameters, const RobotMode
       folder_(parameters.telemetry.directory, bytes_of(parameters.telemetry.quota)),
       lockstep_(parameters.loop.clock == ClockMode::kLockstep),
       permit_(bus, ChannelNames::kPermit),
-      join_(parameters.loop.period(), [this](const JoinedRow& row) { store(row); }),
+      join_(parameters.loop.period(),
+            [this](const JoinedRow& row) {
+              if (bag_ != nullptr) write_to_bag([&] { bag_->write(row); });
+            }),
       sources_(std::make_unique<Sources>(bus)) {
   // First: it notices another telemetry in this folder, whose logs are not to be renamed.
   if (parameters.telemetry.black_box > 0 && !lockstep_) {
@@ -145,13 +142,9 @@ TelemetryProcess::TelemetryProcess(const Parameters& parameters, const RobotMode
                                          parameters.telemetry.incidents, build_id(), log_header(parameters, robot));
     black_box_path_ = black_box_->path();
   }
-  if (parameters.telemetry.csv) {
-    csv_ = std::make_unique<CsvLog>(folder_, log_columns(joint_names(robot), !lockstep_));
-    csv_path_ = folder_.path(LogKind::kCsv);
-  }
   if (parameters.telemetry.record != RecordMode::kOff) {
     bag_ = std::make_unique<BagLog>(folder_, log_header(parameters, robot), parameters.telemetry);
-    bag_path_ = folder_.path(LogKind::kBag);
+    bag_path_ = folder_.path();
   }
   positions_.memory()->head.attached_run.store(0);
 }
@@ -170,10 +163,6 @@ void TelemetryProcess::poll() {
   const TelemetryCounts counted = counts();
   const std::uint64_t lost = counted.dropped + counted.overwritten;
   const std::int64_t now_ns = monotonic_ns();
-  if (csv_ != nullptr) {
-    write_down(csv_problem_, [&] { csv_->poll(now_ns); });
-    if (!csv_->broken()) csv_problem_.clear();
-  }
   if (black_box_ != nullptr) {
     permit_.poll();
     black_box_->add_state(utc_ns() - now_ns, lost);
@@ -182,13 +171,8 @@ void TelemetryProcess::poll() {
   if (bag_ == nullptr) return;
   bag_->set_lost(lost);
   if (!lockstep_) bag_->set_time_offset(utc_ns() - now_ns);
-  write_down(bag_problem_, [&] { bag_->poll(now_ns); });
-  if (!bag_->broken()) bag_problem_.clear();
-}
-
-void TelemetryProcess::store(const JoinedRow& row) {
-  if (csv_ != nullptr && !row.repeats) write_down(csv_problem_, [&] { csv_->write(row); });
-  if (bag_ != nullptr) write_down(bag_problem_, [&] { bag_->write(row); });
+  write_to_bag([&] { bag_->poll(now_ns); });
+  if (!bag_->broken()) problem_.clear();
 }
 
 /// A row before it is joined.
@@ -202,7 +186,7 @@ void TelemetryProcess::receive(const Row& row, std::size_t ring) {
   if (black_box_ == nullptr) return;
   black_box_->add(row);
   if constexpr (requires { row.permit; }) {
-    if (!permit_seen_) black_box_->see(row.permit.causes, monotonic_ns());
+    if (!permit_seen_) black_box_->watch(row.permit.causes, monotonic_ns());
   }
 }
 
@@ -231,7 +215,7 @@ std::size_t TelemetryProcess::drain() {
 void TelemetryProcess::check_permit() {
   Permit permit;
   if (permit_.reader.newest(permit) != Lookup::kFrame) return;
-  black_box_->see(permit.causes, monotonic_ns());
+  black_box_->watch(permit.causes, monotonic_ns());
   permit_seen_ = true;
 }
 
@@ -243,34 +227,22 @@ void TelemetryProcess::finish() {
   positions_.memory()->head.attached_run.store(0);
   drain();
   join_.finish();
-  if (csv_ != nullptr) write_down(csv_problem_, [this] { csv_->close(); });
-  if (bag_ != nullptr) write_down(bag_problem_, [this] { bag_->close(); });
+  if (bag_ != nullptr) write_to_bag([this] { bag_->close(); });
   // Last: a stop that is to be saved takes seconds, and roslaunch kills a node that takes 15 s to end.
   constexpr std::int64_t kSavingNs = 5'000'000'000;
   const std::int64_t end_ns = monotonic_ns() + kSavingNs;
   if (black_box_ != nullptr) black_box_->finish([end_ns] { return monotonic_ns() >= end_ns; });
-  const TelemetryCounts missing = counts();
-  std::string text;
-  const auto add = [&](std::uint64_t rows, const std::string& path, const std::string& problem) {
-    if (rows == 0 && problem.empty()) return;
-    text += (text.empty() ? "" : "\n") + std::to_string(rows) + " rows are not in " + path +
-            " or those before it: " + (problem.empty() ? "the disk took none for a while" : problem);
-  };
-  add(missing.unwritten, csv_path_, csv_problem_);
-  add(missing.bag_unwritten, bag_path_, missing.bag_unwritten == 0 ? "" : bag_problem_);
-  if (!text.empty()) throw LogError(text);
-}
-
-std::string TelemetryProcess::problem() const {
-  return csv_problem_ + (csv_problem_.empty() || bag_problem_.empty() ? "" : "; ") + bag_problem_;
+  if (bag_ == nullptr || bag_->unwritten() == 0) return;
+  throw LogError(std::to_string(bag_->unwritten()) + " rows are not in " + bag_path_ +
+                 " or those before it: " + (problem_.empty() ? "the disk took none for a while" : problem_));
 }
 
 template <class Act>
-void TelemetryProcess::write_down(std::string& problem, Act act) {
+void TelemetryProcess::write_to_bag(Act act) {
   try {
     act();
   } catch (const LogError& error) {
-    problem = error.what();
+    problem_ = error.what();
   }
 }
 
@@ -284,7 +256,6 @@ std::vector<std::string> TelemetryProcess::missing() const {
 
 TelemetryCounts TelemetryProcess::counts() const {
   TelemetryCounts counts{.join = join_.counts()};
-  if (csv_ != nullptr) counts.unwritten = csv_->unwritten();
   if (bag_ != nullptr) {
     counts.bag_rows = bag_->rows();
     counts.bag_unwritten = bag_->unwritten();

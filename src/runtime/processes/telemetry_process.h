@@ -1,5 +1,5 @@
 #pragma once
-/// The reader of the trace: takes the rows of the four rings, joins them by cycle and writes run.bag and run.csv.
+/// The reader of the trace: takes the rows of the four rings, joins them by cycle and writes run.bag.
 /// The black box (recording/black_box) gets them first, as they are. The causes that latched a stop are read from the
 /// newest permit.
 ///
@@ -7,7 +7,7 @@
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.
 ///
 /// A full disk ends a file, not this process. The rings are still emptied, so that no node waits for space. Rows that
-/// are not written are counted, and another file is tried (recording/bag_log.h, telemetry/csv_log.h).
+/// are not written are counted, and another file is tried (recording/bag_log.h).
 
 #include <array>
 #include <cstdint>
@@ -22,7 +22,6 @@
 #include "robot/robot_model.h"
 #include "rt/ring.h"
 #include "runtime/processes/process.h"
-#include "telemetry/csv_log.h"
 #include "telemetry/join.h"
 #include "telemetry/log_folder.h"
 
@@ -32,15 +31,14 @@ struct TelemetryCounts {
   JoinCounts join;
   std::uint64_t dropped = 0;        ///< by the writers, for want of room, since this process began
   std::uint64_t overwritten = 0;    ///< before they were read
-  std::uint64_t unwritten = 0;      ///< rows that the disk did not take for run.csv
-  std::uint64_t bag_rows = 0;       ///< in run.bag and those before it of this process
-  std::uint64_t bag_unwritten = 0;  ///< nor for run.bag
+  std::uint64_t bag_rows = 0;       ///< rows in run.bag and those before it of this process
+  std::uint64_t bag_unwritten = 0;  ///< rows that the disk did not take
   std::uint64_t incidents = 0;      ///< that were saved by this process
 };
 
 class TelemetryProcess {
  public:
-  /// Writes into the parameters' directory; earlier logs are kept as run.N.csv, run.N.bag. Throws BusError (another
+  /// Writes into the parameters' directory; earlier logs are kept as run.N.bag. Throws BusError (another
   /// telemetry reads), LogError (also: no room for the black box).
   TelemetryProcess(const Parameters& parameters, const RobotModel& robot, const std::string& bus);
   ~TelemetryProcess();
@@ -79,10 +77,9 @@ class TelemetryProcess {
   std::vector<std::string> take_notes();
 
   /// Why a log has ended, or run.bag waits for the disk; empty: nothing is wrong.
-  std::string problem() const;
+  const std::string& problem() const noexcept { return problem_; }
 
-  /// Paths of run.csv, run.bag and the black box; empty: it is not written.
-  const std::string& csv_path() const noexcept { return csv_path_; }
+  /// Paths of run.bag and of the black box; empty: it is not written.
   const std::string& bag_path() const noexcept { return bag_path_; }
   const std::string& black_box_path() const noexcept { return black_box_path_; }
   bool recording() const noexcept { return bag_ != nullptr && bag_->recording(); }
@@ -92,10 +89,9 @@ class TelemetryProcess {
   class Source;
   struct Sources;
 
-  /// Notes a LogError in `problem`.
+  /// Keeps the message of a LogError for `problem`.
   template <class Act>
-  static void write_down(std::string& problem, Act act);
-  void store(const JoinedRow& row);
+  void write_to_bag(Act act);
   template <class Row>
   void receive(const Row& row, std::size_t ring);
   void check_permit();
@@ -103,12 +99,9 @@ class TelemetryProcess {
   OwnedChannel<RingPositions> positions_;
   LogFolder folder_;
   bool lockstep_;
-  std::string csv_path_;
-  std::unique_ptr<CsvLog> csv_;  ///< null: not wanted
-  std::string csv_problem_;
   std::string bag_path_;
-  std::unique_ptr<BagLog> bag_;
-  std::string bag_problem_;
+  std::unique_ptr<BagLog> bag_;  ///< null: not wanted
+  std::string problem_;
   std::string black_box_path_;
   std::unique_ptr<BlackBoxKeeper> black_box_;  ///< null: not wanted
   Input<Permit> permit_;

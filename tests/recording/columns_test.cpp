@@ -1,5 +1,3 @@
-#include "telemetry/columns.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "recording/fields/trace_fields.h"
 #include "telemetry/traces.h"
 
 namespace robot_control {
@@ -14,9 +13,9 @@ namespace {
 
 using ::testing::IsSupersetOf;
 
-std::vector<std::string> names_of(const std::vector<Column>& columns) {
+std::vector<std::string> names_of(const std::vector<TraceColumn>& columns) {
   std::vector<std::string> names;
-  for (const Column& column : columns) names.push_back(column.name);
+  for (const TraceColumn& column : columns) names.push_back(column.name);
   return names;
 }
 
@@ -33,9 +32,10 @@ class Columns : public ::testing::Test {
   }
 
   double value(const std::string& name) const {
-    const auto column = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    const auto column =
+        std::find_if(columns.begin(), columns.end(), [&](const TraceColumn& c) { return c.name == name; });
     EXPECT_NE(column, columns.end()) << name;
-    return column == columns.end() ? std::nan("") : column->value(row, present_sources(row));
+    return column == columns.end() ? std::nan("") : column->value(row, column->element);
   }
 
   DriverTrace driver = driver_row(1, 1234);
@@ -43,7 +43,7 @@ class Columns : public ::testing::Test {
   ControllerTrace controller = controller_row(1, 1234);
   MonitorTrace monitor = monitor_row(1, 1234);
   JoinedRow row;
-  std::vector<Column> columns = log_columns(kJoints, true);
+  std::vector<TraceColumn> columns = log_columns(kJoints, true);
 };
 
 TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
@@ -142,14 +142,17 @@ TEST_F(Columns, HaveNamesOfTheirOwn) {
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }
 
-TEST_F(Columns, HaveOneGetterEach) {
-  for (const Column& column : columns) EXPECT_NE(column.real == nullptr, column.integer == nullptr) << column.name;
+TEST_F(Columns, HaveAValueAndAMeaning) {
+  for (const TraceColumn& column : columns) {
+    EXPECT_NE(column.value, nullptr) << column.name;
+    EXPECT_NE(column.meaning, "") << column.name;
+  }
 }
 
 TEST_F(Columns, OfTimeAreAllAndAloneAbsentFromLockstep) {
   std::vector<std::string> physical;
-  for (const Column& column : columns) {
-    if (column.kind == ColumnKind::kPhysical) physical.push_back(column.name);
+  for (const TraceColumn& column : columns) {
+    if (!column.timing) physical.push_back(column.name);
   }
   EXPECT_EQ(names_of(log_columns(kJoints, false)), physical);
   for (const std::string& name : physical) EXPECT_FALSE(name.ends_with("_ns")) << name;
@@ -158,12 +161,13 @@ TEST_F(Columns, OfTimeAreAllAndAloneAbsentFromLockstep) {
 TEST_F(Columns, AreEmptyWhereTheNodeHasNoFrame) {
   driver.sensors.valid = kValidBattery;
   monitor.permit.evidence[0].cause = kCauseTilt;
+  for (const TraceColumn& column : columns) EXPECT_FALSE(std::isnan(column.value(row, column.element))) << column.name;
   row.estimator = nullptr;
-  for (const Column& column : columns) {
-    EXPECT_EQ(column.filled(present_sources(row)), column.source != ColumnSource::kEstimator) << column.name;
-    EXPECT_EQ(std::isnan(column.value(row, present_sources(row))), column.source == ColumnSource::kEstimator)
-        << column.name;
-  }
+  EXPECT_TRUE(std::isnan(value("estimate_x")));
+  EXPECT_TRUE(std::isnan(value("estimate_flags"))) << "an integer, too";
+  EXPECT_FALSE(std::isnan(value("truth_x")));
+  EXPECT_FALSE(std::isnan(value("limited_linear")));
+  EXPECT_FALSE(std::isnan(value("permit_action")));
 }
 
 TEST_F(Columns, OfTheRowNeedNoNode) {
