@@ -12,7 +12,7 @@ from robot_control.common.files import LARGEST_TABLE, check_input, printable, ut
 
 
 class BagFileError(ValueError):
-    """A bag that is not read; the message names it, with byte and field where its structure is not sound."""
+    """The bag is not read; the message names it, with byte and field where its structure is not sound."""
 
 
 class BagFile:

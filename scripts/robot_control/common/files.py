@@ -33,7 +33,7 @@ class InputFileError(ValueError):
 
 
 def check_input(path: Path, most: int) -> None:
-    """Regular files of at most `most` bytes are read, nothing else: a device has no end, a FIFO none to wait for.
+    """Accepts regular files of at most `most` bytes alone: a device has no end, and a FIFO may have no writer.
 
     Raises:
         InputFileError: it is none.
@@ -108,18 +108,18 @@ def _end_of_part(line: str, at: int) -> int:
 
 
 class NewFiles:
-    """Files that get their content when the block ends well, all of them; otherwise they stay as they were.
+    """New files receive their content only if the block ends without an exception; otherwise all stay as they were.
 
     Nothing and regular files are replaced by a temporary file beside them, which has the old one's mode and owner. A
-    symbolic link holds for the file that it leads to. A device, a FIFO or a socket is written to, never replaced; so is
-    a file whose owner cannot be kept.
+    symbolic link is followed to its file. A device, a FIFO or a socket is written to, never replaced; so is a file
+    whose owner cannot be kept.
     """
 
     def __init__(self) -> None:
         self._names: list[tuple[Path, Path]] = []
 
     def name(self, final: Path) -> Path:
-        """Where to write what will be `final`.
+        """The path to write instead of `final` until the block ends.
 
         Raises:
             OSError: nothing can be written there.
@@ -157,8 +157,8 @@ class NewFiles:
             raise named from error
 
     def _named(self, error: OSError) -> OSError:
-        """The same error with the names that the user gave: that of a temporary file means nothing to him, and that of
-        a full disk has none.
+        """The same error with the names that the user gave. A temporary file's name means nothing to a user, and the
+        error of a full disk has none.
         """
         given = {str(partial): str(target) for partial, target in self._names}
         if error.errno is None or (error.filename is not None and error.filename not in given):

@@ -28,11 +28,11 @@ their units, stand in src/telemetry/columns.cpp; the same log comes out of `Clos
 
 
 class LogError(ValueError):
-    """The file is not a log, or holds no rows."""
+    """The file is no log, or holds no rows."""
 
 
 class Columns(dict[str, FloatArray]):
-    """`Log` of a file: a column that is asked for and is not there is an error of the file."""
+    """The `Log` of a file; a missing column that is asked for is reported as an error of the file."""
 
     def __init__(self, path: Path, columns: Mapping[str, FloatArray]) -> None:
         super().__init__(columns)
@@ -44,31 +44,30 @@ class Columns(dict[str, FloatArray]):
 
 @dataclass(frozen=True)
 class RunLog:
-    """A log with what stands around its rows."""
+    """A log with the data that describe its rows."""
 
     columns: dict[str, FloatArray]
-    """Of the last run; as `Log`."""
+    """Columns of the last run; see `Log`."""
     ros_time: FloatArray | None
-    """s, of each row; None: a CSV, which does not hold it."""
+    """s, of each row; None for a CSV, which does not hold it."""
     header: Mapping[str, Any]
-    """Of run.bag: robot, joints, wheels, period, clock, record, part, parameters, urdf, scene, calibration, version,
-    build, host, kernel, processor, libraries, missing, as msg/TraceHeader.msg says; empty of a CSV."""
+    """The header of run.bag, with the fields of msg/TraceHeader.msg; empty for a CSV."""
     runs: int
-    """In the file."""
+    """Number of runs in the file."""
     lost: int
-    """Rows that telemetry counted as lost before the last one in the file; 0 of a CSV, which does not hold it."""
+    """Rows that telemetry counted as lost before the last one in the file; 0 for a CSV, which does not hold it."""
     cut: str
-    """Which part of a file that was not completed could be read; empty: it is whole."""
+    """The part that could be read of a file that was not completed; empty if the file is whole."""
 
     @property
     def notes(self) -> list[str]:
-        """Sentences: which part of the file is here, where it is not all of it."""
+        """Sentences that name the part of the file that was read, if it is not all of it."""
         parts = [part for part in (self.header.get("missing"), self.cut) if part]
         return [*parts, *notes_on_runs(self.runs)]
 
 
 def notes_on_runs(runs: int) -> list[str]:
-    """For a file that holds so many, of which the last one was read."""
+    """The note for a file with several runs, of which the last one was read."""
     return [f"{runs} runs in the file; this is the last one"] if runs > 1 else []
 
 
@@ -104,7 +103,7 @@ def read_log(path: Path, columns: Sequence[str] = ()) -> dict[str, FloatArray]:
 
 
 def read_run(path: Path, columns: Sequence[str] = ()) -> RunLog:
-    """As `read_log`, with what stands around the rows."""
+    """Reads rows as `read_log` does, with the data that describe them."""
     return _read_bag(path, columns) if is_bag(path) else _read_csv(path, columns)
 
 
@@ -154,7 +153,7 @@ def _read_csv(path: Path, columns: Sequence[str]) -> RunLog:
 
 
 def _lines_of(file: TextIO) -> Iterator[str]:
-    """Up to a line with NUL: a disk that lost power leaves such.
+    """Yields the lines up to one with NUL, which a disk that lost power leaves.
 
     Raises:
         csv.Error: a line is longer than any of a log.

@@ -35,12 +35,13 @@ RAMP_TIME = 1.5
 END_LIMIT = 20.0
 """s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
 BUS = f"demo_{os.getpid()}"
-"""Of this demo alone. It goes with it: an object of 12 MB that outlives its nodes would fill a small /dev/shm."""
+"""Name of this demo's own bus. It is removed at the end: an object of 12 MB that outlives its nodes would fill a small
+/dev/shm."""
 OUTPUTS = ("run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log")
 
 
 class DemoError(RuntimeError):
-    """Something did not start, or died; the message says where to look."""
+    """Something did not start, or died; the message names the file with the reason."""
 
 
 class Child:
@@ -49,7 +50,7 @@ class Child:
     def __init__(self, command: Sequence[str], output: Path) -> None:
         self.output = output
         self._file: IO[bytes] = output.open("wb")
-        # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
+        # A shell starts its background jobs with SIGINT ignored, and children would inherit that.
         hearing = ("env", "--default-signal=INT", *command)
         self._process = subprocess.Popen(
             hearing, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
@@ -57,7 +58,7 @@ class Child:
 
     @property
     def running(self) -> bool:
-        """Has it not ended?"""
+        """True while it has not ended."""
         return self._process.poll() is None
 
     def end(self, limit: float = END_LIMIT) -> bool:
@@ -107,7 +108,9 @@ def run_demo(seconds: float, out: Path) -> int:
 
 
 def refusals(launch_log: str) -> list[str]:
-    """What real-time privileges were not granted, each kind once although every node says it, with its remedy."""
+    """The real-time privileges that were not granted, with their remedy. Each kind appears once although every node
+    reports it.
+    """
     found: dict[str, str] = {}
     for match in re.finditer(r"(memory is|SCHED_FIFO priority|core) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
         found.setdefault(match[1], match[0])

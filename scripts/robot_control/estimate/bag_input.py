@@ -20,7 +20,7 @@ NO_IMU = "none"  # of --imu
 
 @dataclass(frozen=True)
 class BagTopics:
-    """Which topics hold the samples; None: the only one that can."""
+    """The topics that hold the samples; None stands for the only topic of the right type."""
 
     wheels: str | None = None
     imu: str | None = None  # "none": wheels alone
@@ -62,7 +62,7 @@ class _Reader:
         self._types = bag.topics
 
     def imu_topic(self, wanted: str | None) -> str | None:
-        """None: there is none, which is noted."""
+        """The topic of the IMU; None if there is none, which is noted."""
         if wanted is not None:
             return self._known(wanted, (IMU,))
         there = self._of_type(IMU)
@@ -78,7 +78,9 @@ class _Reader:
         return there[0]
 
     def wheel_topic(self, wanted: str | None, robot: Robot, joints: tuple[str, str] | None) -> tuple[str, str]:
-        """Topic and type: joint states before odometry, which may have been fused with something already."""
+        """Topic and type of the wheels. Joint states are preferred to odometry, which may have been fused with another
+        sensor already.
+        """
         if wanted is not None:
             name = self._known(wanted, (JOINT_STATE, ODOMETRY))
             return name, self._types[name]
@@ -103,7 +105,7 @@ class _Reader:
         )
 
     def joints(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> tuple[Stream, Stream]:
-        """Angles of the wheels, of each side."""
+        """Angles of the wheels on each side."""
         names = self._names_of(topic, robot, joints)
         if names is None:
             self._refuse_joints([topic], robot, joints)
@@ -134,7 +136,7 @@ class _Reader:
         return Stream(ordered.time_ns, angles[:, :1]), Stream(ordered.time_ns, angles[:, 1:])
 
     def imu(self, topic: str, robot: Robot) -> list[Stream]:
-        """Angular velocity and specific force; a first covariance of −1 says that there is none (REP 145)."""
+        """Angular velocity and specific force; a first covariance of −1 declares that there is none (REP 145)."""
         stamps, rows = [], []
         frame = ""
         for message, stamp in self._messages(topic):
@@ -154,7 +156,7 @@ class _Reader:
         return [Stream(both.time_ns, both.values[:, :3]), Stream(both.time_ns, both.values[:, 3:])]
 
     def _messages(self, topic: str) -> Iterator[tuple[Any, int]]:
-        """Message and stamp [ns]; where the header has none, the time of recording."""
+        """Message and stamp [ns]; a header without stamp is replaced by the time of recording."""
         unstamped = 0
         for message, recorded in self._bag.messages(topic):
             stamp = message.header.stamp.to_nsec()
@@ -190,7 +192,7 @@ class _Reader:
         )
 
     def _names_of(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> dict[str, list[str]] | None:
-        """The joints of each side that a topic holds positions of; None: not all of them."""
+        """The joints of each side whose positions a topic holds; None if some are missing."""
         if joints is not None:
             wanted = {"left": [joints[0]], "right": [joints[1]]}
         else:

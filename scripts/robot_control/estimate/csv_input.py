@@ -30,7 +30,7 @@ class CsvForm:
     """How a CSV file is to be understood."""
 
     columns: Mapping[str, str] = field(default_factory=dict)  # our name → the file's
-    counts_per_turn: float = 2 * math.pi  # of the wheel columns; 2π: they are in rad
+    counts_per_turn: float = 2 * math.pi  # counts of the wheel columns per turn; 2π: they are in rad
     time_unit: str = "s"
     gyro_unit: str = "rad/s"
     accel_unit: str = "m/s2"
@@ -53,7 +53,7 @@ def read_csv(path: Path, robot: Robot, form: CsvForm) -> Samples:
 
 
 def _lines(path: Path, file: TextIO) -> Iterator[str]:
-    """The lines of a text; a file without any is not read to its end."""
+    """The lines of a text; reading stops early in a file that has none."""
     number = 0
     while line := file.readline(LONGEST_LINE + 1):
         number += 1
@@ -77,7 +77,7 @@ def _read_table(table: _Table, form: CsvForm) -> Samples:
 
 
 def _gyro(cells: Mapping[str, FloatArray], scale: float) -> FloatArray | None:
-    """Of a gyro with one axis the others are zero."""
+    """Angular velocity; a gyro with one axis has zeros in the others."""
     if "gyro_z" not in cells:
         return None
     absent = np.where(np.isnan(cells["gyro_z"]), np.nan, 0.0)
@@ -115,7 +115,7 @@ def _read_log(table: _Table, robot: Robot) -> Samples:
 
 
 class _Table:
-    """The rows of a file, from the one below its header on."""
+    """The rows of a file below its header."""
 
     def __init__(self, path: Path, file: Iterator[str]) -> None:
         self.path = path
@@ -132,7 +132,7 @@ class _Table:
         self._file = file
 
     def read(self, time: str, unit: str, names: list[str], run: str | None = None) -> tuple[IntArray, FloatArray, int]:
-        """Time in ns, the named columns, and how many values `run` had: only the rows of its last one come out."""
+        """Time in ns, the named columns, and the number of values of `run`; returns only the last run's rows."""
         at = self.header.index(time)
         cells = [self.header.index(name) for name in names]
         of_run = None if run is None else self.header.index(run)

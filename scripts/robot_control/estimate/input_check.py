@@ -1,4 +1,4 @@
-"""What is wrong with a recording, in sentences that say what to do: before anything is estimated from it."""
+"""Finds what is wrong with a recording before anything is estimated from it, in sentences that name the remedy."""
 
 from __future__ import annotations
 
@@ -13,38 +13,38 @@ from robot_control.estimate.samples import FloatArray, InputError, Robot, Sample
 from robot_control.estimate.streams import Streams, streams_of
 
 IN_G = (0.8, 1.25)
-"""of |accelerometer| that is gravity in g"""
+"""norm of an accelerometer at rest that measures in g"""
 SCALE = 0.12
-"""part by which |accelerometer| at rest may differ from gravity; a vacuum robot's is 4 % low"""
+"""share by which the accelerometer's norm at rest may differ from gravity; a vacuum robot's is 4 % low"""
 NO_GRAVITY = 0.5  # m/s²
 LARGEST_BIAS = math.radians(5)
-"""rad/s of a gyro at rest; beyond what a MEMS gyro's data sheet allows"""
+"""rad/s of a gyro at rest; the data sheets of MEMS gyros allow less"""
 BASES = (0.75, 1.35)
-"""of the turning's wheel base over the given one: tyres and floor explain no more"""
+"""wheel base by the turning over the given one; tyres and floor explain no more"""
 DEGREES_INSTEAD = (0.4, 3.0)
-"""of the same ratio, were the gyro in °/s; skid steers have up to 2.4"""
+"""the same ratio if the gyro were in °/s; skid steers reach 2.4"""
 CLEAR = 0.8
-"""share of the wheels' turning that the gyro must explain before anything is concluded"""
+"""share of the wheels' turning that the gyro must explain before a conclusion is drawn"""
 OFFSET, OFFSET_DEVIATION = 0.005, 0.02
-"""s: an offset of the clocks that is worth taking out, and how well it must be known"""
+"""s: the smallest offset of the clocks that is corrected, and its largest standard deviation"""
 FEWEST = 10
-"""samples that say how far apart they are"""
+"""number of samples from which their distance can be judged"""
 LEAST_APART, MOST_APART = 2e-5, 2.0
-"""s between samples: a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
+"""s between samples; a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
 COUNTS = 20
-"""different whole numbers that are no angles"""
+"""number of different whole numbers from which they are counts, not angles"""
 
 
 @dataclass
 class Findings:
-    """What the checks found."""
+    """The results of the checks."""
 
     warnings: list[str] = field(default_factory=list)
-    offset: float | None = None  # s, of the IMU's stamps after the wheels'; None: none that is worth taking out
+    offset: float | None = None  # s, delay of the IMU's stamps against the wheels'; None if none needs correction
 
 
 def check_angles(samples: Samples) -> None:
-    """Of angles that were given without a unit.
+    """Checks angles that were given without a unit.
 
     Raises:
         InputError: they are counts.
@@ -58,7 +58,7 @@ def check_angles(samples: Samples) -> None:
 
 
 def check(samples: Samples, robot: Robot) -> Findings:
-    """Of a recording whose wheel angles are in rad.
+    """Checks a recording whose wheel angles are in rad.
 
     Raises:
         InputError: a wheel has no angles, the times are in another unit, the accelerometer is in g, the gyro in °/s.
@@ -93,7 +93,7 @@ def _check_time(samples: Samples) -> None:
 
 
 def _check_gravity(streams: Streams, gravity: FloatArray, findings: Findings) -> bool:
-    """True: the accelerometer says where up is."""
+    """True if the accelerometer shows the vertical."""
     size = float(np.linalg.norm(gravity))
     if size < NO_GRAVITY:
         findings.warnings.append(

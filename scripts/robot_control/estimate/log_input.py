@@ -22,18 +22,18 @@ class LogColumns:
 
     @property
     def all(self) -> list[str]:
-        """In the order of `samples`."""
+        """Names of all columns, in the order in which `samples` expects them."""
         return [*self.left, *self.right, *GYRO, *ACCEL]
 
     def samples(self, time_ns: IntArray, values: FloatArray, notes: list[str]) -> Samples:
-        """`values`, shape (rows, columns): those of `all`."""
+        """The samples in `values`, shape (rows, columns), whose columns are those of `all`."""
         wheels = len(self.left) + len(self.right)
         left, right, gyro, accel = np.split(values, [len(self.left), wheels, wheels + len(GYRO)], axis=1)
         return Samples(time_ns, left, right, gyro, accel, notes, own_log=True)
 
 
 def log_columns(path: Path, there: Collection[str], robot: Robot) -> LogColumns:
-    """`there`: the names of the log's columns.
+    """The columns with samples among `there`, the names of the log's columns.
 
     Raises:
         InputError: it is the log of another robot, or has no IMU.

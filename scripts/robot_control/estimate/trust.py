@@ -1,4 +1,4 @@
-"""Whether an estimate can be relied on, and which sensors it did without."""
+"""Judges whether an estimate can be relied on, and which sensors it did not use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ USED_BY = {"gyro": "no_gyro", "accelerometer": "no_accelerometer"}
 
 
 class Trust:
-    """Gathers what the judgement needs, a piece at a time."""
+    """Gathers the data for the judgement, block by block."""
 
     def __init__(self) -> None:
         self._slipped = 0.0  # m
@@ -28,7 +28,7 @@ class Trust:
         self._yaw_deviation = 0.0  # rad
 
     def add(self, time_ns: IntArray, estimate: Estimate) -> None:
-        """A row counts for the time and the way since the one before."""
+        """Adds rows; each counts for the time and the way since the one before."""
         stamp, distance = self._before or (int(time_ns[0]), float(estimate["distance"][0]))
         steps = np.diff(time_ns, prepend=stamp) / 1e9
         ways = np.diff(estimate["distance"], prepend=distance)
@@ -42,7 +42,7 @@ class Trust:
         self._before = int(time_ns[-1]), float(estimate["distance"][-1])
 
     def doubts(self, samples: Samples) -> list[str]:
-        """Sentences; none where nothing is doubtful."""
+        """Reasons to doubt the estimate, a sentence each; empty if there are none."""
         found = []
         if self._yaw_deviation > LARGEST_YAW_DEVIATION:
             found.append(f"not to be trusted: the last yaw is known to ± {math.degrees(self._yaw_deviation):.0f}°")

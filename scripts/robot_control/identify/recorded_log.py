@@ -1,4 +1,4 @@
-"""The log of every cycle of a running robot: that of its telemetry, else one of our own."""
+"""The log of every cycle of a running robot, written by its telemetry, else by one that is started here."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ BAG_SETTLE = 4.0
 
 
 class RecordingError(RuntimeError):
-    """There is no log; the message says why."""
+    """There is no log; the message names the reason."""
 
 
 @dataclass(frozen=True)
 class RunningTelemetry:
-    """Of the robot, as it reports itself."""
+    """The telemetry as the robot reports it."""
 
     node: str
     path: str
-    """Of run.csv, which has every cycle, or, where there is none, of run.bag."""
+    """Path of run.csv, which has every cycle, or of run.bag if there is no CSV."""
     records: bool
-    """run.bag holds the cycles of now."""
+    """True if run.bag holds the present cycles."""
 
 
 class BagRecording:
-    """Rows of the run.bag of a telemetry from a moment on; which records all of them until they are read."""
+    """Rows that a telemetry writes to run.bag from a moment on; it records all of them until they are read."""
 
     def __init__(self, path: Path, telemetry: str, *, records: bool) -> None:
-        """`telemetry`: the node; `records`: it recorded before, and shall go on.
+        """`telemetry` is the node; `records`: it was recording before and shall go on.
 
         Raises:
             RecordingError: it does not record.
@@ -62,7 +62,7 @@ class BagRecording:
         self._begin = rospy.get_time()
 
     def read(self) -> dict[str, FloatArray]:
-        """What was written since.
+        """The columns of the rows that were written since the begin.
 
         Raises:
             LogError: nothing.
@@ -76,7 +76,7 @@ class BagRecording:
         return rows
 
     def end(self) -> None:
-        """As before."""
+        """Restores the telemetry's recording as it was."""
         if not self._records:
             with contextlib.suppress(RecordingError):
                 self._switch(on=False)
@@ -91,14 +91,14 @@ class BagRecording:
 
 
 class Recording:
-    """Rows of a file from a moment on."""
+    """Rows that are written to a file from a moment on."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self._begin = path.stat().st_size
 
     def read(self) -> dict[str, FloatArray]:
-        """What was written since.
+        """The columns of the rows that were written since the begin.
 
         Raises:
             LogError: nothing.
@@ -118,7 +118,7 @@ class Recording:
 def recording(
     running: RunningTelemetry | None, config: str, going_on: Callable[[], bool]
 ) -> Iterator[Recording | BagRecording]:
-    """Rows of `running`, a telemetry that runs already; None: starts one with the parameter file `config`.
+    """Rows of `running`, a telemetry that runs already; None starts one with the parameter file `config`.
 
     Raises:
         RecordingError: no rows come.
@@ -151,7 +151,7 @@ def recording(
 
 def _command(folder: Path, config: str) -> list[str]:
     telemetry = ["rosrun", "robot_control", "telemetry", f"__name:={NODE}", f"__ns:={rospy.get_namespace()}"]
-    # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
+    # A shell starts its background jobs with SIGINT ignored, and children would inherit that.
     return ["env", "--default-signal=INT", *telemetry, f"_directory:={folder}", f"_config:={config}"]
 
 

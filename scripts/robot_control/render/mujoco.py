@@ -30,12 +30,12 @@ OFFSCREEN, ALL, FONT_SCALE, MOST_SHAPES = 1, 7, 100, 5000
 
 
 class RenderError(RuntimeError):
-    """Nothing can be drawn here; the message says why."""
+    """Nothing can be drawn here; the message names the reason."""
 
 
 @dataclass(frozen=True)
 class Camera:
-    """Where it looks at, and from where."""
+    """The point at which the camera looks, and its own place."""
 
     lookat: tuple[float, float, float]  # m
     distance: float  # m

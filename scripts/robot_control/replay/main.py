@@ -86,7 +86,7 @@ def chosen(law: str | None) -> list[str]:
 
 
 def without_effect(keys: Sequence[str], live: Sequence[str]) -> list[str]:
-    """Of the keys that are set, those that no law takes over; `live`: of the controller, it takes them over."""
+    """The set keys that no law reads; the controller reads the keys `live` from the log."""
     taken = [f"diff_drive_controller.{key}" for key in live]
     return [key for key in keys if not key.startswith(("robot.", *VARIED)) and not key.startswith(tuple(taken))]
 
@@ -101,7 +101,7 @@ def verdict(report: Mapping[str, Any], law: str | None) -> int:
 
 
 def _differences(report: Mapping[str, Any], law: str | None) -> list[str]:
-    """What differs, in words; empty: nothing does."""
+    """The differences in words; empty if there are none."""
     rows = max([report["different_rows"], *(report["laws"][name]["different"] for name in chosen(law))])
     found = [f"{rows} rows DIFFER"] if rows else []
     if report["header"]:
@@ -112,7 +112,7 @@ def _differences(report: Mapping[str, Any], law: str | None) -> list[str]:
 
 
 def _left_out(report: Mapping[str, Any], law: str | None) -> list[str]:
-    """What was not compared, in words; empty: all was."""
+    """The parts that were not compared, in words; empty if all were."""
     rows = sum(report["laws"][name]["not_compared"] for name in chosen(law))
     missing = max(report["laws"][name]["missing"] for name in chosen(law))
     found = [f"{rows} rows NOT COMPARED"] if rows else []
@@ -124,7 +124,7 @@ def _left_out(report: Mapping[str, Any], law: str | None) -> list[str]:
 
 
 def text_of(report: Mapping[str, Any], setup: RecordedSetup, law: str | None) -> str:
-    """What was found; in the first line whether all was compared, and whether it is the same."""
+    """The report; its first line tells whether all was compared, and whether it is the same."""
     found = [*_differences(report, law), *_left_out(report, law)]
     lines = [
         f"{setup.path}: {', '.join(found) or 'every row is the same, bit for bit'}",

@@ -20,11 +20,11 @@ BOUNDS = ("most", "least")
 
 
 class BudgetError(ValueError):
-    """A file of budgets that cannot be applied; the message holds all that is wrong with it."""
+    """A file of budgets cannot be applied; the message names all errors in it."""
 
 
 class Verdict(Enum):
-    """Of one figure."""
+    """Verdict on one figure."""
 
     OK = "ok"
     FAILED = "FAILED"
@@ -47,7 +47,7 @@ class Judged:
 
     @property
     def verdict(self) -> Verdict:
-        """Without a bound there is none."""
+        """The verdict; a figure without a bound has none."""
         if self.most is None and self.least is None:
             return Verdict.UNJUDGED
         if math.isnan(self.figure.value):

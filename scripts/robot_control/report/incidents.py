@@ -1,4 +1,4 @@
-"""What happened: stops, brakes, slip, warnings, lost rows, each with its evidence."""
+"""Finds stops, brakes, slip, warnings and lost rows in a log, each with its evidence."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from robot_control.report.figures import DEGRADED, SLIP, STOPPED
 from robot_control.report.intervals import intervals, joined
 
 TOGETHER = 0.5
-"""s: two of a kind that are closer are one"""
+"""s: two of a kind that are closer count as one"""
 STOPPING = names.number_of("SupervisorState", "STOPPING")
 MOMENT = 20
-"""cycles without a node: a stretch with more stands alone"""
+"""cycles without a node; a longer stretch is reported on its own"""
 LONGEST_STOP = 10.0
 """s in which a robot is expected to come to rest"""
 
@@ -83,7 +83,7 @@ def _measured(drive: Drive, row: int) -> Iterator[str]:
 
 
 def _standstill(drive: Drive, row: int) -> str:
-    """How far the robot came after it."""
+    """The distance to standstill after it."""
     speed = np.abs(drive.column("truth_linear" if drive.has("truth_linear") else "estimate_linear"))
     turning = np.abs(drive.column("truth_angular" if drive.has("truth_angular") else "estimate_angular"))
     after = slice(row, row + _rows(drive, LONGEST_STOP))
@@ -99,7 +99,7 @@ def _standstill(drive: Drive, row: int) -> str:
 
 
 def _brakes(drive: Drive) -> Iterator[Incident]:
-    """Of the gate alone: what the monitor ordered is a stop."""
+    """Brakes of the gate alone; those that the monitor ordered are stops."""
     braked = drive.gate_braked()
     reasons = drive.bits("gate_reasons")
     for begin, end in joined(intervals(braked), _rows(drive, TOGETHER)):
@@ -144,7 +144,7 @@ def _bits(drive: Drive, column: str, kind: str, what: str) -> Iterator[Incident]
 
 def _gaps(drive: Drive) -> Iterator[Incident]:
     steps = np.diff(drive.log["cycle"])
-    # Where none was lost, what is not in the log was not to be recorded: telemetry.record is `motion`.
+    # If no row was lost, an absent row was not to be recorded: telemetry.record is `motion`.
     for row in np.flatnonzero(steps > 1).tolist() if drive.lost != 0 else ():
         span = float(drive.time[row]), float(drive.time[row + 1])
         yield Incident(2, "rows lost", *span, f"{_cycles(int(steps[row]) - 1)} not in the log")
@@ -153,7 +153,7 @@ def _gaps(drive: Drive) -> Iterator[Incident]:
     if not absent:
         return
     any_absent = np.any(list(absent.values()), axis=0)
-    any_absent[0] = False  # in its first tick a driver is alone
+    any_absent[0] = False  # the driver is alone in its first tick
     moments = []
     for begin, end in joined(intervals(any_absent), _rows(drive, TOGETHER)):
         of = [node for node, rows in absent.items() if rows[begin:end].any()]
@@ -168,7 +168,7 @@ def _gaps(drive: Drive) -> Iterator[Incident]:
 
 
 def _as_one(moments: list[tuple[int, Incident]]) -> Iterator[Incident]:
-    """Many short ones would hide what came of them."""
+    """Joins short ones, because many of them would hide their consequence."""
     if len(moments) < 2:
         yield from (one for _, one in moments)
         return

@@ -40,7 +40,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def report(options: argparse.Namespace) -> list[list[Judged]]:
-    """The verdicts of each log; they are printed, and the page is there.
+    """Writes and prints; returns the verdicts of each log.
 
     Raises:
         ValueError, OSError: one message.

@@ -53,9 +53,9 @@ ROWS = (
 """columns of bits: kind of name, word before it, colour"""
 STATE_ROWS = ("state", "permit", "gate verdict")
 WORD_WIDTH = 0.07
-"""of the run, which a bar with a word in it lasts at least"""
+"""share of the run; a shorter bar has no word in it"""
 ORDINARY = {"valid"}
-"""bits that are always set where all is well"""
+"""bits that are set in normal operation"""
 ACTIONS = {"brake": RED, "ramp": ORANGE, "drive": GREEN}
 VERDICTS = {"brake": RED, "passed": GREEN, "held": ORANGE, "clamped": PURPLE, "ramp": ORANGE}
 
@@ -113,7 +113,7 @@ def _path(plot: Any, x: FloatArray, y: FloatArray, look: Line) -> list[Any]:  # 
 
 
 def _ellipses(plot: Any, drive: Drive, colour: str) -> list[Any]:  # noqa: ANN401 (Bokeh's)
-    """Of 95 %, from the eigenvalues of the covariance of x and y."""
+    """Ellipses of 95 %, from the eigenvalues of the covariance of x and y."""
     columns = ("estimate_x", "estimate_y", "estimate_x_variance", "estimate_y_variance", "estimate_xy_covariance")
     table = np.column_stack([drive.column(name) for name in columns])
     way = drive.column("estimate_distance")
@@ -135,7 +135,7 @@ def _ellipses(plot: Any, drive: Drive, colour: str) -> list[Any]:  # noqa: ANN40
 
 
 def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
-    """A bar per state and per reason, as long as it lasted."""
+    """Draws a bar per state and per reason, as long as it lasted."""
     bars: list[tuple[str, int, int, str, str]] = []  # row of the plot, first row of the log, end, colour, words
     order: list[str] = []
     for column, kind, label, colours in (
@@ -169,7 +169,7 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
 
 
 def _thinned(found: list[tuple[int, int, int]], rows: int) -> list[tuple[int, int, int]]:
-    """Changes faster than a pixel: those that last longest there."""
+    """Keeps of the changes within one pixel those that last longest."""
     if len(found) <= 2 * BINS:
         return found
     kept: dict[int, tuple[int, int, int]] = {}
@@ -203,7 +203,7 @@ def _bars(axis: TimeAxis, drive: Drive, order: list[str], bars: list[tuple[str, 
 
 
 def histograms(drives: list[Drive]) -> list[Any]:
-    """Of each latency; counts on a logarithmic axis, because the rare ones matter."""
+    """Histograms of each latency; the counts have a logarithmic axis, because the rare ones matter."""
     plots = []
     for latency in LATENCIES:
         found = [durations_ns(drive, latency) / 1000 for drive in drives]

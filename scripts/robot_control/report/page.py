@@ -59,7 +59,7 @@ def page(drives: list[Drive], judged: list[list[Judged]], found: list[list[Incid
         "<footer>Lines show the least and the largest value of every 1/1500 of the run: nothing is smoothed, no peak is"
         " left out. Drag to zoom all time plots together, scroll to zoom one axis, click a legend entry to hide a"
         " series.</footer></main>"
-        # Names in a log are text from outside: no part of them ends the script.
+        # Names in a log are text from outside; none of them may end the script.
         f"<script>{script.replace('</', '<' + chr(92) + '/')}</script></body></html>"
     )
 

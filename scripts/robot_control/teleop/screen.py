@@ -12,19 +12,19 @@ WIDTH, HEIGHT = 80, 24
 LABEL = 10
 """columns of the word before each line"""
 MOST_LINES = {"to do": 3, "causes": 3, "answer": 3, "warnings": 2, "limits": 2}
-"""of one label, so that all of them find room"""
+"""lines of each label, so that all of them find room"""
 
 
 @dataclass(frozen=True)
 class View:
-    """What is shown beside the facts about the robot."""
+    """The values that are shown beside the facts about the robot."""
 
     keys: KeyMap
     topic: str  # absolute
     own_name: str  # of this node
     chosen: Command  # m/s, rad/s: the speeds of a held key
     requested: Command | None  # what is sent now; None: nothing
-    held: str = ""  # which key, and how
+    held: str = ""  # the held key and the kind of hold
     sent_age: float | None = None  # s since the last command; None: none was sent
     message: str = ""  # of this program
     answer: str = ""  # of the last e-stop or reset
@@ -32,8 +32,8 @@ class View:
 
 
 def render(facts: Facts, view: View, height: int = HEIGHT) -> list[str]:
-    """At most HEIGHT lines of at most WIDTH columns, for a terminal of `height` lines. Where it has
-    fewer, the body is cut, and the foot with the keys of the emergency stop stays, if need be its last line alone.
+    """The screen, at most HEIGHT lines of at most WIDTH columns, for a terminal of `height` lines. In a lower terminal
+    the body is cut. The foot with the keys of the emergency stop stays, if need be its last line alone.
     """
     height = min(height, HEIGHT)
     safety = facts.received()

@@ -1,4 +1,4 @@
-"""One act per press of a key, on a terminal that reports no releases. Pure: time is an argument.
+"""Lets a key act once per press, on a terminal that reports no releases. It reads no clock: time is an argument.
 
 first byte                       acts at once: no byte of this key within LONGEST_DELAY before it
 byte after SLOWEST_REPEAT        a tap or the keyboard's first repeat; it acts after SLOWEST_REPEAT, unless a
@@ -13,7 +13,7 @@ LONGEST_DELAY = HoldParameters.first_hold
 
 
 class SinglePress:
-    """Of all keys that act once per press."""
+    """All keys that act once per press."""
 
     def __init__(self) -> None:
         self._key = ""
@@ -21,7 +21,7 @@ class SinglePress:
         self._undecided = False  # the last byte may be a tap
 
     def press(self, key: str, now: float, *, repeat: bool = False) -> list[str]:
-        """A byte of `key` came; `repeat`: the terminal reports it as a repeat. The keys that act now."""
+        """The keys that act now, after a byte of `key`; `repeat`: the terminal reports it as a repeat."""
         acts = self.look(now)
         gap = now - self._last_byte if key == self._key else float("inf")
         if key != self._key and self._undecided:
@@ -31,7 +31,7 @@ class SinglePress:
         return [*acts, key] if gap > LONGEST_DELAY and not repeat else acts
 
     def release(self, key: str) -> list[str]:
-        """The terminal reports that `key` was released: its next byte is another press. The keys that act now."""
+        """The keys that act now, after the terminal reported the release of `key`: its next byte is another press."""
         if key != self._key:
             return []
         acts = [key] if self._undecided else []
@@ -39,7 +39,7 @@ class SinglePress:
         return acts
 
     def look(self, now: float) -> list[str]:
-        """The keys that act now, since no repeat has followed."""
+        """The keys that act now, because no repeat has followed."""
         if not self._undecided or now - self._last_byte <= SLOWEST_REPEAT:
             return []
         self._undecided = False
