@@ -1,8 +1,8 @@
-"""What a black box holds after SIGKILL of all nodes: four nodes and a telemetry as processes on the wall clock, without
-ROS, killed at a random moment, again and again.
+"""Measures what a black box holds after SIGKILL of all nodes. Four nodes and a telemetry run as processes on the wall
+clock, without ROS, and are killed at random moments.
 
-Judged are trials whose black box cannot be read or has a gap, and what is missing: of each node, the cycles from its
-newest row in the black box to the newest frame that it has published, which is still in shared memory.
+A trial fails if its black box cannot be read or has a gap, or if too many cycles are missing. The missing cycles of a
+node lie between its newest row in the black box and its newest published frame. That frame is still in shared memory.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ PROCESSES = (*LOOP, TELEMETRY)
 
 
 def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
-    """The table of `trials` from seed `first` on, and whether all figures are as they have to be."""
+    """The table of `trials` from seed `first` on, and whether all figures meet their bounds."""
     missing: list[float] = []
     bad = 0
     with tempfile.TemporaryDirectory(prefix="blackbox-") as name:
@@ -62,12 +62,12 @@ def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -
 
 
 def bus() -> str:
-    """The same for all trials: what the killed nodes leave in shared memory is used again."""
+    """All trials share one bus, so that shared memory of killed nodes is used again."""
     return f"blackbox-{os.getpid()}"
 
 
 def start(programs: Path, folder: Path) -> list[subprocess.Popen[bytes]]:
-    """All nodes, in one process group."""
+    """Starts all nodes in one process group."""
     (folder / "run.bag").unlink(missing_ok=True)
     settings = {"telemetry.black_box": 0.03, "telemetry.incidents": 0}
     nodes: list[subprocess.Popen[bytes]] = []
@@ -79,7 +79,7 @@ def start(programs: Path, folder: Path) -> list[subprocess.Popen[bytes]]:
 
 
 def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, seed: int) -> float:
-    """Kills all nodes at the same moment; ms of cycles that are missing of the node of which most are.
+    """Kills all nodes at the same moment; returns the missing cycles of the worst node, ms.
 
     Raises:
         RuntimeError: a node ended before, or the black box has a gap.
@@ -110,7 +110,7 @@ def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, se
 
 
 def newest_stamps(programs: Path) -> list[int]:
-    """Of the newest frame that each node has published, ns."""
+    """Stamps of the newest frame that each node has published, ns."""
     program = programs.parent / "support" / "rc_newest_stamps"
     answer = subprocess.run([program, "--bus", bus()], capture_output=True, text=True, check=True)
     return [int(line) for line in answer.stdout.split()]

@@ -1,4 +1,4 @@
-"""A robot that may reverse only slowly does."""
+"""A robot that may reverse only slowly does so."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A robot that rolls exactly as its wheels say, and what exact sensors measure of it."""
+"""A robot that rolls exactly with its wheels, and the measurements of exact sensors."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ class Drive:
     accel: np.ndarray
 
     def at(self, time):
-        """The same at other times, within this one's."""
+        """The same drive at other times within this one's."""
         names = [name for name in self.__dataclass_fields__ if name != "time"]
         values = {name: getattr(self, name) for name in names}
         taken = {

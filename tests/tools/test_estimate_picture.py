@@ -1,4 +1,4 @@
-"""The picture of an estimate: everything that its legends name can be seen, or its size can be read."""
+"""Every item in the legends of an estimate's picture is visible, or its size is readable."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ SECONDS, STEP = 12.0, 0.01
 
 @pytest.fixture
 def panels(monkeypatch, tmp_path):
-    """Of a second of rest, a ramp and a curve, with or without an IMU; axes: path, yaw, speeds, gyro bias."""
+    """Panels of a second of rest, a ramp and a curve, with or without an IMU; axes: path, yaw, speeds, gyro bias."""
 
     def draw(*, imu):
         time = np.arange(0, SECONDS, STEP)

@@ -1,4 +1,4 @@
-"""The plan keeps to its space, and who drives it stops when something is not as planned."""
+"""The plan stays in its space, and the program stops it when something is not as planned."""
 
 import math
 

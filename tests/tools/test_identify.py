@@ -1,4 +1,4 @@
-"""identify.py as a user meets it, without a robot: logs that are there, command lines, refusals."""
+"""identify.py without a robot: existing logs, command lines, refusals."""
 
 import math
 import sys
@@ -18,7 +18,7 @@ FRICTION = 0.1  # N·m
 
 
 def written(log, folder):
-    """As telemetry writes it."""
+    """Writes a log as telemetry does."""
     file = folder / "run.csv"
     rows = zip(*log.values(), strict=True)
     lines = [",".join(log), *(",".join("" if math.isnan(cell) else repr(float(cell)) for cell in row) for row in rows)]

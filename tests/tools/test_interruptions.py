@@ -1,4 +1,4 @@
-"""What was requested, held or planned before a stop, or before a program was suspended, moves nothing after it."""
+"""A request, hold or plan from before a stop, or before a suspension of the program, moves nothing after it."""
 
 import math
 import subprocess

@@ -1,4 +1,4 @@
-"""Poses that jump while a path is driven: set_odometry, a localisation. The robot is one that does as commanded."""
+"""The pose jumps while a path is driven, by set_odometry or a localisation. The robot follows its commands exactly."""
 
 import math
 
@@ -74,7 +74,7 @@ def test_a_turn_that_falls_back_for_ever_ends_the_path():
 
 
 def test_what_lies_behind_the_farthest_point_reached_is_off_the_path():
-    """The tangent of the first piece goes on for ever, and a robot that was carried back stood on it."""
+    """The tangent of the first piece is infinite, and a robot that was carried back stood on it."""
     robot = Jumping(STRAIGHT)
     robot.drive(3.0)
     for _ in range(40):

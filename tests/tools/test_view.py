@@ -1,4 +1,4 @@
-"""What RViz shows, without RViz."""
+"""Tests the markers for RViz, without RViz."""
 
 import math
 import xml.etree.ElementTree as ET

@@ -11,7 +11,7 @@ ground moves torque between them, and the share of each is chance.
 s and e: torque of scrubbing beyond f and d while turning; p: mass times centre of gravity ahead of the wheels; c:
 slope.
 
-No noisy signal is differentiated. A difference of angles commutes with a moving average, so both sides of the equation
+No noisy signal is differentiated. A difference of angles commutes with a moving average. So both sides of the equation
 pass the same four moving averages of WINDOW s (a cubic B-spline). The same law holds for the filtered signals, whatever
 the torque does from cycle to cycle. The torque of sample k acted over [t_k−1, t_k), hence τ(t_k) is the mean of samples
 k and k+1.

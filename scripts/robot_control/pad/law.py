@@ -5,8 +5,8 @@
 
 With enable_turbo_button held, the turbo scales hold instead. The names are those of teleop_twist_joy.
 
-The enable button counts only after it was seen released since the pad came, since a stop or since a pause of this
-program (interruptions.py). It also counts only while the robot may drive. A hold ends after max_hold, whatever the
+The enable button counts only after it was seen released. That release has to follow the pad's connection and every stop
+and pause of this program (interruptions.py), while the robot may drive. A hold ends after max_hold, whatever the
 stick does. The reason: a wireless receiver that has lost its pad goes on reporting its last values, noise included.
 
 One pad is one sender. While messages of another sender arrive within joy_timeout, nothing moves.

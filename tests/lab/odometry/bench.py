@@ -1,4 +1,5 @@
-"""`scripts/bench odometry`: every scenario with every seed, over all processors; table, promises, plots.
+"""`scripts/bench odometry` runs every scenario with every seed on all processors; it prints a table, promises and
+plots.
 
 python3 -P -m lab.odometry.bench --runs 3 --only slip,waves --plots FOLDER
 """
@@ -23,7 +24,7 @@ from lab.odometry.table import table
 from lab.runs.runner import Processes, Runner
 
 SEEDS = 50
-LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors have something to do to the end
+LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors are busy to the end
 
 
 def all_runs(
@@ -36,8 +37,8 @@ def all_runs(
     cache: Path | None = None,
     runner: Runner | None = None,
 ) -> list[Run]:
-    """In the order of scenarios and seeds; `level`: one of sensor_errors.LEVELS; `pictured`: the seed whose runs keep
-    what a plot needs; `cache`: folder of recordings, taken where they are there.
+    """Runs in the order of scenarios and seeds. `level`: one of sensor_errors.LEVELS. `pictured`: the seed whose runs
+    keep the data of a plot. `cache`: folder of recordings, which are used if they exist.
     """
     order = sorted(scenarios, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else 9)
     work = [(scenario, seed) for scenario in order for seed in seeds]
@@ -102,7 +103,7 @@ def bench(
     scenarios: Sequence[str] = tuple(SCENARIOS),
     runner: Runner | None = None,
 ) -> tuple[dict[str, Any], bool]:
-    """The result, and whether every promise is kept; `say` receives progress and what is not."""
+    """The result, and whether every promise is kept; `say` receives progress and broken promises."""
     began = time.monotonic()
     for folder in (plots, cache):
         if folder is not None:

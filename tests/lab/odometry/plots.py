@@ -1,4 +1,4 @@
-"""The odometry benchmark as pictures: what one sees at a glance beside its table."""
+"""Draws the odometry benchmark as pictures beside its table."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TRUE, SLIP = "black", "#c0392b"
 
 
 def draw_all(runs: Sequence[Run], folder: Path) -> None:
-    """Writes those for which there are runs: PNG, 110 dots per inch."""
+    """Writes the pictures of all present runs: PNG, 110 dots per inch."""
     there = {run.scenario for run in runs}
     pictured = {run.scenario: run.picture for run in runs if run.picture is not None}
     with mpl.rc_context(STYLE):

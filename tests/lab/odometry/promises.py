@@ -1,7 +1,7 @@
-"""What the odometry promises, each with its measured figure: `scripts/bench odometry`.
+"""The promises of the odometry, each with its measured figure: `scripts/bench odometry`.
 
-The bounds are those of the project's requirements. They hold for robots and sensors as errors.py draws them,
-in the drives of scenarios.py, judged as judge.py says; "with n seeds" where fewer prove less.
+The bounds are those of the project's requirements. They hold for robots and sensors of errors.py, in the drives of
+scenarios.py, judged by judge.py. A row says "with n seeds" if fewer seeds prove less.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from lab.odometry.tested_estimator import OURS
 from lab.odometry.truth import Array
 
 SIMPLE, RAW, CALIBRATED = "simple odometry", "raw wheels", "calibrated wheels"
-WITHOUT_SLIP = "random"  # the scenario whose NEES is judged; within default limits on dry ground nothing slips
-WORTH = 0.2  # m, that calibrated wheels have to err by for a slip run to count
+WITHOUT_SLIP = "random"  # its NEES is judged; within default limits on dry ground nothing slips
+WORTH = 0.2  # m; a slip run counts only if calibrated wheels err by more
 
 
 @dataclass(frozen=True)
 class Promise:
-    """`bound` is the most that `value` may be; with `least`, the least."""
+    """`bound` is the upper bound of `value`; with `least` it is the lower one."""
 
     name: str
     value: float
@@ -35,7 +35,7 @@ class Promise:
 
     @property
     def kept(self) -> bool:
-        """NaN is not."""
+        """True if the bound holds; NaN never does."""
         return self.value >= self.bound if self.least else self.value <= self.bound
 
     def __str__(self) -> str:
@@ -44,7 +44,7 @@ class Promise:
 
 
 def of(runs: Sequence[Run], scenario: str) -> list[Run]:
-    """Those of one scenario."""
+    """The runs of one scenario."""
     return [run for run in runs if run.scenario == scenario]
 
 
@@ -59,7 +59,7 @@ def yaws(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
 
 
 def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise]:
-    """Of the scenarios that there are runs of; beyond the errors of the data sheet, those of the field."""
+    """The promises of all present scenarios; beyond the errors of the data sheet, those of the field."""
     if level != "data_sheet":
         return field(runs)
     there = {run.scenario for run in runs}
@@ -76,7 +76,7 @@ def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise
 
 
 def field(runs: Sequence[Run]) -> list[Promise]:
-    """Of sensors that err as in the field."""
+    """Promises for sensors that err as in the field."""
     promises = []
     if of(runs, "umbmark"):
         promises.append(Promise("UMBmark, mean", 1e3 * positions(runs, "umbmark").mean(), 30, "mm"))
@@ -92,7 +92,7 @@ def field(runs: Sequence[Run]) -> list[Promise]:
 
 
 def umbmark(runs: Sequence[Run]) -> list[Promise]:
-    """Largest mean return error."""
+    """Promises on the largest mean return error."""
     ours, raw = positions(runs, "umbmark"), positions(runs, "umbmark", RAW)
     return [
         Promise("UMBmark, worst seed", 1e3 * ours.max(), 40, "mm"),
@@ -102,7 +102,7 @@ def umbmark(runs: Sequence[Run]) -> list[Promise]:
 
 
 def random_drive(runs: Sequence[Run]) -> list[Promise]:
-    """Ten minutes; and the second half of them without gyro."""
+    """Promises on ten minutes, and on their second half without gyro."""
     drives = of(runs, "random")
     share = 100 * np.array([run.position[OURS] / run.distance for run in drives])
     yaw = yaws(runs, "random")
@@ -118,7 +118,7 @@ def random_drive(runs: Sequence[Run]) -> list[Promise]:
 
 
 def standstill(runs: Sequence[Run]) -> list[Promise]:
-    """Ten minutes of it, the worst seed."""
+    """Promises on ten minutes at rest, the worst seed."""
     drifts = np.array([run.drift for run in of(runs, "standstill")])
     return [
         Promise("standstill, way in 10 min", 1e3 * drifts[:, 0].max(), 0.1, "mm"),
@@ -127,7 +127,7 @@ def standstill(runs: Sequence[Run]) -> list[Promise]:
 
 
 def slip(runs: Sequence[Run]) -> list[Promise]:
-    """A minute of it each."""
+    """Promises on a minute of slip in each run."""
     ours, wheels = positions(runs, "slip"), positions(runs, "slip", CALIBRATED)
     worth = wheels > WORTH
     notices = [run.notice for run in of(runs, "slip")]
@@ -143,7 +143,7 @@ def slip(runs: Sequence[Run]) -> list[Promise]:
 
 
 def false_alarms(runs: Sequence[Run]) -> list[Promise]:
-    """Of all runs of a scenario together, where no wheel slips by more than 5 %."""
+    """Promises on all runs of a scenario together, in rows in which no wheel slips by more than 5 %."""
     promises = []
     for scenario in SCENARIOS:
         notices = [run.notice for run in of(runs, scenario)]
@@ -154,7 +154,7 @@ def false_alarms(runs: Sequence[Run]) -> list[Promise]:
 
 
 def never_worse(runs: Sequence[Run]) -> list[Promise]:
-    """Than 1.1 × the simple odometry: ratio of the medians over the seeds, in every scenario."""
+    """Promise to stay below 1.1 × the simple odometry: ratio of the medians over the seeds, in every scenario."""
     promises = []
     for scenario in (name for name in SCENARIOS if of(runs, name)):
         for what, errors in (("position", positions), ("yaw", yaws)):
@@ -164,14 +164,14 @@ def never_worse(runs: Sequence[Run]) -> list[Promise]:
 
 
 def in_band(runs: Sequence[Run], what: str) -> float:
-    """Part of the sampled times at which the mean NEES over the runs is inside the band."""
+    """Share of the sampled times at which the mean NEES over the runs is inside the band."""
     _, means, low, high = mean_nees(runs, what)
     return float(np.mean((means >= low) & (means <= high)))
 
 
 def mean_nees(runs: Sequence[Run], what: str) -> tuple[Array, Array, Array, Array]:
-    """(K,) each: time s, mean over the runs that move then, and the band of as many; of the sampled times that all runs
-    reach, those at which any moves.
+    """(K,) each: time s, mean over the runs in motion, and the band for as many runs. The times are those that all runs
+    reach, with any of them in motion.
     """
     series = [run.pose_nees if what == "pose" else run.twist_nees for run in runs]
     count = min(len(each) for each in series)

@@ -1,4 +1,4 @@
-"""The odometry benchmark as lines of text."""
+"""Prints the odometry benchmark as lines of text."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def _by_scenario(runs: Sequence[Run]) -> list[str]:
 
 
 def _noticed(runs: Sequence[Run]) -> list[float]:
-    """%: of the time with slip that is flagged, of the time without that is, of all time that slips."""
+    """%: flagged share of the time with slip, of the time without slip, and share of the time with slip."""
 
     def total(of_run: Callable[[Run], int]) -> int:
         return sum(map(of_run, runs))
