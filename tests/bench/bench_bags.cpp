@@ -1,4 +1,4 @@
-/// bench_bags FIRST RUNS: so many damaged bags (tests/bags/bag_trials.h), on all cores.
+/// bench_bags FIRST RUNS: reads RUNS damaged bags (tests/bags/bag_trials.h) on all cores.
 
 #include <sys/resource.h>
 
@@ -12,7 +12,8 @@
 namespace robot_control::bench {
 namespace {
 
-constexpr double kMostMegabytes = 512;  // of the process: two bags of some 10 kB at a time, which inflate to 64 MiB
+constexpr double kMostMegabytes =
+    512;  // memory of the process: two bags of some 10 kB at a time, which inflate to 64 MiB
 
 double peak_megabytes() {
   rusage usage{};

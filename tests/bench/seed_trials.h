@@ -1,5 +1,5 @@
 #pragma once
-/// So many seeds of one property, on all cores. The first violations go to stderr, each with its seed.
+/// Runs many seeds of one property on all cores. The first violations go to stderr, each with its seed.
 
 #include <algorithm>
 #include <atomic>
@@ -17,7 +17,7 @@ namespace robot_control::bench {
 
 class SeedTrials {
  public:
-  /// `violation` of a seed: which property, where and by what; called from several threads.
+  /// Returns the violated property, its place and its cause; it is called from several threads.
   using Violation = std::function<std::optional<std::string>(std::uint64_t seed)>;
 
   SeedTrials(std::string bench, Violation violation) : bench_(std::move(bench)), violation_(std::move(violation)) {}

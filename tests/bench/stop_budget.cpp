@@ -25,7 +25,7 @@ bool turning(const TruthFrame& truth) {
   return std::abs(truth.twist_base.angular[2]) > 0.05;  // rad/s: 12 mm/s at diffbot's wheels
 }
 
-/// Where scenes are named without their folder, beside the parameter file's own.
+/// The parameters for a scenario; scenes without a folder lie beside the parameter file's own.
 Parameters parameters_of(const std::string& path, const StopScenario& scenario) {
   std::vector<Overlay> overlays = scenario.parameters;
   const std::filesystem::path scenes = std::filesystem::path(path).parent_path() / "../urdf/scenes";
@@ -35,7 +35,7 @@ Parameters parameters_of(const std::string& path, const StopScenario& scenario) 
   return read_parameters(path, overlays);
 }
 
-/// What one cycle adds.
+/// Adds the data of each cycle.
 class Observer {
  public:
   Observer(StopMeasurement& measured, bool fact_known) : measured_(measured), fact_known_(fact_known) {}

@@ -7,7 +7,7 @@
 namespace robot_control {
 namespace {
 
-/// A controller that publishes every cycle, and a thread that looks now and then.
+/// A controller that publishes every cycle, and a thread that reads now and then.
 class ReasonHistoryTest : public testing::Test {
  protected:
   void publish(std::uint64_t reasons, std::uint64_t run = 7) {

@@ -21,7 +21,7 @@ using testing::StartsWith;
 constexpr double kLogPeriod = 0.001;  // s
 constexpr std::uint64_t kLogSecond = 1000;
 
-/// A robot that has just become ready; its permits go the way of the node, through the message.
+/// A robot that has just become ready; its permits pass through the message, as in the node.
 class StopLogTest : public testing::Test {
  protected:
   StopLogTest() {

@@ -1,5 +1,5 @@
-/// What the field adds to the errors of the data sheet, against its theory. A sample variance of n independent normal
-/// numbers has the relative deviation √(2/n): every bound is five of them, and the seeds are fixed.
+/// Checks the additional errors of the field, beyond the data sheet, against their theory. A sample variance of n
+/// independent normal numbers has the relative deviation √(2/n). Every bound is five of them, and the seeds are fixed.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ class VibrationTest : public testing::Test {
     vibration.reset(3);
     return vibration;
   }
-  /// What is added at `speed` m/s, one cycle after the other.
+  /// The vibration that is added at `speed` m/s, one cycle after the other.
   ImuSample step(Vibration& vibration, double speed) const {
     Measurement measurement;
     measurement.joints[kLeftWheel].velocity = measurement.joints[kRightWheel].velocity = speed / 0.1;
@@ -304,7 +304,7 @@ TEST_F(FieldPlant, TheCentreOfGravityIsOff) {
   EXPECT_NEAR(field[1] - described[1], off, 1e-4);
 }
 
-// Else the noise of one sample would be the bias that a short rest shows.
+// Otherwise the noise of one sample would pass for the bias in a short rest.
 TEST(FieldErrors, BeginWithWhatTheImuMeasuredBefore) {
   MujocoPlantParameters parameters;
   parameters.sensor_errors = ErrorLevel::kField;

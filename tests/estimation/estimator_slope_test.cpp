@@ -1,4 +1,4 @@
-// Ground that is not level: height, roll and pitch in three dimensions, or the horizontal projection.
+// The ground is not level: height, roll and pitch in three dimensions, or the horizontal projection.
 
 #include "estimation/estimator_fixture.h"
 #include "support/constants.h"
@@ -10,8 +10,8 @@ constexpr double kSlope = 0.1;  // rad, upwards
 constexpr double kTime = 1.0;   // s, in which the robot pitches
 constexpr double kSpeed = 0.5;
 
-/// From level ground onto a ramp: the body pitches up about its contacts by kSlope, evenly accelerated and braked. On
-/// the ramp the way s rises by s sin(slope) and goes s cos(slope) far.
+/// The robot drives from level ground onto a ramp: the body pitches up about its contacts by kSlope, evenly accelerated
+/// and braked. On the ramp the way s rises by s sin(slope) and reaches s cos(slope) far.
 class EstimatorSlopeTest : public testing::TestWithParam<bool> {
  protected:
   EstimatorSlopeTest() {
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Planar, EstimatorSlopeTest, testing::Bool(), [](const t
   return planar.param ? "Projected" : "InThreeDimensions";
 });
 
-// It stands on a ramp when it is switched on: tilt and bias cannot be separated; it does not move.
+// It stands on a ramp when it is switched on: tilt and bias cannot be separated, and it does not move.
 TEST(EstimatorOnARamp, StartsWithTheTiltThatItStandsAt) {
   EstimatorParameters parameters;
   parameters.planar = false;

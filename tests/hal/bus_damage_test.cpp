@@ -1,5 +1,5 @@
-/// Damaged objects, from their heads on: a reader maps them or says why not, the next writer makes
-/// the channel whole.
+/// Objects are damaged from their heads on: a reader maps or refuses them with a reason, the next writer makes the
+/// channel whole.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -37,7 +37,7 @@ class BusDamageTest : public testing::Test {
     FrameWriter<TestFrame>(channel.memory()).publish(frame);
   }
 
-  /// Strikes the whole object, its head, or its length.
+  /// Damages the whole object, its head, or its length.
   static void strike(Damage& damage, std::vector<char>& object) {
     const std::span<std::byte> bytes(reinterpret_cast<std::byte*>(object.data()), object.size());
     switch (damage.below(4)) {
@@ -57,7 +57,7 @@ class BusDamageTest : public testing::Test {
     ASSERT_EQ(chmod(file().c_str(), 0600), 0);
   }
 
-  /// Whatever is mapped can be looked at, and shows no frame but the one that was published.
+  /// A mapped object can be read, and shows no frame but the published one.
   static void look(const ForeignChannel<Frames>& reader) {
     if (reader.memory() == nullptr) return;
     TestFrame frame;

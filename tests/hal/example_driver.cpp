@@ -33,7 +33,7 @@ ExampleDriver::ExampleDriver(const RobotModel& robot, std::vector<std::unique_pt
   }
 }
 
-// May block: the loop does not run yet.
+// It may block: the loop does not run yet.
 void ExampleDriver::start() {
   faults_ = 0;
   state_ = DriverState::kStarting;

@@ -1,4 +1,4 @@
-/// What the gate makes of the limits of its joints, and how it fails.
+/// Tests the gate's limits on its joints, and its failure modes.
 
 #include <cstring>
 #include <stdexcept>
@@ -115,7 +115,7 @@ TEST_F(GateRate, AHeldCommandGoesOnTowardsIt) {
   EXPECT_EQ(reasons(), kGateCommandHeld | kGateRateClamped);
 }
 
-// A robot held on a slope: the controller takes over what the brake was holding.
+// The brake held a robot on a slope: the controller takes over its torque.
 TEST_F(GateRate, AfterABrakeItMayBeginWhereTheBrakeHeld) {
   sensors_.joints[0].effort = -3;
   ask(-3);

@@ -1,5 +1,5 @@
-/// Every sensor and motor fails in every way, in four processes and in one: the same bytes, and never a standstill of
-/// time.
+/// Every sensor and motor fails in every way, in four processes and in one: the bytes are the same, and time never
+/// stands still.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kTimeout = 240;  // s
 
-// One fault after the other, each in a block of cycles: drive, fail, recover, stop, reset what was latched.
+// One fault after the other, each in a block of cycles: drive, fail, recover, stop, reset of the latched stop.
 constexpr std::uint64_t kBlock = 1200;
 constexpr std::uint64_t kFails = 400;
 constexpr std::uint64_t kRecovers = 460;

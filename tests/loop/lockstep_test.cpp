@@ -1,4 +1,4 @@
-/// Four processes against the closed loop in one: the same bytes.
+/// Four processes give the same bytes as the closed loop in one.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -145,7 +145,7 @@ std::size_t equal_rows(const Log& reference, const Log& other) {
   return std::min(reference.rows(), other.rows());
 }
 
-/// A machine that stalls makes a frame late, and from there on the two runs may differ: each wall-clock run is judged
+/// A machine that stalls makes a frame late, and from there on the two runs may differ. Each wall-clock run is judged
 /// up to its first missed or late frame. Runs are repeated until these stretches add up to 2 s.
 TEST_F(Lockstep, AWallClockRunEqualsLockstepUntilTheFirstMissedCycle) {
   constexpr std::size_t kNeeded = 2000;  // rows

@@ -1,5 +1,5 @@
-/// Pause, step, reset and faults while four processes run: in lockstep with the bytes of the closed loop, on the wall
-/// clock without a jump.
+/// Pause, step, reset and faults while four processes run give the bytes of the closed loop in lockstep, and no jump on
+/// the wall clock.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@ namespace {
 constexpr double kServicePatience = 120;         // s
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
-/// Two logs, line by line: where they part, in words; "" where they do not.
+/// The first difference of two logs, line by line; "" if there is none.
 std::string parting(const std::string& first, const std::string& second) {
   std::istringstream a(first), b(second);
   std::string row, other;
@@ -60,7 +60,7 @@ class Services : public ::testing::Test {
     script << "cycle,linear,angular,event\n" << rows;
   }
 
-  /// run.csv of four processes under these hands.
+  /// run.csv of four processes under these operations.
   std::string four_processes(ClockMode clock, const FourNodes::Operator& operate) {
     parameters_.loop.clock = clock;
     FourNodes(parameters_, robot_, true).run(kServicePatience, operate);
@@ -72,7 +72,7 @@ class Services : public ::testing::Test {
   RobotModel robot_;
 };
 
-/// Pauses before cycle 0, so that everything happens in a cycle that is known.
+/// Pauses before cycle 0, so that every event happens in a known cycle.
 void step_from_the_beginning(SimulationServices& services, std::uint64_t cycles) {
   services.set_pause(true);
   ServiceAnswer answer;
@@ -177,7 +177,7 @@ TEST_F(Services, OnTheWallClockAResetAtSpeedIsFollowedWithoutAJump) {
   EXPECT_EQ(static_cast<std::uint64_t>(rows[second + 20].at("permit_causes")) & kCauseDriverLost, 0u);
 }
 
-/// What the operator reads of the sensors channel.
+/// The operator reads this frame from the sensors channel.
 SensorFrame newest(DriverProcess& driver) {
   SensorFrame sensors;
   while (driver.sensors().newest(sensors) != Lookup::kFrame) sleep_ns(1'000'000);
@@ -187,7 +187,7 @@ SensorFrame newest(DriverProcess& driver) {
 TEST_F(Services, OnTheWallClockAPauseStopsTimeAndIsNeitherCaughtUpNorSlip) {
   constexpr std::int64_t kPause = kSecond / 2;
   constexpr std::uint64_t kPeriod = 1'000'000;   // ns
-  constexpr std::int64_t kStall = kSecond / 20;  // what a busy machine may take off a thread of this test
+  constexpr std::int64_t kStall = kSecond / 20;  // delay that a busy machine may cause a thread of this test
   const auto rows = rows_of(four_processes(ClockMode::kWall, [](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     sleep_ns(kSecond);

@@ -1,4 +1,4 @@
-/// A node is stopped, killed, or crashes, at full speed.
+/// A node is stopped, killed, or crashes at full speed.
 
 #include <filesystem>
 
@@ -97,7 +97,7 @@ TEST_P(ALostPlant, IsNamedByEveryOtherAndHoldsTheLatch) {
 INSTANTIATE_TEST_SUITE_P(Each, ALostPlant, ::testing::Values(SIGSTOP, SIGKILL, SIGSEGV),
                          [](const auto& each) { return name_of_signal(each.param); });
 
-/// It was away for some milliseconds, or its absence could not be seen: time proves nothing.
+/// The plant was absent for some milliseconds, or its absence could not be detected: time proves nothing.
 class APlantStartedAgain : public Losses {
  protected:
   void start_again() {
@@ -132,7 +132,7 @@ TEST_F(APlantStartedAgain, BesideAMonitorThatSleptMeanwhileIsLost) {
   expect_lost();
 }
 
-/// The log's reader.
+/// The reader of the rows, which writes the log.
 class ALostTelemetry : public Losses, public ::testing::WithParamInterface<int> {};
 
 TEST_P(ALostTelemetry, HarmsNothing) {

@@ -1,4 +1,4 @@
-/// Drives of the closed loop, computed again from their rows, bit for bit.
+/// Drives of the closed loop, computed again from their rows, bit by bit.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ constexpr std::uint64_t kSecond = 1000;  // cycles
 
 class ReplayedDrive : public testing::Test {
  protected:
-  /// `act(k)` before each step.
+  /// Calls `act(k)` before each step.
   void drive(
       std::uint64_t cycles, const std::function<void(std::uint64_t)>& act = [](std::uint64_t) {}) {
     for (std::uint64_t k = 0; k < cycles; ++k) {

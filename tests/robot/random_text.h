@@ -20,7 +20,7 @@ inline bool toss(Random& random) {
   return below(random, 2) == 1;
 }
 
-/// In decimals, 1 nm.
+/// A decimal number, to 1 nm.
 inline std::string metres(double value) {
   std::string text = std::to_string(std::llround(value * 1e9));
   const bool negative = text[0] == '-';

@@ -1,5 +1,5 @@
-/// Against a writer that changes any word between any two looks, a reader still ends within a fixed number of
-/// loads: the atomics of this test give another value at every load.
+/// A writer changes any word between any two reads, and a reader still ends within a fixed number of loads. The atomics
+/// of this test give another value at every load.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ struct Row {
   std::array<std::uint64_t, 3> values{};
 };
 
-/// The most loads that one call made.
+/// The largest number of loads in one call.
 template <class Look>
 std::uint64_t most_loads(Look look) {
   std::uint64_t most = 0;

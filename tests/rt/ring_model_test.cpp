@@ -1,5 +1,5 @@
-/// The code of Ring itself, with two slots and rows of two words, in every execution of a writer and a reader that
-/// the memory model of C++ allows.
+/// Runs the code of Ring itself, with two slots and rows of two words, in every execution of a writer and a reader. The
+/// executions are those that the memory model of C++ allows.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class RingModelTest : public testing::Test {
 
   using Reader = RingReader<Row, ModelAtomic, kRows>;
 
-  /// Takes a row, which must be the one that the reader's position says.
+  /// Takes a row, which must be that of the reader's position.
   bool take(Reader& reader) {
     Row row;
     if (!reader.take(row)) return false;
@@ -44,14 +44,14 @@ class RingModelTest : public testing::Test {
     return true;
   }
 
-  /// The writer does not learn what was read.
+  /// The writer does not know which rows were read.
   Report rows_overwritten(std::uint64_t rows) {
     return explore(rows, nullptr, [this](Reader& reader) {
       for (int i = 0; i < 3; ++i) take(reader);
     });
   }
 
-  /// The reader publishes its position; the writer drops what finds no room.
+  /// The reader publishes its position; the writer drops rows without room.
   Report rows_dropped(std::uint64_t rows) {
     return explore(rows, &read_, [this](Reader& reader) {
       for (int i = 0; i < 3; ++i) {
@@ -61,7 +61,7 @@ class RingModelTest : public testing::Test {
     });
   }
 
-  /// Killed anywhere in its second row, whose place its successor fills.
+  /// The writer is killed anywhere in its second row, whose place its successor fills.
   Report rows_of_a_killed_writer() {
     return model_.explore(
         [this] {
@@ -78,7 +78,7 @@ class RingModelTest : public testing::Test {
         });
   }
 
-  /// What is known to be written is found.
+  /// A row that is known to be written is found.
   Report row_that_was_told_of() {
     return model_.explore(
         [this] {
@@ -92,7 +92,7 @@ class RingModelTest : public testing::Test {
         });
   }
 
-  /// What is known to be read has made room.
+  /// A row that is known to be read has made room.
   Report room_that_was_told_of() {
     return model_.explore(
         [this] {
@@ -156,7 +156,7 @@ TEST_F(RingModelTest, WhatIsKnownToBeWrittenIsFoundAndWhatIsKnownToBeReadMakesRo
 }
 
 TEST_F(RingModelTest, EveryOrderAndEveryCheckIsNeeded) {
-  // That the writer acquires `read` keeps its stores behind the reader's loads, which the model never mixes up.
+  // The writer acquires `read` to keep its stores behind the reader's loads; the model never exchanges these.
   EXPECT_EQ(unnoticed(model_, "ring.h",
                       {[this] { return row_that_was_told_of(); }, [this] { return room_that_was_told_of(); },
                        [this] { return rows_overwritten(4); }, [this] { return rows_dropped(4); },

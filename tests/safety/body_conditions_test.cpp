@@ -1,5 +1,5 @@
-/// What happens to the body, at 1 kHz. The healthy case: a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart, its IMU
-/// in the middle, upright, rolling straight at 0.5 m/s; the last bits of every sample are others.
+/// Tests conditions of the body at 1 kHz. The healthy case is a robot of 10 kg on two wheels of 0.1 m, 0.4 m apart,
+/// with its IMU in the middle. It is upright and rolls straight at 0.5 m/s; the last bits of every sample differ.
 
 #include "safety/conditions/body_conditions.h"
 
@@ -40,7 +40,7 @@ class BodyConditionsTest : public testing::Test {
     begin();
   }
 
-  /// Restarts with the parameters and the robot as they are now; healthy for 10 cycles.
+  /// Restarts with the present parameters and robot; it is healthy for 10 cycles.
   void begin() {
     facts_ = BodyConditions(parameters_, robot_, kPeriod);
     steps(10);
@@ -52,7 +52,7 @@ class BodyConditionsTest : public testing::Test {
     sensors_.imu.linear_acceleration = plain(force_ + jitter_ * Vector3d::Ones());
     look();
   }
-  /// At the frame as it is.
+  /// Checks the present frame.
   void look(std::uint64_t elapsed = 1) {
     out_.clear();
     facts_.step(sensors_, elapsed, wheels_turn_, out_);
@@ -61,7 +61,7 @@ class BodyConditionsTest : public testing::Test {
     for (int i = 0; i < count; ++i) step();
   }
 
-  /// Cycles until this very cause is active, none besides; −1: not within `most`.
+  /// Cycles until this cause alone is active; −1: not within `most`.
   int cycles_until(StopCause cause, int most = 2000) {
     for (int i = 1; i <= most; ++i) {
       step();
@@ -76,7 +76,7 @@ class BodyConditionsTest : public testing::Test {
   }
   bool quiet() const { return out_.measurements().empty(); }
 
-  /// Leans by `angle` about x from now on, as a robot that is set on a ramp.
+  /// Leans by `angle` about x from now on, like a robot that is set on a ramp.
   void lean(double angle) { force_ = kGravity * Vector3d(0, std::sin(angle), std::cos(angle)); }
 
   SafetyParameters parameters_;
@@ -111,7 +111,7 @@ TEST_F(BodyConditionsTest, ALeanBelowTheLimitIsNone) {
   EXPECT_EQ(cycles_until(kCauseTilt), -1);
 }
 
-// Tipping at 1 rad/s, slower than the limit of tip_over: at the limit after 0.42 s, and its persistence.
+// It tips at 1 rad/s, slower than the limit of tip_over: it reaches the limit after 0.42 s, and its persistence.
 TEST_F(BodyConditionsTest, TiltIsFoundWhileItGrows) {
   int count = 0;
   for (double angle = 0; quiet() && count < 2000; ++count) {
@@ -241,7 +241,7 @@ TEST_F(BodyConditionsTest, CastersCarryToo) {
   EXPECT_EQ(cycles_until(kCauseLift, 200), -1);
 }
 
-// On a ramp of 0.3 rad weight m g stands on the wheels, along the vertical.
+// On a ramp of 0.3 rad the weight m g rests on the wheels, along the vertical.
 TEST_F(BodyConditionsTest, WeightIsVertical) {
   lean(0.3);
   facts_.enter_run();
@@ -318,7 +318,7 @@ TEST_F(BodyConditionsTest, ContactForcesThatAreNotFiniteTellNothing) {
   EXPECT_EQ(cycles_until(kCauseLift, 500), -1);
 }
 
-// 1 m/s at 2 rad/s: 2 m/s² to the left, 0.2 rad if it were taken for gravity.
+// 1 m/s at 2 rad/s gives 2 m/s² to the left, which would be 0.2 rad as gravity.
 TEST_F(BodyConditionsTest, ACurveIsNoTilt) {
   rate_ = {0, 0, 2};
   force_ = {0, 2, kGravity};
@@ -356,7 +356,7 @@ TEST_F(BodyConditionsTest, EncodersThatSayNothingDoNoHarm) {
   EXPECT_LT(facts_.attitude().tilt(), 1e-6);
 }
 
-// Mounted upside down and turned: what it measures is turned back into base axes.
+// The IMU is mounted upside down and turned: its samples are turned back into base axes.
 TEST_F(BodyConditionsTest, TheMountingOfTheImuCounts) {
   const Eigen::Quaterniond mounting =
       Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()) * Eigen::AngleAxisd(0.5, Vector3d::UnitZ());

@@ -1,5 +1,5 @@
 #pragma once
-/// What the plant really did, cycle by cycle: read from its trace ring, which outlives a look that comes late.
+/// The true motion of the plant, cycle by cycle, from its trace ring, which tolerates a late reader.
 
 #include <cmath>
 #include <cstdint>
@@ -37,7 +37,7 @@ class DriveLog {
     if (channel_.poll()) reader_.emplace(channel_.memory());
   }
 
-  /// Takes what is there. A ring holds 2 s at 1 kHz: look more often.
+  /// Takes the available rows. A ring holds 2 s at 1 kHz: call it more often.
   void look() {
     while (reader_ && reader_->take(row_)) {
       const TruthFrame& truth = row_.truth;
@@ -59,7 +59,7 @@ class DriveLog {
   bool empty() const noexcept { return cycles_.empty(); }
   const DrivenCycle& last() const { return cycles_.back(); }
 
-  /// The last `count` cycles all braked, at rest.
+  /// True if the last `count` cycles all braked, at rest.
   bool rested(std::size_t count) const {
     constexpr double kRest = 0.01;  // m/s, a hundredth of full speed
     if (cycles_.size() < count) return false;
@@ -69,7 +69,7 @@ class DriveLog {
     return true;
   }
 
-  /// The first cycle from which on every one braked; nothing: the last one did not.
+  /// The first cycle from which on every one braked; nothing if the last one did not.
   std::optional<std::uint64_t> braking_since() const {
     std::optional<std::uint64_t> since;
     for (std::size_t i = cycles_.size(); i-- > 0 && cycles_[i].verdict == GateVerdict::kBrake;)
@@ -87,7 +87,7 @@ class DriveLog {
     return way;
   }
 
-  /// m, the longest step from a cycle to the next: top speed · period, where nothing jumps.
+  /// m, the longest step from a cycle to the next: top speed · period, if nothing jumps.
   double longest_step() const {
     double longest = 0;
     for (std::size_t i = 1; i < cycles_.size(); ++i) {

@@ -14,7 +14,7 @@
 namespace robot_control {
 namespace {
 
-/// A disk that takes so much of a file and no more.
+/// A disk that accepts only so much of a file.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {
@@ -33,7 +33,7 @@ class FullDisk {
 
 class ACsvLog : public ::testing::Test {
  protected:
-  /// True: the disk took them, or they wait for it.
+  /// True if the disk took the rows, or they wait for it.
   bool write(std::uint64_t rows) {
     bool taken = true;
     for (std::uint64_t i = 0; i < rows; ++i, ++given_) {

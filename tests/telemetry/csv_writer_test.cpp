@@ -180,7 +180,7 @@ TEST_F(Csv, SaysOnceThatTheDiskIsFull) {
   EXPECT_THAT(message, HasSubstr("/dev/full cannot be written: No space left on device; make room"));
 }
 
-// The aim is under 15 µs for 78 columns, optimised, on a quiet machine; a shared one cannot judge it, so it is
+// The aim is less than 15 µs for 78 columns, optimised, on a quiet machine. A shared machine cannot judge it, so it is
 // recorded.
 TEST_F(Csv, TellsWhatARowCosts) {
   CsvWriter csv(folder / "run.csv", log_columns(kJoints, true));
