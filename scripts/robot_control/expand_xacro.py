@@ -18,9 +18,9 @@ from typing import IO
 
 from robot_control.common.files import check_input
 
-LARGEST_INCLUDED = 64 << 20  # bytes
+MAX_INCLUDED = 64 << 20  # bytes
 NOT_INSTALLED = 69  # EX_UNAVAILABLE of sysexits.h
-MOST_MEMORY = 2 << 30  # bytes; macros that call each other without end reach it
+MAX_MEMORY = 2 << 30  # bytes; macros that call each other without end reach it
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
 
@@ -72,7 +72,7 @@ def open_text(name: str, mode: str = "r") -> IO[str]:
         InputFileError, OSError: it names the file.
     """
     if mode == "r":
-        check_input(Path(name), LARGEST_INCLUDED)
+        check_input(Path(name), MAX_INCLUDED)
     file: IO[str] = Path(name).open(mode)  # noqa: SIM115 (xacro closes it)
     return file
 
@@ -124,7 +124,7 @@ def better_reason(said: str, files: Sequence[str], macros: Sequence[str]) -> str
 
 def main() -> None:
     """Exits with xacro's own code, or with NOT_INSTALLED."""
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
     try:
         import xacro
     except ImportError:

@@ -40,7 +40,7 @@ DEGRADED_REASONS: dict[str, int] = _bits("DegradedReason")
 """Name → bit of `degraded`."""
 
 _STAMP_ROUNDING = 1e-9  # s: text and ROS stamps hold nanoseconds
-_FARTHEST, _MOST_TURNED = 1e6, 1e6  # m, rad: largest values that the node's service set_odometry accepts
+_FARTHEST, _MAX_TURNED = 1e6, 1e6  # m, rad: largest values that the node's service set_odometry accepts
 _QUATERNION_TOLERANCE = 1e-3  # of the norm: four decimals, as people write them
 
 
@@ -132,13 +132,13 @@ class Estimator:
         Raises:
             ValueError: a number that is none, or beyond 1000 km or 10⁶ rad; then nothing has changed.
         """
-        for name, value, most, unit in (
+        for name, value, bound, unit in (
             ("x", x, _FARTHEST, "m"),
             ("y", y, _FARTHEST, "m"),
-            ("yaw", yaw, _MOST_TURNED, "rad"),
+            ("yaw", yaw, _MAX_TURNED, "rad"),
         ):
-            if not abs(value) <= most:
-                raise ValueError(f"{name} is {value}; it must be a number of -{most:g} … {most:g} {unit}")
+            if not abs(value) <= bound:
+                raise ValueError(f"{name} is {value}; it must be a number of -{bound:g} … {bound:g} {unit}")
         self._pose = [float(x), float(y), float(yaw)]
 
     def process(

@@ -10,7 +10,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-constexpr double kMostSeconds = 2.0;  // s of processor time; a trial takes milliseconds, under a sanitizer some hundred
+constexpr double kMaxSeconds = 2.0;  // s of processor time; a trial takes milliseconds, under a sanitizer some hundred
 
 std::size_t below(Random& random, std::size_t end) {
   return end == 0 ? 0 : std::uniform_int_distribution<std::size_t>(0, end - 1)(random);
@@ -143,7 +143,7 @@ std::optional<std::string> bag_violation(std::uint64_t seed, BagFigures& figures
     if (!text.starts_with("byte ") || text.find(", field ") == std::string::npos || text.size() > 600) wrong = text;
   }
   const double seconds = processor_seconds() - begin;
-  if (seconds > kMostSeconds) wrong = "it took " + std::to_string(seconds) + " s of processor time";
+  if (seconds > kMaxSeconds) wrong = "it took " + std::to_string(seconds) + " s of processor time";
   return wrong.empty() ? std::nullopt : std::optional(wrong);
 }
 

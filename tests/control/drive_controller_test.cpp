@@ -417,8 +417,9 @@ class Emergency : public DriveControllerTest {
     EXPECT_EQ(reasons & reason, reason);
     EXPECT_EQ(limited(), 0);
     const double speed = std::hypot(0.5, 0);
-    const double way = speed * speed / (2 * deceleration) + speed * deceleration / (2 * 10);
-    EXPECT_NEAR(bench.plant.distance - start, way, 2e-3 + 2e-3 * speed) << "two cycles of delay, and what a curve adds";
+    const double distance = speed * speed / (2 * deceleration) + speed * deceleration / (2 * 10);
+    EXPECT_NEAR(bench.plant.distance - start, distance, 2e-3 + 2e-3 * speed)
+        << "two cycles of delay, and what a curve adds";
   }
 };
 

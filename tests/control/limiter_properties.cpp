@@ -84,7 +84,7 @@ struct Axis {
     const double grain = 1e-12 * limits.speed / dt;  // of a difference of two speeds
     const double tolerance = kLimitRounding * (1 + std::abs(step)) + grain;
     const double slows = emergency ? limits.emergency_deceleration : limits.deceleration_from(speed);
-    const auto side = [](double of) { return (of > 0) - (of < 0); };
+    const auto side = [](double value) { return (value > 0) - (value < 0); };
     const bool crosses = side(speed) * side(next) < 0 && std::abs(next) > grain * dt;
     const bool slower = !crosses && std::abs(next) <= std::abs(speed);
     double bound = slower ? slows : limits.acceleration_towards(next - speed);

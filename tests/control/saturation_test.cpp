@@ -37,9 +37,9 @@ double off_the_arc(ControlBench& bench, double seconds) {
   for (double t = 0; t < seconds; t += bench.period) {
     bench.step();
     heading += bench.plant.twist.angular * bench.period;
-    const double way = bench.plant.distance;
-    if (way < 0.02) continue;
-    largest = std::max(largest, std::abs(heading * kCurve.linear / (kCurve.angular * way) - 1));
+    const double distance = bench.plant.distance;
+    if (distance < 0.02) continue;
+    largest = std::max(largest, std::abs(heading * kCurve.linear / (kCurve.angular * distance) - 1));
   }
   return largest;
 }

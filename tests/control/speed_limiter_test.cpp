@@ -349,8 +349,8 @@ Steepest drive_to(SpeedLimiter& limiter, double target) {
   for (int k = 0; k < 3000; ++k) {
     const double before = limiter.value().linear;
     const double after = limiter.step({target, 0}, 1e-3).linear;
-    double& most = std::abs(after) > std::abs(before) ? steepest.grows : steepest.shrinks;
-    most = std::max(most, std::abs(after - before) / 1e-3);
+    double& largest = std::abs(after) > std::abs(before) ? steepest.grows : steepest.shrinks;
+    largest = std::max(largest, std::abs(after - before) / 1e-3);
     steepest.end = after;
   }
   return steepest;

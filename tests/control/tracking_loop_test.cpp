@@ -105,9 +105,9 @@ TEST(TrackingLoop, LagsAConstantJerkByTheErrorInItsHeader) {
   EXPECT_NEAR(errors.velocity, 3 * jerk / (kW * kW), 0.03 * 3 * jerk / (kW * kW));
 }
 
-// At 20 Hz a linear law would have 0.04, 0.16 and 1.3 rad/s. `most` is large if counts and period almost agree.
+// At 20 Hz a linear law would have 0.04, 0.16 and 1.3 rad/s. `bound` is large if counts and period almost agree.
 TEST(TrackingLoop, ShowsHardlyAnyCountsInSteadyMotion) {
-  const struct { double counts, usual, most; } encoders[] = {{4096, 0.006, 0.1}, {512, 0.03, 0.13}, {90, 0.05, 0.25}};
+  const struct { double counts, usual, bound; } encoders[] = {{4096, 0.006, 0.1}, {512, 0.03, 0.13}, {90, 0.05, 0.25}};
   for (const auto& encoder : encoders) {
     std::mt19937 random(static_cast<unsigned>(encoder.counts));
     std::vector<double> ripples;
@@ -119,7 +119,7 @@ TEST(TrackingLoop, ShowsHardlyAnyCountsInSteadyMotion) {
     }
     std::ranges::sort(ripples);
     EXPECT_LT(ripples[20], encoder.usual) << encoder.counts;
-    EXPECT_LT(ripples[40], encoder.most) << encoder.counts;
+    EXPECT_LT(ripples[40], encoder.bound) << encoder.counts;
   }
 }
 
@@ -133,12 +133,12 @@ TEST(TrackingLoop, SeesAWheelStopWhateverItsCounts) {
     TrackingLoop loop(kBandwidth, dt);
     loop.restart_from(0, speed);
     for (int k = 1; k <= 2000; ++k) loop.step(std::floor(speed * k * dt / count) * count, 0, 1);
-    const double there = loop.position();
+    const double stopped = loop.position();
     const double measured = std::floor(speed * 2 / count) * count;
     const int cycles = static_cast<int>((0.06 + count / speed) / dt);
     for (int k = 0; k < cycles; ++k) loop.step(measured, 0, 1);
     EXPECT_LT(loop.velocity(), 0.2 * speed) << counts;
-    EXPECT_NEAR(loop.position(), there, 2 * count + 0.02 * speed) << counts;
+    EXPECT_NEAR(loop.position(), stopped, 2 * count + 0.02 * speed) << counts;
   }
 }
 

@@ -230,7 +230,7 @@ TEST_F(Tune, OfTheBandwidthKeepsWhatIsTracked) {
   tune(bench, given);
   for (int k = 0; k < 20; ++k) {
     bench.step();
-    // Without the residual's share it would be told 0.1·(63 − 25) = 3.8 rad/s² that are not there: 4e-3 rad/s a cycle.
+    // Without the residual's share it would assume 0.1·(63 − 25) = 3.8 rad/s² too much: 4e-3 rad/s a cycle.
     ASSERT_NEAR(bench.command.velocity_measured[0], before, 1e-5) << k;
   }
 }

@@ -278,13 +278,13 @@ TEST_F(FieldPlant, EncodersAreAsLateAsTheirJitterSays) {
   const Driven on_time = drive();
   parameters_.encoder_jitter = 0.005;
   const Driven late = drive();
-  double most = 0;
+  double largest = 0;
   for (std::size_t k = 0; k < late.positions.size(); ++k) {
     ASSERT_LE(late.positions[k], on_time.positions[k] + 1e-9);
-    most = std::max(most, on_time.positions[k] - late.positions[k]);
+    largest = std::max(largest, on_time.positions[k] - late.positions[k]);
   }
-  EXPECT_GT(most, 0.005 * 10) << "a standard deviation at 10 rad/s";
-  EXPECT_LT(most, 6 * 0.005 * 10 + 0.01) << "six of them and a cycle";
+  EXPECT_GT(largest, 0.005 * 10) << "a standard deviation at 10 rad/s";
+  EXPECT_LT(largest, 6 * 0.005 * 10 + 0.01) << "six of them and a cycle";
 }
 
 TEST_F(FieldPlant, TheCentreOfGravityIsOff) {

@@ -145,7 +145,7 @@ TEST_F(SensorFaultsTest, ADelayedEncoderIsTenCyclesLate) {
 }
 
 TEST_F(SensorFaultsTest, AnIntermittentEncoderIsThereAndNot) {
-  int there = 0, gone = 0;
+  int present = 0, gone = 0;
   for (std::uint64_t cycle = kOnset; cycle < kOnset + 500; ++cycle) {
     step(FaultComponent::kLeftEncoder, FaultKind::kIntermittent, cycle);
     if (std::isnan(left().position)) {
@@ -153,10 +153,10 @@ TEST_F(SensorFaultsTest, AnIntermittentEncoderIsThereAndNot) {
       ++gone;
     } else {
       EXPECT_EQ(left().position, left_at(cycle).position);
-      ++there;
+      ++present;
     }
   }
-  EXPECT_GT(there, 50);
+  EXPECT_GT(present, 50);
   EXPECT_GT(gone, 50);
 }
 

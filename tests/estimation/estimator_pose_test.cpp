@@ -319,10 +319,10 @@ TEST_F(EstimatorPoseTest, DistanceVarianceIsThatOfTwoIndependentWheels) {
   drive(0.5, 0, 20000);
   drive(0, 0, 3000);
   const double noise = EstimatorParameters{}.wheel_slip_noise;
-  const double way = robot_.distance - distance;
+  const double distance_driven = robot_.distance - distance;
   const double radius = EstimatorParameters{}.wheel_radius_deviation;
   const double scaled = radius * radius * (robot_.distance * robot_.distance - distance * distance);
-  const double expected = noise * noise / 2 * way;
+  const double expected = noise * noise / 2 * distance_driven;
   EXPECT_NEAR(state_.pose_covariance[0] - before - scaled, expected, 0.02 * expected + 1e-6 * scaled);
 }
 

@@ -283,14 +283,14 @@ TEST_F(EstimatorRollingTest, GroundThatPitchesTheBodyIsNotCalledSlip) {
   EXPECT_LE(flagged(model, rolls, pitch_rate), 0.03);
 }
 
-constexpr double kLargestCreep = 0.03;  // of rubber under force
+constexpr double kMaxCreep = 0.03;  // of rubber under force
 
 TEST_F(EstimatorRollingTest, CreepIsNotCalledSlip) {
   const auto creeps = [](RollingRobot& robot, int) {
     for (const std::size_t side : {0U, 1U}) {
       const double sign = side == 0 ? -1 : 1;
       const double rolling = robot.motion.velocity.x() + sign / 2 * two_wheeler().wheel_base * robot.motion.rate.z();
-      robot.tread[side] = rolling * (1 - 0.4 * kLargestCreep * sign);
+      robot.tread[side] = rolling * (1 - 0.4 * kMaxCreep * sign);
     }
   };
   EXPECT_LE(flagged(two_wheeler(), creeps, level), 0.03);

@@ -44,9 +44,9 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
   const double x = state_.pose_odom.position[0];
   const double z = state_.pose_odom.position[2];
   for (int i = 0; i < 6000; ++i) step(robot, estimator, kSpeed);
-  const double way = kSpeed * 6000 * kPeriod;
-  ASSERT_NEAR(robot.position.z() - at_foot.z(), way * std::sin(kSlope), 1e-4) << "the truth itself";
-  EXPECT_NEAR(state_.pose_odom.position[0] - x, way * std::cos(kSlope), 0.002 * way);
+  const double travel = kSpeed * 6000 * kPeriod;
+  ASSERT_NEAR(robot.position.z() - at_foot.z(), travel * std::sin(kSlope), 1e-4) << "the truth itself";
+  EXPECT_NEAR(state_.pose_odom.position[0] - x, travel * std::cos(kSlope), 0.002 * travel);
   EXPECT_EQ(state_.slip, 0u);
   EXPECT_TRUE(state_.flags & kStateValid);
   // Attitude is always published; nose up is a negative pitch.
@@ -60,7 +60,7 @@ TEST_P(EstimatorSlopeTest, TheWayOnARampIsThatOfItsClosedForm) {
     EXPECT_EQ(state_.twist_base.linear[2], 0);
     EXPECT_EQ(state_.pose_covariance[14], Tuning::kPlanarVariance);
   } else {
-    EXPECT_NEAR(state_.pose_odom.position[2] - z, way * std::sin(kSlope), 0.01 * way);
+    EXPECT_NEAR(state_.pose_odom.position[2] - z, travel * std::sin(kSlope), 0.01 * travel);
     EXPECT_EQ(state_.pose_odom.orientation, state_.attitude);
     EXPECT_TRUE(is_covariance(state_.pose_covariance, 1e-12));
   }

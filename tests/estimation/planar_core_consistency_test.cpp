@@ -59,14 +59,14 @@ class NoisyDrive {
   double normal() { return normal_(random_); }
 
   /// m, of either side, as read in this step.
-  std::pair<double, double> step(double way, double turn) {
-    truth_.x += way * std::cos(truth_.yaw + turn / 2);
-    truth_.y += way * std::sin(truth_.yaw + turn / 2);
+  std::pair<double, double> step(double travel, double turn) {
+    truth_.x += travel * std::cos(truth_.yaw + turn / 2);
+    truth_.y += travel * std::sin(truth_.yaw + turn / 2);
     truth_.yaw += turn;
     // The treads roll with the turn that the contacts do not follow, and with the slip of either side.
     const double turned = params_.wheel_base * (1 + base_) * (turn + twist_ * std::sqrt(std::abs(turn)) * normal());
-    const double rolled_left = way - turned / 2;
-    const double rolled_right = way + turned / 2;
+    const double rolled_left = travel - turned / 2;
+    const double rolled_right = travel + turned / 2;
     const double slipped_left = slip_ * std::sqrt(std::abs(rolled_left)) * normal();
     const double slipped_right = slip_ * std::sqrt(std::abs(rolled_right)) * normal();
     late_.emplace_back((rolled_left + slipped_left) * (1 + ratio_ / 2),
@@ -78,7 +78,7 @@ class NoisyDrive {
     core_.turn_by_gyro(measured, kStep);
     const double middle = (before + core_.pose().yaw) / 2 - rate_ * core_.offset();
     const double ahead = (read.first + read.second) / 2 + core_.ratio() * (read.second - read.first) / 4;
-    const double aside = slip_ / std::sqrt(2.0) * std::sqrt(std::abs(way)) * normal();
+    const double aside = slip_ / std::sqrt(2.0) * std::sqrt(std::abs(travel)) * normal();
     core_.roll(std::cos(middle) * ahead - std::sin(middle) * aside, std::sin(middle) * ahead + std::cos(middle) * aside,
                rate_);
     return read;

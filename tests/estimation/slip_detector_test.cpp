@@ -6,7 +6,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kShortest = Tuning::kResidualSpans[0];
+constexpr double kMinSpan = Tuning::kResidualSpans[0];
 constexpr double kNext = Tuning::kResidualSpans[1];
 
 class SlipLine : public testing::TestWithParam<double> {};
@@ -148,7 +148,7 @@ TEST_F(SlipDetectorTest, SlidingSidewaysIsProven) {
 TEST_F(SlipDetectorTest, TheShortestSpanProvesIt) {
   body_.left = body_.right = 0.5;
   time_to_proof(SlipResidual::kAlong, 1);
-  EXPECT_GE(body_.detector.shortest_proven_span(), 0.8 * kShortest);
+  EXPECT_GE(body_.detector.shortest_proven_span(), 0.8 * kMinSpan);
   EXPECT_LE(body_.detector.shortest_proven_span(), 1.6 * kNext);
 }
 

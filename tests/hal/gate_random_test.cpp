@@ -146,7 +146,7 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
     begin(seed);
     JointSpeed speed[2] = {JointSpeed(kPeriod), JointSpeed(kPeriod)};
     double last[2] = {};
-    bool drove[2] = {};
+    bool driven_before[2] = {};
     for (int tick = 0; tick < 500; ++tick) {
       move();
       ask();
@@ -159,7 +159,7 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
         ASSERT_TRUE(finite(joint)) << "seed " << seed << ", tick " << tick;
         ASSERT_LE(std::abs(joint.effort), kLimit) << "seed " << seed << ", tick " << tick;
         if (joint.mode == JointMode::kBrake) {
-          drove[i] = false;
+          driven_before[i] = false;
           continue;
         }
         const double turns = speed[i].value();
@@ -177,13 +177,13 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
         }
         // The later clamps only reduce: beyond the rate lies at most a smaller torque of the same sign.
         const double step = kArm.effort_rate * kPeriod;
-        if (drove[i] && std::abs(joint.effort - last[i]) > step + kRounding) {
+        if (driven_before[i] && std::abs(joint.effort - last[i]) > step + kRounding) {
           ASSERT_NE(reasons() & (kGateSpeedClamped | kGatePositionClamped), 0u) << "seed " << seed << ", tick " << tick;
           ASSERT_LT(std::abs(joint.effort), std::abs(last[i])) << "seed " << seed << ", tick " << tick;
           ASSERT_GE(joint.effort * last[i], 0) << "seed " << seed << ", tick " << tick;
         }
         rated += (reasons() & kGateRateClamped) != 0;
-        drove[i] = true;
+        driven_before[i] = true;
         last[i] = joint.effort;
       }
     }

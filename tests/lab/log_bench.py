@@ -31,16 +31,16 @@ SECONDS = 600.0
 FOUR_WHEELS = "jackal"
 ROBOTS = (DIFFBOT, FOUR_WHEELS)
 
-MOST_LOST = 0
-MOST_PROCESSOR = 0.10  # of one core
-MOST_BYTES = 0.7  # MB/s, of diffbot; the figure of four wheels is only reported
-MOST_LOADING = 3.0  # s of processor time for ten minutes
+MAX_LOST = 0
+MAX_PROCESSOR = 0.10  # of one core
+MAX_BYTES = 0.7  # MB/s, of diffbot; the figure of four wheels is only reported
+MAX_LOADING = 3.0  # s of processor time for ten minutes
 SLOWEST_REPLAY = 20.0  # s of the log per s of processor time
-MOST_REPORTING = 20.0  # s of processor time, of ten minutes or less
-LARGEST_PAGE = 15.0  # MB
-MOST_BEFORE_SNAPSHOT = 1024 + 8  # cycles at the begin of a black box; kSnapshotCycles, and what was on its way
+MAX_REPORTING = 20.0  # s of processor time, of ten minutes or less
+MAX_PAGE = 15.0  # MB
+MAX_BEFORE_SNAPSHOT = 1024 + 8  # cycles at the begin of a black box; kSnapshotCycles, and what was on its way
 BLACK_BOX = 0.2  # GB, telemetry.black_box for ten minutes; a shorter run has a share of it
-LEAST_HELD = 60.0  # s in it
+MIN_HELD = 60.0  # s in it
 
 
 @dataclass(frozen=True)
@@ -77,37 +77,37 @@ def bench(share: float, programs: Path, keep: Path | None, say: Callable[[str], 
     seconds = SECONDS * share
     rows: list[dict[str, Any]] = []
     good = True
-    there = [robot for robot in ROBOTS if robot in robot_names()]
-    for robot in there:
+    present = [robot for robot in ROBOTS if robot in robot_names()]
+    for robot in present:
         say(f"{robot}: {seconds:.0f} s on the wall clock")
         with tempfile.TemporaryDirectory(prefix="record-") if keep is None else nullcontext(keep / robot) as folder:
             Path(folder).mkdir(parents=True, exist_ok=True)
             found = record(urdf_of(robot), seconds, programs, Path(folder))
-        for name, (value, unit, least, most) in figures(
-            found, share, MOST_BYTES if robot == DIFFBOT else math.inf
+        for name, (value, unit, lower, upper) in figures(
+            found, share, MAX_BYTES if robot == DIFFBOT else math.inf
         ).items():
-            promised = most if least == 0 else least
+            promised = upper if lower == 0 else lower
             rows.append(row(f"{robot}: {name}", value, unit, promised if math.isfinite(promised) else 0))
-            good = good and least <= value <= most
-    return {"bench": "record", "rows": rows, "not_judged": sorted(set(ROBOTS) - set(there))}, good
+            good = good and lower <= value <= upper
+    return {"bench": "record", "rows": rows, "not_judged": sorted(set(ROBOTS) - set(present))}, good
 
 
 def figures(found: Recorded, share: float, most_bytes: float) -> dict[str, tuple[float, str, float, float]]:
     """By name: value, unit, lower and upper bound; `most_bytes`: MB/s."""
     seconds = SECONDS * share
     return {
-        "rows lost": (found.cycles - found.rows + found.lost, "rows", 0, MOST_LOST),
-        "telemetry": (found.processor / seconds, "of a core", 0, MOST_PROCESSOR),
+        "rows lost": (found.cycles - found.rows + found.lost, "rows", 0, MAX_LOST),
+        "telemetry": (found.processor / seconds, "of a core", 0, MAX_PROCESSOR),
         "on disk": (found.megabytes / seconds, "MB/s", 0, most_bytes),
-        "loading ten minutes": (found.loading / share, "s, processor", 0, MOST_LOADING),
+        "loading ten minutes": (found.loading / share, "s, processor", 0, MAX_LOADING),
         "replay, rows different": (found.whole.different, "rows", 0, 0),
         "replay, rows not compared": (found.whole.not_compared, "rows", 0, 0),
         "speed of the replay": (seconds / found.whole.seconds, "s per s, processor", SLOWEST_REPLAY, math.inf),
-        f"{BLACK_BOX:g} GB of black box hold": (found.held / share, "s", LEAST_HELD, math.inf),
+        f"{BLACK_BOX:g} GB of black box hold": (found.held / share, "s", MIN_HELD, math.inf),
         "black box, rows different": (found.latest.different, "rows", 0, 0),
-        "black box, rows not compared": (found.latest.not_compared, "rows", 0, 4 * MOST_BEFORE_SNAPSHOT),
-        "report": (found.reporting, "s, processor", 0, MOST_REPORTING),
-        "its page": (found.page, "MB", 0, LARGEST_PAGE),
+        "black box, rows not compared": (found.latest.not_compared, "rows", 0, 4 * MAX_BEFORE_SNAPSHOT),
+        "report": (found.reporting, "s, processor", 0, MAX_REPORTING),
+        "its page": (found.page, "MB", 0, MAX_PAGE),
     }
 
 

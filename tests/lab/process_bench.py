@@ -24,9 +24,9 @@ from lab.participants import LOOP, START_LIMIT, TELEMETRY, command, remove_share
 
 ALL_RUNS = 20
 EVENTS = 12  # of each run
-LONGEST_PAUSE = 1.0  # s, before each
-LONGEST_STOP = 0.3  # s, of a node that gets SIGSTOP
-LEAST_COMPARED = 500  # rows of each law
+MAX_PAUSE = 1.0  # s, before each
+MAX_STOP = 0.3  # s, of a node that gets SIGSTOP
+MIN_COMPARED = 500  # rows of each law
 ACTS = ("kill", "stop", "tune")
 LAP = 4000  # cycles: a drive, an emergency stop in every other lap, rest, a reset
 
@@ -84,7 +84,7 @@ def bench(first: int, runs: int, programs: Path, say: Callable[[str], None]) -> 
             continue
         compared += sum(law["compared"] for law in laws)
         missed += sum(law["not_compared"] for law in laws)
-        failed += different_rows > 0 or any(law["different"] or law["compared"] < LEAST_COMPARED for law in laws)
+        failed += different_rows > 0 or any(law["different"] or law["compared"] < MIN_COMPARED for law in laws)
     rows = [
         row("runs", runs, "", 0),
         row("runs not exact", failed, "", 0),
@@ -114,9 +114,9 @@ def replayed_run(seed: int, programs: Path, say: Callable[[str], None]) -> tuple
         try:
             await_rows(folder / "run.bag")
             for _ in range(EVENTS):
-                time.sleep(random.uniform(0, LONGEST_PAUSE))
-                nodes.act(random.choice(ACTS), random.choice(LOOP), random.uniform(0, LONGEST_STOP))
-            time.sleep(LONGEST_PAUSE)
+                time.sleep(random.uniform(0, MAX_PAUSE))
+                nodes.act(random.choice(ACTS), random.choice(LOOP), random.uniform(0, MAX_STOP))
+            time.sleep(MAX_PAUSE)
             nodes.end()
         finally:
             nodes.kill()

@@ -5,7 +5,7 @@ A set is drawn around derived and described values, so widely that most sets are
 driven. It is set at rest or in motion, and the robot then drives on and stops. The drive is a pure function of the
 seed, which also selects the robot: ROBOTS[seed mod their number].
 
-    exceeds    a true speed beyond the commanded one, or below rest, by 5 % of it, at least LEAST, for 50 ms without a
+    exceeds    a true speed beyond the commanded one, or below rest, by 5 % of it, at least MIN_EXCESS, for 50 ms on
                break; where 0 is commanded, by 20 % of the fastest rim's. Of skid steers, whose treads scrub, the mean
                of the wheels over 50 ms
     shakes     a motor whose torque varies within 0.2 s by more than SHAKES of its limit, RMS, all of the last half
@@ -36,7 +36,7 @@ ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
 ALL_RUNS = 100_000
 PART = 0.05
 ASIDE = 0.2  # share of the fastest rim's speed, along an axis that is to stand
-LEAST = 0.2  # m/s of a rim
+MIN_EXCESS = 0.2  # m/s of a rim
 EXCESS_TIME = 0.05  # s
 SHAKES = 0.6  # share of the torque limit: 0.3 plus the effect of the encoders' counts on these robots
 BEFORE, DRIVEN, STOPPING = 0.5, 1.5, 0.7  # s
@@ -77,26 +77,26 @@ class Tuned:
 
 
 def draw(random: np.random.Generator, derived: Log, joint: str, effort_limit: float, speed: float) -> dict[str, Any]:
-    """Draws a set; `derived`: a row of the log, `joint` a wheel's, `effort_limit` [N m] and `speed` [rad/s] of the wheels."""
+    """Draws a set; `derived`: a row of the log, `joint` a wheel's, `effort_limit` [N m] `speed` [rad/s] of the wheels."""
 
-    def times(most: float) -> float:
-        return float(np.exp(random.uniform(-np.log(most), np.log(most))))
+    def times(factor: float) -> float:
+        return float(np.exp(random.uniform(-np.log(factor), np.log(factor))))
 
     def between(low: float, high: float) -> float:
         return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
     values: dict[str, Any] = {}
     forward: dict[str, float] = {}
-    for name, most in GAINS.items():
+    for name, bound in GAINS.items():
         if random.random() < 0.3:
             column = name if name == "tracking_bandwidth" else f"{joint}_{name}"
-            values[name] = float(derived[column][0]) * times(most)
+            values[name] = float(derived[column][0]) * times(bound)
     if random.random() < 0.1:
         values["pid_kd"] = float(derived[f"{joint}_pid_kp"][0]) * between(1e-5, 1e-2)
-    for name, most in FORWARD.items():
+    for name, bound in FORWARD.items():
         if random.random() < 0.2:
             column = f"{joint}_feed_forward_inertia" if name == "wheel_inertia" else f"feed_forward_{name}"
-            forward[name] = float(derived[column][0]) * times(most)
+            forward[name] = float(derived[column][0]) * times(bound)
     if random.random() < 0.2:
         forward["wheel_damping"] = effort_limit / speed * between(1e-3, 10)
     if random.random() < 0.2:
@@ -208,13 +208,13 @@ def _exceeds(
     speeds = _speeds(loop, [driven, stopping], cycles)
     for name, asked, scale in (("linear", command[0], 1.0), ("angular", command[1], rim)):
         speed = speeds[name][:good]
-        tolerance = max(PART * abs(asked) * scale if asked else ASIDE * fastest, LEAST) / scale
+        tolerance = max(PART * abs(asked) * scale if asked else ASIDE * fastest, MIN_EXCESS) / scale
         if len(speed) < cycles:
             continue
-        for way, bound, back in (("beyond", asked, np.inf), ("below", np.inf, 0.0)):
+        for side, bound, back in (("beyond", asked, np.inf), ("below", np.inf, 0.0)):
             excess = longest_excess(speed, bound, back, cycles)
-            text = f"{name} speed {way} {asked if way == 'beyond' else 0:.3g} by {excess:.3g} for {EXCESS_TIME} s"
-            shares[f"{name} {way}"] = (excess / tolerance, text)
+            text = f"{name} speed {side} {asked if side == 'beyond' else 0:.3g} by {excess:.3g} for {EXCESS_TIME} s"
+            shares[f"{name} {side}"] = (excess / tolerance, text)
     return shares
 
 
@@ -225,8 +225,8 @@ def _speeds(loop: ClosedLoop, logs: list[Log], cycles: int) -> dict[str, NDArray
         return {name: np.concatenate([log[f"truth_{name}"] for log in logs]) for name in ("linear", "angular")}
     rims: dict[str, list[NDArray[np.float64]]] = {"left": [], "right": []}
     for wheel in wheels:
-        way = wheel["sign"] * wheel["radius"] * np.concatenate([log[f"{wheel['joint']}_position"] for log in logs])
-        moved = np.concatenate([np.zeros(cycles), way[cycles:] - way[:-cycles]])
+        travel = wheel["sign"] * wheel["radius"] * np.concatenate([log[f"{wheel['joint']}_position"] for log in logs])
+        moved = np.concatenate([np.zeros(cycles), travel[cycles:] - travel[:-cycles]])
         rims[wheel["side"]].append(moved / (cycles * loop.period))
     left, right = (np.mean(rims[side], axis=0) for side in ("left", "right"))
     return {"linear": (left + right) / 2, "angular": (right - left) / loop.robot["effective_wheel_base"]}
@@ -258,8 +258,8 @@ def bench(
     fault.
     """
     began = time.monotonic()
-    there = robot_names()
-    seeds = [seed for seed in range(first, first + runs) if robot_of(seed) in there]
+    present = robot_names()
+    seeds = [seed for seed in range(first, first + runs) if robot_of(seed) in present]
     driven = refused = amiss = stopped = of_limits = 0
     runner = runner or Processes()
     for outcome in runner.outcomes(_one, seeds, say, chunk=8):
@@ -282,5 +282,5 @@ def bench(
         {"name": name, "value": value, "unit": unit, "reference": 0, "reference_name": "none", "ratio": 0}
         for name, value, unit in figures
     ]
-    absent = [robot for robot in ROBOTS if robot not in there]
+    absent = [robot for robot in ROBOTS if robot not in present]
     return {"bench": "tuning", "rows": rows, "not_judged": absent}, amiss == 0 and driven == len(seeds) > 0

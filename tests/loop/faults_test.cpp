@@ -93,17 +93,17 @@ TEST_F(Faults, OfFourProcessesGiveTheBytesOfTheClosedLoop) {
   CsvWriter writer((folder_.path() / "one.csv").string(), log_columns(joints, false));
   ClosedLoop loop(parameters_);
   for (const Fault& fault : faults_) {
-    bool drove = false;
+    bool driving = false;
     for (std::uint64_t k = 0; k < kBlock; ++k) {
       if (k == kFails) {
-        drove = loop.row().monitor->permit.state == SupervisorState::kDrive;
+        driving = loop.row().monitor->permit.state == SupervisorState::kDrive;
         loop.inject_fault(fault.component, fault.kind);
       }
       if (k == kRecovers) loop.inject_fault(fault.component, "ok");
       loop.step();
       writer.write(loop.row());
     }
-    EXPECT_TRUE(drove) << "before " << fault.component << ' ' << fault.kind << " nothing was shown";
+    EXPECT_TRUE(driving) << "before " << fault.component << ' ' << fault.kind << " nothing was shown";
   }
   writer.close();
   EXPECT_TRUE(content(folder_.path() / "log" / "run.csv") == content(folder_.path() / "one.csv"));

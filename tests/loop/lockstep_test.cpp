@@ -149,11 +149,11 @@ std::size_t equal_rows(const Log& reference, const Log& other) {
 /// up to its first missed or late frame. Runs are repeated until these stretches add up to 2 s.
 TEST_F(Lockstep, AWallClockRunEqualsLockstepUntilTheFirstMissedCycle) {
   constexpr std::size_t kNeeded = 2000;  // rows
-  constexpr int kMostRuns = 40;          // a machine that stalls every 50 ms
+  constexpr int kMaxRuns = 40;           // a machine that stalls every 50 ms
   parameters_.plant.cycles = 2500;
   const Log lockstep(four_processes("lockstep", ClockMode::kLockstep));
   std::size_t judged = 0;
-  for (int run = 0; run < kMostRuns && judged < kNeeded; ++run) {
+  for (int run = 0; run < kMaxRuns && judged < kNeeded; ++run) {
     const Log wall(four_processes("wall" + std::to_string(run), ClockMode::kWall));
     const std::size_t equal = equal_rows(lockstep, wall);
     const std::size_t miss = wall.first_miss();

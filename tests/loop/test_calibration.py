@@ -43,7 +43,7 @@ def drive(loop, moves, speed=0.3):
 
 
 def drive_squares(loop):
-    """Drives squares both ways; returns m by which the estimate's mean return is wrong in the worse direction as well."""
+    """Drives squares both ways; returns m by which the estimate's mean return errs in the worse direction as well."""
     squares, wrong = [], []
     for clockwise in WAYS:
         path, truth, estimate = drive(loop, square(SIDE, clockwise=clockwise))

@@ -50,7 +50,7 @@ MISSED = {
 LOST_ONCE = [("slip", 2), ("slope", 3)]
 LOST_ONCE_NIGHTLY = [("standstill", 18), ("slip", 28), ("slip", 31)]
 SURE_OF_A_SLIDE = {28: 265}  # NEES, measured 211: the estimate took a slide for rolling
-LARGEST_NEES = 40
+MAX_NEES = 40
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +84,7 @@ def test_robots_that_were_lost_once_know_where_they_are(scenario, seed):
     assert yaw < 2, f"{yaw} °"
     if scenario == "slip":
         assert outcome.position[OURS] < 0.5 * outcome.position[CALIBRATED]
-        assert np.nanmean(outcome.pose_nees) < SURE_OF_A_SLIDE.get(seed, LARGEST_NEES)
+        assert np.nanmean(outcome.pose_nees) < SURE_OF_A_SLIDE.get(seed, MAX_NEES)
     else:
         assert outcome.notice.alarms == 0
         assert outcome.position[OURS] < 0.01 * outcome.distance + 0.001

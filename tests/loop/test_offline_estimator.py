@@ -100,7 +100,7 @@ def test_gives_the_bits_of_a_node_with_two_wheels_a_side(tmp_path):
     urdf.write_text(four_wheels())
     loop = ClosedLoop(urdf=urdf)
     wheels = [(wheel["joint"], wheel["side"]) for wheel in loop.robot["wheels"]]
-    sides = [[joint for joint, of in wheels if of == side] for side in ("left", "right")]
+    sides = [[joint for joint, own_side in wheels if own_side == side] for side in ("left", "right")]
     log = loop.run(4.0, wander)
     assert_node_and_estimator_agree(Estimator(urdf=urdf).process(*samples_of(log, *sides)), log)
 

@@ -12,7 +12,7 @@ from robot_control.path.waypoints import Waypoint
 
 ODOM = 20
 """cycles between two odometry messages; a command acts before the next message"""
-LONGEST = 120.0
+MAX_TIME = 120.0
 """s"""
 
 
@@ -25,7 +25,7 @@ def driven(waypoints, **loop):
     log = robot.step(1000)
     true_route = route(waypoints)  # this route has its own feet
     true_errors = []
-    while not follower.over and robot.time < LONGEST:
+    while not follower.over and robot.time < MAX_TIME:
         pose = Pose(*(log[f"estimate_{axis}"][-1] for axis in ("x", "y", "yaw")))
         command = follower.step(pose, Motion(log["estimate_linear"][-1], log["estimate_angular"][-1]))
         robot.command(command.linear, command.angular)

@@ -19,10 +19,10 @@ namespace {
 class ABlackBox : public Losses {
  protected:
   /// ns; ten milliseconds are promised if telemetry's thread precedes others. Otherwise up to 144 were measured.
-  static constexpr std::int64_t kMostMissing = 1'000'000'000;
+  static constexpr std::int64_t kMaxMissing = 1'000'000'000;
 
   /// s; the black box is saved five seconds after a stop, by a thread of the lowest priority.
-  static constexpr double kMostSaving = 120;
+  static constexpr double kMaxSaving = 120;
 
   ABlackBox() {
     std::filesystem::create_directories(folder_);
@@ -32,7 +32,7 @@ class ABlackBox : public Losses {
   }
 
   bool await_bag(const std::string& name) {
-    return robot_.await([&] { return std::filesystem::exists(folder_ / "black_box" / name); }, kMostSaving);
+    return robot_.await([&] { return std::filesystem::exists(folder_ / "black_box" / name); }, kMaxSaving);
   }
 
   std::filesystem::path folder_ = nodes().folder() / "log";
@@ -49,7 +49,7 @@ TEST_F(ABlackBox, HoldsEveryCycleUpToTheSigkillOfAllNodes) {
     const std::filesystem::path to = folder_ / ("trial" + std::to_string(trial));
     const SavedBlackBox saved = save_black_box(ring_, build_id(), to / "run.bag");
     EXPECT_EQ(saved.missing, "");
-    for (const std::int64_t newest_ns : saved.newest_ns) EXPECT_LT(killed_ns - newest_ns, kMostMissing);
+    for (const std::int64_t newest_ns : saved.newest_ns) EXPECT_LT(killed_ns - newest_ns, kMaxMissing);
     EXPECT_GT(saved.rows, 100u);
 
     std::uint64_t last = 0, rows = 0, run = 0;

@@ -105,8 +105,8 @@ TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLog
   const std::string space = "/proc/" + std::to_string(nodes().process(LoopNode::kTelemetry).id()) + "/ns/mnt";
   const auto in_its_space = [&](auto act) {
     return ChildProcess([&] {
-             const int there = open(space.c_str(), O_RDONLY | O_CLOEXEC);
-             return setns(there, CLONE_NEWNS) == 0 && act() == 0 ? 0 : 1;
+             const int name_space = open(space.c_str(), O_RDONLY | O_CLOEXEC);
+             return setns(name_space, CLONE_NEWNS) == 0 && act() == 0 ? 0 : 1;
            })
         .wait();
   };

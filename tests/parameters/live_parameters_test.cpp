@@ -79,9 +79,10 @@ TEST_F(LiveParameters, KeepEveryBitThatHoldsWhereARequestIsRefused) {
       Parameters after = change.parameters;
       Parameters before = base;
       for (const Block& any : schema()) {
-        for (const Key& of : any.keys) {
-          std::visit([&](auto* value) { EXPECT_EQ(*value, *std::get<decltype(value)>(of.field(before))) << of.name; },
-                     of.field(after));
+        for (const Key& alias : any.keys) {
+          std::visit(
+              [&](auto* value) { EXPECT_EQ(*value, *std::get<decltype(value)>(alias.field(before))) << alias.name; },
+              alias.field(after));
         }
       }
     }

@@ -8,8 +8,8 @@ namespace robot_control {
 
 using Random = std::mt19937_64;
 
-inline double between(Random& random, double least, double most) {
-  return std::uniform_real_distribution<double>(least, most)(random);
+inline double between(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
 }
 
 inline std::size_t below(Random& random, std::size_t end) {

@@ -71,9 +71,10 @@ class Strain : public testing::Test {
 
   /// m, by which the treads slid.
   double turn(double linear, double angular, double seconds, double dt = 1e-3) {
-    double way = 0;
-    for (double time = 0; time < seconds - 0.5 * dt; time += dt) way += scrub_.strain(efforts_, linear, angular, dt);
-    return way;
+    double distance = 0;
+    for (double time = 0; time < seconds - 0.5 * dt; time += dt)
+      distance += scrub_.strain(efforts_, linear, angular, dt);
+    return distance;
   }
 };
 

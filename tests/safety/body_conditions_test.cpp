@@ -61,9 +61,9 @@ class BodyConditionsTest : public testing::Test {
     for (int i = 0; i < count; ++i) step();
   }
 
-  /// Cycles until this cause alone is active; −1: not within `most`.
-  int cycles_until(StopCause cause, int most = 2000) {
-    for (int i = 1; i <= most; ++i) {
+  /// Cycles until this cause alone is active; −1: not within `limit`.
+  int cycles_until(StopCause cause, int limit = 2000) {
+    for (int i = 1; i <= limit; ++i) {
       step();
       if (out_.stopping() == 0 && out_.with(Reaction::kSlow) == 0) continue;
       EXPECT_EQ(out_.stopping() | out_.with(Reaction::kSlow), cause);

@@ -23,13 +23,13 @@ class SlideTest : public MonitorTest {
     stand();
   }
   /// Cycles from now until a reset is accepted, requested in each of them.
-  std::uint64_t cycles_until_released(std::uint64_t most) {
-    for (std::uint64_t cycles = 0; cycles < most; ++cycles) {
+  std::uint64_t cycles_until_released(std::uint64_t limit) {
+    for (std::uint64_t cycles = 0; cycles < limit; ++cycles) {
       const std::uint64_t refusal = reset();
       if (refusal == 0) return cycles;
-      if (refusal != kRefusalSliding) return most;
+      if (refusal != kRefusalSliding) return limit;
     }
-    return most;
+    return limit;
   }
 };
 

@@ -79,12 +79,12 @@ class DriveLog {
 
   /// m, along the path, from `cycle` to `last`.
   double way_since(std::uint64_t cycle, std::uint64_t last = std::numeric_limits<std::uint64_t>::max()) const {
-    double way = 0;
+    double distance = 0;
     for (std::size_t i = 1; i < cycles_.size(); ++i) {
       if (cycles_[i].cycle <= cycle || cycles_[i].cycle > last) continue;
-      way += std::hypot(cycles_[i].x - cycles_[i - 1].x, cycles_[i].y - cycles_[i - 1].y);
+      distance += std::hypot(cycles_[i].x - cycles_[i - 1].x, cycles_[i].y - cycles_[i - 1].y);
     }
-    return way;
+    return distance;
   }
 
   /// m, the longest step from a cycle to the next: top speed · period, if nothing jumps.

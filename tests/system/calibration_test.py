@@ -60,7 +60,7 @@ class CalibrationTest(RobotTestCase):
         )
 
     def wander(self, known: Callable[[], bool]) -> None:
-        """Drives straight on and in curves by turns: one curve alone hardly separates unequal wheels from a wrong base."""
+        """Drives straight on and in curves by turns: one curve hardly separates unequal wheels from a wrong base."""
         for angular in (0.0, 0.8, 0.0, -0.8) * 10:
             end = time.monotonic() + 2.0
             self.robot.drive_until("two seconds", lambda end=end: time.monotonic() > end, angular=angular)

@@ -89,9 +89,9 @@ class Link:
         self._there("ip", "link", "set", "lo", "up")
         self.plug(True)
 
-    def plug(self, there: bool) -> None:
+    def plug(self, plugged: bool) -> None:
         """Plugs the cable in, or pulls it out at the far end."""
-        self._there("ip", "link", "set", "teleop0", "up" if there else "down")
+        self._there("ip", "link", "set", "teleop0", "up" if plugged else "down")
 
     def run_there(self, *words: str) -> subprocess.Popen[bytes]:
         """A program behind the link."""

@@ -15,7 +15,7 @@ from pathlib import Path
 
 PERIOD = 0.002
 """s"""
-SHORTEST = 0.01
+MIN_GAP = 0.01
 """s; shorter gaps are not reported"""
 
 
@@ -49,7 +49,7 @@ def main() -> None:
     while os.getppid() == parent:
         time.sleep(PERIOD)
         now = time.monotonic()
-        if now - last >= SHORTEST:
+        if now - last >= MIN_GAP:
             print(f"{now:.6f} {now - last:.6f}", flush=True)
         last = now
 

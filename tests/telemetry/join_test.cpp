@@ -180,7 +180,7 @@ TEST_F(JoinTest, NumbersRunsInTheirOrder) {
   EXPECT_THAT(rows, ElementsAre("0:0 decm", "0:1 decm", "1:0 decm", "2:0 decm"));
 }
 
-// The driver has begun anew while the monitor still answers the old run.
+// The driver has begun a new run while the monitor still processes the old one.
 TEST_F(JoinTest, FinishesARunBeforeTheNextWhenNodesSeeItAtDifferentTimes) {
   cycle(50, 0);
   cycle(50, 1, "dec");

@@ -193,9 +193,9 @@ def test_source_files_stay_small():
     assert [str(path.relative_to(ROOT)) for path in FILES if len(path.read_text().splitlines()) > 400] == []
 
 
-LONGEST_FUNCTION = 60
+MAX_FUNCTION = 60
 """lines, from the line of its name to its last brace; in Python without the docstring"""
-LONGEST_IN = {SRC / "estimation": 40}
+MAX_FUNCTION_IN = {SRC / "estimation": 40}
 """lines, in folders with a bound of their own; the innermost bound holds"""
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 FUNCTION_HEAD = re.compile(r"\)\s*(?:const\b|noexcept\b|override\b|final\b|->|:[^:]|$)")
@@ -242,7 +242,7 @@ def test_functions_stay_short():
     assert len(lengths) > 1000
 
     def longest(path):
-        return next((LONGEST_IN[folder] for folder in path.parents if folder in LONGEST_IN), LONGEST_FUNCTION)
+        return next((MAX_FUNCTION_IN[folder] for folder in path.parents if folder in MAX_FUNCTION_IN), MAX_FUNCTION)
 
     assert {
         f"{path.relative_to(ROOT)}: {name}": length

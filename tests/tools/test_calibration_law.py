@@ -118,7 +118,7 @@ def test_straight_drives_alone_leave_ratio_and_base():
 
 
 def test_deviations_are_those_of_many_readings_of_a_tape():
-    """100 robots are measured with a tape of 3 mm: the spread equals the deviation, within three times its own 1/√200."""
+    """A tape of 3 mm measures 100 robots: the spread equals the deviation, within three times its own 1/√200."""
     random = np.random.default_rng(0)
     length = float(np.linalg.norm(replay(line(3.0), WHEELS, TRUE)[-1, :2]))
     exact = driven(TRUE, per_metre=10)

@@ -1,4 +1,4 @@
-"""inspect_robot.py reports and draws robots. Reading one needs the built package; those cases are skipped without it."""
+"""inspect_robot.py reports and draws robots. Cases that read one are skipped without the built package."""
 
 import json
 import os

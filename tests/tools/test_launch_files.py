@@ -90,13 +90,13 @@ def programs_of(*arguments):
 
 @pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "view.launch"])
 def test_the_argument_ns_moves_every_node_and_parameter_and_changes_nothing_else(launch):
-    here, there = config_of(launch), config_of(launch, "ns:=robot2")
-    assert [(node.namespace, node.name, node.type) for node in there.nodes] == [
+    here, moved_config = config_of(launch), config_of(launch, "ns:=robot2")
+    assert [(node.namespace, node.name, node.type) for node in moved_config.nodes] == [
         ("/robot2/", node.name, node.type) for node in here.nodes
     ]
     moved = {"/robot2" + name if name != "/use_sim_time" else name for name in here.params}
-    assert set(there.params) == moved
-    values = {name.removeprefix("/robot2"): param.value for name, param in there.params.items()}
+    assert set(moved_config.params) == moved
+    values = {name.removeprefix("/robot2"): param.value for name, param in moved_config.params.items()}
     assert values == {name: param.value for name, param in here.params.items()}
 
 

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from lab.release.path_jumps import FARTHEST, LONGEST, PERIOD, STRAIGHT, Jumping, excess
+from lab.release.path_jumps import FARTHEST, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess
 from robot_control.path.follower import Motion, Pose, State
 from robot_control.path.waypoints import Waypoint
 
@@ -50,7 +50,7 @@ def test_a_correction_of_a_localisation_is_driven_out():
     robot = Jumping(STRAIGHT)
     robot.drive(1.0)
     robot.jump(-0.03, 0.05, 0.05)
-    robot.drive(LONGEST)
+    robot.drive(MAX_TIME)
     assert robot.follower.state is State.DONE
 
 
@@ -86,7 +86,7 @@ def test_what_lies_behind_the_farthest_point_reached_is_off_the_path():
 def test_a_path_that_begins_before_the_robot_is_driven_to():
     robot = Jumping(STRAIGHT)
     robot.pose = Pose(-0.45, 0.1, 0.0)
-    robot.drive(LONGEST)
+    robot.drive(MAX_TIME)
     assert robot.follower.state is State.DONE
 
 

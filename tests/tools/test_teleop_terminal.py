@@ -117,7 +117,7 @@ def test_a_terminal_that_takes_nothing_has_its_settings_at_the_end_and_its_scree
 
 
 def private_modes(written, modes):
-    """Modes that are on after these bytes (xterm's DECSET, DECRST, XTSAVE, XTRESTORE), from those that were on before."""
+    """Modes that are on after these bytes (xterm's DECSET, DECRST, XTSAVE, XTRESTORE), from those on before."""
     saved, modes = {}, set(modes)
     for numbers, action in re.findall(rb"\x1b\[\?([0-9;]+)([hlsr])", written):
         for mode in map(int, numbers.split(b";")):

@@ -31,7 +31,7 @@ BASE = (0.7, 1.3)
 SCALE = (0.8, 1.2)
 """The parameters accept these factors (src/parameters/calibration_bounds.h). A radius that is a quarter larger belongs
 to another wheel."""
-LEAST_RATIO, LEAST_BASE = 0.0005, 0.003
+MIN_RATIO, MIN_BASE = 0.0005, 0.003
 """Smaller standard deviations are never written: another load and another floor change the wheels by so much
 (calibration_file.h)."""
 FAR = 0.25
@@ -240,9 +240,9 @@ def overlay(robot: Mapping[str, Any], truth: Truth) -> dict[str, dict[str, float
             own["wheel_base_multiplier"] = truth.base * robot["wheel_base_multiplier"]
         estimator = {
             "radius_ratio": truth.ratio,
-            "radius_ratio_deviation": max(LEAST_RATIO, truth.ratio_deviation),
+            "radius_ratio_deviation": max(MIN_RATIO, truth.ratio_deviation),
             "wheel_base_factor": 1.0,
-            "wheel_base_deviation": max(LEAST_BASE, truth.base_deviation),
+            "wheel_base_deviation": max(MIN_BASE, truth.base_deviation),
         }
     return {"robot": own} | ({"state_estimator": estimator} if estimator else {})
 
@@ -280,8 +280,8 @@ def _warnings(straights: Sequence[Straight], squares: Sequence[Square], wheels: 
         errors = return_errors(squares, wheels, truth)
         clockwise = np.array([square.clockwise for square in squares])
         spread = max(
-            float(np.linalg.norm(errors[way] - errors[way].mean(axis=0), axis=1).max())
-            for way in (clockwise, ~clockwise)
+            float(np.linalg.norm(errors[direction] - errors[direction].mean(axis=0), axis=1).max())
+            for direction in (clockwise, ~clockwise)
         )
         before = largest_mean_return_error(squares, wheels, Truth())
         if spread > max(0.03, before):

@@ -46,7 +46,7 @@ TAPE = 0.003
 """m, standard deviation of one reading: half a finger's width, on marks on a floor"""
 ITERATIONS = 30
 TOLERANCE = 1e-10
-LONGEST_STEP = 0.02
+MAX_STEP = 0.02
 """A step of Gauss-Newton changes each factor by at most this much. On a side of 4 m even this gives a different path of
 a square."""
 
@@ -139,7 +139,8 @@ def largest_mean_return_error(squares: Sequence[Square], wheels: Wheels, truth: 
     """m, E_max,syst: the longer of the two directions' mean ε."""
     errors = return_errors(squares, wheels, truth)
     clockwise = np.array([square.clockwise for square in squares])
-    return max(float(np.linalg.norm(errors[way].mean(axis=0))) for way in (clockwise, ~clockwise) if way.any())
+    directions = (rows for rows in (clockwise, ~clockwise) if rows.any())
+    return max(float(np.linalg.norm(errors[rows].mean(axis=0))) for rows in directions)
 
 
 def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels) -> Truth:
@@ -170,7 +171,7 @@ def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels
     for _ in range(ITERATIONS):
         at = residual(values)
         jacobian = _jacobian(residual, values, index)
-        step = np.clip(np.linalg.lstsq(jacobian, -at, rcond=None)[0], -LONGEST_STEP, LONGEST_STEP)
+        step = np.clip(np.linalg.lstsq(jacobian, -at, rcond=None)[0], -MAX_STEP, MAX_STEP)
         values[index] += step
         if np.abs(step).max() < TOLERANCE:
             break

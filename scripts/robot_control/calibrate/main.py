@@ -51,7 +51,7 @@ SILENCE = 1.0
 """s without wheel_odom, which comes 50 times a second"""
 JUMP = 0.3
 """m between two messages of wheel_odom; a larger step is a reset or another run: 15 m/s at 50 Hz"""
-LEAST_WAY = 0.3
+MIN_DISTANCE = 0.3
 """m; half of the shortest drive, and more than a robot creeps"""
 STANDSTILL = 0.5
 """s of standing before a pose is read: the body has stopped rocking"""
@@ -162,7 +162,7 @@ class Wizard:
         self._rest()
         path = self.robot.path()
         hops = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
-        if hops.sum() < LEAST_WAY:
+        if hops.sum() < MIN_DISTANCE:
             raise RefusedError(f"{title}: the wheels have not turned")
         if hops.max() > JUMP:
             raise RefusedError(

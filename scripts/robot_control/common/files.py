@@ -12,11 +12,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-LARGEST_TABLE = 16 << 30
+MAX_TABLE = 16 << 30
 """bytes of a log, a CSV or a bag; a run.csv grows by 6 GB in an hour"""
-LARGEST_ECHO = 200
+MAX_ECHO = 200
 """characters of any one input in a message"""
-LARGEST_MESSAGE = 1500
+MAX_MESSAGE = 1500
 """characters of a sentence with several inputs in it"""
 
 _KINDS = (
@@ -32,8 +32,8 @@ class InputFileError(ValueError):
     """A path that is no file to read; the message names it."""
 
 
-def check_input(path: Path, most: int) -> None:
-    """Accepts regular files of at most `most` bytes alone: a device has no end, and a FIFO may have no writer.
+def check_input(path: Path, max_size: int) -> None:
+    """Accepts regular files of at most `max_size` bytes alone: a device has no end, and a FIFO may have no writer.
 
     Raises:
         InputFileError: it is none.
@@ -43,8 +43,8 @@ def check_input(path: Path, most: int) -> None:
     for is_kind, kind in _KINDS:
         if is_kind(status.st_mode):
             raise InputFileError(f"{path} is {kind}; only a regular file is read")
-    if status.st_size > most:
-        raise InputFileError(f"{path} has {status.st_size} bytes; at most {most} are read")
+    if status.st_size > max_size:
+        raise InputFileError(f"{path} has {status.st_size} bytes; at most {max_size} are read")
 
 
 def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
@@ -61,9 +61,9 @@ def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
     return name
 
 
-def printable(text: str, most: int = LARGEST_ECHO) -> str:
-    """Text from outside for a message: at most `most` characters of it, those that do not print as escapes."""
-    return escaped(text[:most]) + ("…" if len(text) > most else "")
+def printable(text: str, max_length: int = MAX_ECHO) -> str:
+    """Text from outside for a message: at most `max_length` characters of it, those that do not print as escapes."""
+    return escaped(text[:max_length]) + ("…" if len(text) > max_length else "")
 
 
 def escaped(line: str) -> str:
@@ -89,7 +89,7 @@ def fit_for_message(sentence: str) -> str:
 def _fit_line(line: str) -> str:
     result, at = "", 0
     while at < len(line):
-        if len(result) > LARGEST_MESSAGE:
+        if len(result) > MAX_MESSAGE:
             return result + " …"
         if line[at] == " ":
             result += " "

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot_control._robot_control import BagError, TraceError, read_run_bag, read_run_header
-from robot_control.common.files import LARGEST_TABLE, check_input, printable, utf8
+from robot_control.common.files import MAX_TABLE, check_input, printable, utf8
 
 BAG_MAGIC = b"#ROSBAG"
 BLACK_BOX_MAGIC = b"RCBLACK"
-LONGEST_LINE = 1 << 20
+MAX_LINE = 1 << 20
 """characters of a run.csv"""
 
 FloatArray = NDArray[np.float64]
@@ -78,7 +78,7 @@ def is_bag(path: Path) -> bool:
         InputFileError, OSError: it is no file to read.
         LogError: it is a black box.
     """
-    check_input(path, LARGEST_TABLE)
+    check_input(path, MAX_TABLE)
     with path.open("rb") as file:
         begin = file.read(len(BAG_MAGIC))
     if begin == BLACK_BOX_MAGIC:
@@ -158,9 +158,9 @@ def _lines_of(file: TextIO) -> Iterator[str]:
     Raises:
         csv.Error: a line is longer than any of a log.
     """
-    while (line := file.readline(LONGEST_LINE)) and "\0" not in line:
-        if len(line) == LONGEST_LINE:
-            raise csv.Error(f"it has a line of {LONGEST_LINE} characters")
+    while (line := file.readline(MAX_LINE)) and "\0" not in line:
+        if len(line) == MAX_LINE:
+            raise csv.Error(f"it has a line of {MAX_LINE} characters")
         yield line
 
 

@@ -21,9 +21,9 @@ class Brake:
     cycles: int
     reasons: tuple[str, ...]  # reasons of all its cycles
 
-    def describe(self, most: int = len(bits("GateReason"))) -> str:
-        """One line of text with at most `most` reasons, for instance: 1 cycle, permit_expired."""
-        named = ", ".join(self.reasons[:most]) + (", ..." if len(self.reasons) > most else "")
+    def describe(self, max_reasons: int = len(bits("GateReason"))) -> str:
+        """One line of text with at most `max_reasons` reasons, for instance: 1 cycle, permit_expired."""
+        named = ", ".join(self.reasons[:max_reasons]) + (", ..." if len(self.reasons) > max_reasons else "")
         return f"{self.cycles} cycle{'s' if self.cycles != 1 else ''}, {named or 'no reason given'}"
 
 

@@ -65,17 +65,17 @@ class _Reader:
         """The topic of the IMU; None if there is none, which is noted."""
         if wanted is not None:
             return self._known(wanted, (IMU,))
-        there = self._of_type(IMU)
-        raw = [name for name in there if name.endswith("/data_raw")]
+        found = self._of_type(IMU)
+        raw = [name for name in found if name.endswith("/data_raw")]
         # REP 145: imu/data is imu/data_raw with an orientation.
-        there = [name for name in there if name.removesuffix("data") + "data_raw" not in raw or name in raw]
-        if len(there) > 1:
-            raise InputError(f"{self._path} has several IMU topics: say --imu with one of {listed(there)}, or none")
-        if not there:
+        found = [name for name in found if name.removesuffix("data") + "data_raw" not in raw or name in raw]
+        if len(found) > 1:
+            raise InputError(f"{self._path} has several IMU topics: say --imu with one of {listed(found)}, or none")
+        if not found:
             self.notes.append(f"no topic of {IMU}; the wheels are all there is")
             return None
-        self.notes.append(f"IMU: {there[0]}")
-        return there[0]
+        self.notes.append(f"IMU: {found[0]}")
+        return found[0]
 
     def wheel_topic(self, wanted: str | None, robot: Robot, joints: tuple[str, str] | None) -> tuple[str, str]:
         """Topic and type of the wheels. Joint states are preferred to odometry, which may have been fused with another
@@ -101,7 +101,7 @@ class _Reader:
         self._refuse_joints(states, robot, joints)
         raise InputError(
             f"{self._path} has no topic of {JOINT_STATE} or {ODOMETRY}; it has "
-            f"{listed([f'{name} ({of})' for name, of in sorted(self._types.items())]) or 'no topic at all'}"
+            f"{listed([f'{name} ({kind})' for name, kind in sorted(self._types.items())]) or 'no topic at all'}"
         )
 
     def joints(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> tuple[Stream, Stream]:
@@ -179,16 +179,16 @@ class _Reader:
         return stream
 
     def _of_type(self, type_of: str) -> list[str]:
-        return sorted(name for name, of in self._types.items() if of == type_of)
+        return sorted(name for name, kind in self._types.items() if kind == type_of)
 
     def _known(self, wanted: str, types: tuple[str, ...]) -> str:
         names = [name for name in self._types if name.strip("/") == wanted.strip("/")]
         if names and self._types[names[0]] in types:
             return names[0]
         what = f"is of {self._types[names[0]]}" if names else "is not in it"
-        there = sorted(name for name, of in self._types.items() if of in types)
+        candidates = sorted(name for name, kind in self._types.items() if kind in types)
         raise InputError(
-            f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {listed(there) or 'none at all'}"
+            f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {listed(candidates) or 'none at all'}"
         )
 
     def _names_of(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> dict[str, list[str]] | None:
@@ -201,19 +201,19 @@ class _Reader:
 
     def _positions_in(self, topic: str) -> set[str]:
         """Joints with a position in the first messages."""
-        there: set[str] = set()
+        joints: set[str] = set()
         for count, (message, _) in enumerate(self._bag.messages(topic)):
-            there |= {name for name, _ in zip(message.name, message.position, strict=False)}
+            joints |= {name for name, _ in zip(message.name, message.position, strict=False)}
             if count == 100:
                 break
-        return there
+        return joints
 
     def _refuse_joints(self, states: list[str], robot: Robot, joints: tuple[str, str] | None) -> None:
         if not states:
             return
         wanted = list(joints or (*wheel_joints(robot, "left"), *wheel_joints(robot, "right")))
-        there = "; ".join(f"{name}: {listed(sorted(self._positions_in(name))) or 'none'}" for name in states)
+        positions = "; ".join(f"{name}: {listed(sorted(self._positions_in(name))) or 'none'}" for name in states)
         raise InputError(
             f"{self._path}: no topic holds positions of the wheels {listed(wanted)}. Joints with a position: "
-            f"{there}. Name two of them: --joints left=…,right=…"
+            f"{positions}. Name two of them: --joints left=…,right=…"
         )

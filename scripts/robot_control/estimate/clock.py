@@ -57,10 +57,10 @@ def fit_turning(
     rows = _block_ends(wheel_time, np.flatnonzero(inside))
     if rows.size < FEWEST:
         return None
-    way, difference = (np.diff(table[rows]) for table in ((left + right) / 2, right - left))
+    travel, difference = (np.diff(table[rows]) for table in ((left + right) / 2, right - left))
     if np.ptp(difference) == 0:
         return None
-    problem = _Problem(wheel_time[rows], way, difference, gyro_time, np.column_stack([angle, yaw_rate]))
+    problem = _Problem(wheel_time[rows], travel, difference, gyro_time, np.column_stack([angle, yaw_rate]))
     costs = [problem.solve(offset)[1] for offset in _grid()]
     offset = float(_grid()[int(np.argmin(costs))])
     return problem.refined(offset)
@@ -82,7 +82,7 @@ def _block_ends(time: FloatArray, rows: IntArray) -> IntArray:
 @dataclass(frozen=True)
 class _Problem:
     time: FloatArray  # (b + 1,) s, ends of the blocks
-    way: FloatArray  # (b,) m, Δs
+    travel: FloatArray  # (b,) m, Δs
     difference: FloatArray  # (b,) m, ΔW
     gyro_time: FloatArray  # (m,) s
     turning: FloatArray  # (m, 2) ψ, ω
@@ -115,7 +115,7 @@ class _Problem:
 
     def _columns(self, offset: float) -> FloatArray:
         turned, faster = (np.diff(np.interp(self.time + offset, self.gyro_time, column)) for column in self.turning.T)
-        return np.column_stack([turned, self.way, np.diff(self.time), faster])
+        return np.column_stack([turned, self.travel, np.diff(self.time), faster])
 
     def _weighted(self, columns: FloatArray) -> tuple[FloatArray, float]:
         weights = np.ones(self.difference.size)

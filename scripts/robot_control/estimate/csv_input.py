@@ -12,13 +12,13 @@ from typing import TextIO
 
 import numpy as np
 
-from robot_control.common.files import LARGEST_TABLE, check_input, listed
+from robot_control.common.files import MAX_TABLE, check_input, listed
 from robot_control.common.run_log import notes_on_runs
 from robot_control.estimate.log_input import log_columns
 from robot_control.estimate.samples import ACCEL, GYRO, FloatArray, InputError, IntArray, Robot, Samples
 
 NAMES = ("time", "left", "right", *GYRO, *ACCEL)
-LONGEST_LINE = 100_000
+MAX_LINE = 100_000
 """characters; below the field limit of Python's csv, and a row of a log has some 3000"""
 TIME_UNITS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}  # in ns
 GYRO_UNITS = {"rad/s": 1.0, "deg/s": math.pi / 180}
@@ -44,7 +44,7 @@ def read_csv(path: Path, robot: Robot, form: CsvForm) -> Samples:
             the line.
         OSError: it cannot be opened.
     """
-    check_input(path, LARGEST_TABLE)
+    check_input(path, MAX_TABLE)
     with path.open(newline="", encoding="utf-8-sig", errors="replace") as file:
         table = _Table(path, _lines(path, file))
         if {"run", "cycle", "time"} <= set(table.header) and not form.columns:
@@ -55,10 +55,10 @@ def read_csv(path: Path, robot: Robot, form: CsvForm) -> Samples:
 def _lines(path: Path, file: TextIO) -> Iterator[str]:
     """The lines of a text; reading stops early in a file that has none."""
     number = 0
-    while line := file.readline(LONGEST_LINE + 1):
+    while line := file.readline(MAX_LINE + 1):
         number += 1
-        if len(line) > LONGEST_LINE:
-            raise InputError(f"{path}, line {number}: longer than {LONGEST_LINE} characters; is it a CSV?")
+        if len(line) > MAX_LINE:
+            raise InputError(f"{path}, line {number}: longer than {MAX_LINE} characters; is it a CSV?")
         if "\0" in line:
             raise InputError(f"{path}, line {number}: holds a NUL character; is it a CSV?")
         yield line
@@ -99,10 +99,10 @@ def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
         )
     found = {name: column for name, column in columns.items() if column in table.header}
     for group, needed in ((GYRO, ("gyro_z",)), (ACCEL, ACCEL)):
-        there = [name for name in group if name in found]
+        present = [name for name in group if name in found]
         absent = [columns[name] for name in needed if name not in found]
-        if there and absent:
-            raise InputError(f"{table.path}: there is {found[there[0]]}, but no {', '.join(absent)}")
+        if present and absent:
+            raise InputError(f"{table.path}: there is {found[present[0]]}, but no {', '.join(absent)}")
     return found
 
 

@@ -8,7 +8,7 @@ from robot_control.estimate.samples import FloatArray, Samples
 
 FINE = 4096 / 1.5
 """counts a turn of the default encoder_noise; a finer encoder makes little difference to it"""
-FEW, MOST = 20, 20  # number of steps that suffice for a judgement, and the largest one in counts
+MIN_STEPS, MAX_COUNTS = 20, 20  # number of steps that suffice for a judgement, and the largest one in counts
 KINDS = 2
 """number of different steps that are needed; a single one may be a steady speed"""
 
@@ -28,11 +28,11 @@ def _columns(samples: Samples) -> list[FloatArray]:
 def _step(differences: FloatArray) -> float | None:
     """The unit [rad] of which all small differences are multiples."""
     sizes = np.abs(differences[differences != 0])
-    if sizes.size < FEW:
+    if sizes.size < MIN_STEPS:
         return None
     unit = float(sizes[sizes < 1.5 * sizes.min()].mean())
-    multiples = sizes[sizes < (MOST + 0.5) * unit] / unit
+    multiples = sizes[sizes < (MAX_COUNTS + 0.5) * unit] / unit
     whole = np.round(multiples)
-    if multiples.size < FEW or np.mean(np.abs(multiples - whole) < 0.05) < 0.98 or np.unique(whole).size < KINDS:
+    if multiples.size < MIN_STEPS or np.mean(np.abs(multiples - whole) < 0.05) < 0.98 or np.unique(whole).size < KINDS:
         return None
     return unit

@@ -17,7 +17,7 @@ IN_G = (0.8, 1.25)
 SCALE = 0.12
 """share by which the accelerometer's norm at rest may differ from gravity; a vacuum robot's is 4 % low"""
 NO_GRAVITY = 0.5  # m/s²
-LARGEST_BIAS = math.radians(5)
+MAX_BIAS = math.radians(5)
 """rad/s of a gyro at rest; the data sheets of MEMS gyros allow less"""
 BASES = (0.75, 1.35)
 """wheel base by the turning over the given one; tyres and floor explain no more"""
@@ -29,7 +29,7 @@ OFFSET, OFFSET_DEVIATION = 0.005, 0.02
 """s: the smallest offset of the clocks that is corrected, and its largest standard deviation"""
 FEWEST = 10
 """number of samples from which their distance can be judged"""
-LEAST_APART, MOST_APART = 2e-5, 2.0
+MIN_APART, MAX_APART = 2e-5, 2.0
 """s between samples; a robot's sensors are sampled neither at 50 kHz nor once in two seconds"""
 COUNTS = 20
 """number of different whole numbers from which they are counts, not angles"""
@@ -85,9 +85,9 @@ def _check_time(samples: Samples) -> None:
     if samples.own_log or samples.time_ns.size < FEWEST:
         return
     apart = 1e-9 * float(np.median(np.diff(samples.time_ns)))
-    if not LEAST_APART <= apart <= MOST_APART:
+    if not MIN_APART <= apart <= MAX_APART:
         raise InputError(
-            f"half of the samples are less than {apart:.3g} s apart; expected is {LEAST_APART:g} to {MOST_APART:g} s: "
+            f"half of the samples are less than {apart:.3g} s apart; expected is {MIN_APART:g} to {MAX_APART:g} s: "
             "look at the unit of the times (of a CSV: --time-unit, s unless given)"
         )
 
@@ -154,7 +154,7 @@ def _check_rest(streams: Streams, findings: Findings) -> None:
         return
     bias = streams.gyro[inside].mean(axis=0)
     for axis, rate in zip("xyz", bias.tolist(), strict=True):
-        if abs(rate) > LARGEST_BIAS:
+        if abs(rate) > MAX_BIAS:
             findings.warnings.append(
                 f"the gyro's {axis} axis shows {math.degrees(rate):.1f} °/s at rest: is it broken, or in another unit?"
             )

@@ -32,21 +32,21 @@ class LogColumns:
         return Samples(time_ns, left, right, gyro, accel, notes, own_log=True)
 
 
-def log_columns(path: Path, there: Collection[str], robot: Robot) -> LogColumns:
-    """The columns with samples among `there`, the names of the log's columns.
+def log_columns(path: Path, names: Collection[str], robot: Robot) -> LogColumns:
+    """The columns with samples among `names`, those of the log's columns.
 
     Raises:
         InputError: it is the log of another robot, or has no IMU.
     """
     columns = LogColumns(*([f"{joint}_position" for joint in wheel_joints(robot, side)] for side in ("left", "right")))
-    missing = [name for name in [*columns.left, *columns.right] if name not in there]
+    missing = [name for name in [*columns.left, *columns.right] if name not in names]
     if missing:
-        positions = [name for name in there if name.endswith("_position")]
+        positions = [name for name in names if name.endswith("_position")]
         raise InputError(
             f"{path} is a log of another robot: no column {', '.join(missing)}; it has {listed(positions)}. Give "
             "the --urdf or --params that it was recorded with, or --columns time=time,left=…,right=…"
         )
-    absent = [name for name in columns.all if name not in there]
+    absent = [name for name in columns.all if name not in names]
     if absent:
         raise InputError(f"{path}: its header is that of a log, but there is no {', '.join(absent)}")
     return columns

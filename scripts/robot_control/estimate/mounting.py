@@ -92,9 +92,9 @@ def _motion(streams: Streams) -> tuple[FloatArray, FloatArray, FloatArray]:
     marks = np.arange(begin, end, BLOCK)
     if marks.size < FEWEST + 2:
         return np.empty(0), np.empty(0), np.empty(0)
-    way = np.interp(marks, time, streams.way)
+    travel = np.interp(marks, time, streams.way)
     turn = np.interp(marks, time, streams.right - streams.left) / streams.wheel_base
-    speed = np.diff(way) / BLOCK  # in the middle of each block: Δv is between middles
+    speed = np.diff(travel) / BLOCK  # in the middle of each block: Δv is between middles
     rate = np.diff(turn) / BLOCK
     sideways = (speed * rate)[1:] / 2 + (speed * rate)[:-1] / 2
     return (marks[1:] + marks[:-1]) / 2, np.diff(speed), sideways * BLOCK

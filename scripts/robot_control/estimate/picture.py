@@ -30,7 +30,7 @@ NINETY_FIVE = 2.4477
 DEGREES = 180 / np.pi
 SMOOTH = 0.05
 """s over which drawn speeds are averaged; without it the counts of an encoder in one millisecond would hide them"""
-LEAST_NIS = 1e-3  # smallest innovation that is drawn; a sensor that agrees better does so by chance
+MIN_NIS = 1e-3  # smallest innovation that is drawn; a sensor that agrees better does so by chance
 UNDER = 5.0
 """points; width of a curve below the estimate, so that it stays visible on both sides"""
 
@@ -196,7 +196,7 @@ def _draw_innovations(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Innovations, squared over their variance: 1 is as expected")
     shown = False
     for i, name in enumerate(SENSORS):
-        nis = np.where(rows["nis"][:, i] > 0, np.maximum(rows["nis"][:, i], LEAST_NIS), np.nan)
+        nis = np.where(rows["nis"][:, i] > 0, np.maximum(rows["nis"][:, i], MIN_NIS), np.nan)
         if not np.isnan(nis).all():
             axes.plot(time, nis, linewidth=1.2, label=name.replace("_", " "))
             shown = True

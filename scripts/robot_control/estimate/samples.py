@@ -60,7 +60,7 @@ class Samples:
         inside = (time_ns >= streams[0].time_ns[0]) & (time_ns <= streams[0].time_ns[-1])
         wheels = np.split(values[0][inside], [tables[0].shape[1]], axis=1)
         left, right = (
-            table[:, 0] if of.ndim == 1 else table for table, of in zip(wheels, (self.left, self.right), strict=True)
+            table[:, 0] if own.ndim == 1 else table for table, own in zip(wheels, (self.left, self.right), strict=True)
         )
         moved = iter(values[1:])
         gyro, accel = (None if table is None else next(moved)[inside] for table in (self.gyro, self.accel))
@@ -110,8 +110,8 @@ def merged(streams: Sequence[Stream]) -> tuple[IntArray, list[FloatArray]]:
 def _of_any(time_ns: IntArray, tables: Sequence[FloatArray]) -> tuple[IntArray, FloatArray]:
     """Times and rows at which any of the columns has a value."""
     table = np.column_stack(tables)
-    there = ~np.all(np.isnan(table), axis=1)
-    return time_ns[there], table[there]
+    present = ~np.all(np.isnan(table), axis=1)
+    return time_ns[present], table[present]
 
 
 def wheel_joints(robot: Robot, side: str) -> list[str]:
@@ -120,5 +120,5 @@ def wheel_joints(robot: Robot, side: str) -> list[str]:
 
 
 def _rate(seconds: FloatArray, table: FloatArray) -> float:
-    there = seconds[np.any(~np.isnan(table.reshape(seconds.size, -1)), axis=1)]
-    return 0.0 if there.size < 2 else (there.size - 1) / float(there[-1] - there[0])
+    present = seconds[np.any(~np.isnan(table.reshape(seconds.size, -1)), axis=1)]
+    return 0.0 if present.size < 2 else (present.size - 1) / float(present[-1] - present[0])

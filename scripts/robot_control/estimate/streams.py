@@ -82,5 +82,5 @@ def _travel(table: FloatArray, robot: Robot, side: str) -> FloatArray:
 def _axes(seconds: FloatArray, table: FloatArray | None) -> tuple[FloatArray, FloatArray]:
     if table is None:
         return np.empty(0), np.empty((0, 3))
-    there = ~np.any(np.isnan(table), axis=1)
-    return seconds[there], table[there]
+    present = ~np.any(np.isnan(table), axis=1)
+    return seconds[present], table[present]

@@ -9,8 +9,8 @@ import numpy as np
 from robot_control.estimate.samples import IntArray, Samples
 from robot_control.offline_estimator import FLAGS, Estimate
 
-LARGEST_YAW_DEVIATION = math.radians(10)
-MOST_SLIP = 0.2  # of the distance
+MAX_YAW_DEVIATION = math.radians(10)
+MAX_SLIP = 0.2  # of the distance
 UNUSED = 0.05  # of the time
 USED_BY = {"gyro": "no_gyro", "accelerometer": "no_accelerometer"}
 """sensor → the flag that says that it was not used"""
@@ -44,9 +44,9 @@ class Trust:
     def doubts(self, samples: Samples) -> list[str]:
         """Reasons to doubt the estimate, a sentence each; empty if there are none."""
         found = []
-        if self._yaw_deviation > LARGEST_YAW_DEVIATION:
+        if self._yaw_deviation > MAX_YAW_DEVIATION:
             found.append(f"not to be trusted: the last yaw is known to ± {math.degrees(self._yaw_deviation):.0f}°")
-        if self._distance > 0 and self._slipped > MOST_SLIP * self._distance:
+        if self._distance > 0 and self._slipped > MAX_SLIP * self._distance:
             found.append(
                 f"not to be trusted: slip on {100 * self._slipped / self._distance:.0f} % of the distance is rare; "
                 "look at clocks, units and mounting, and at what shakes the IMU"

@@ -26,7 +26,7 @@ REACH = 0.9
 """Share of the space; the remaining tenth covers the errors of tracking and odometry."""
 SLOWEST = 0.05
 """m/s at the wheels' rims; below it the three levels are too close to show dry friction"""
-LONGEST_TURN = 2 * math.pi
+MAX_TURN = 2 * math.pi
 """rad; a larger turn winds up cables"""
 
 
@@ -111,7 +111,7 @@ def plan_excitation(
             f"--space {space:g} m, --max-speed {max_speed:g} m/s: the robot would drive {v:.3g} m/s at most, "
             f"{SLOWEST:g} m/s are needed. Give at least {math.ceil(100 * needed) / 100:g} m and {SLOWEST:g} m/s"
         )
-    w = min(angular.speed, 2 * max_speed / wheel_base, angular.fastest_within(LONGEST_TURN))
+    w = min(angular.speed, 2 * max_speed / wheel_base, angular.fastest_within(MAX_TURN))
     moves = [*_moves(linear, v, repeats, turn=False), *_moves(angular, w, repeats, turn=True)]
     return Excitation(tuple(moves), v, w, v * CRUISE + linear.ramps(v), w * CRUISE + angular.ramps(w))
 

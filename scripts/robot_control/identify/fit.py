@@ -161,8 +161,8 @@ def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
     x = np.concatenate([part.regressors[:, side] for part in parts])
     z = np.concatenate([part.instruments[:, side] for part in parts])
     scale = np.sqrt(np.mean(z**2, axis=0))
-    there = scale > QUIET
-    x, z = x[:, there] / scale[there], z[:, there] / scale[there]
+    excited = scale > QUIET
+    x, z = x[:, excited] / scale[excited], z[:, excited] / scale[excited]
     pace = np.hypot(z[:, 0], z[:, 1])
     slow = pace < SLOW_PACE * np.sqrt(np.mean(pace**2))
     weight = np.ones(len(torque))
@@ -179,7 +179,7 @@ def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
     variances = np.diag(inverse @ (sums.T @ sums) @ inverse.T)
     errors = np.sqrt(np.where(variances >= 0, variances, np.nan))  # rounding may be negative
     values, spread = np.full(len(TERMS), np.nan), np.full(len(TERMS), np.nan)
-    values[there], spread[there] = theta / scale[there], errors / scale[there]
+    values[excited], spread[excited] = theta / scale[excited], errors / scale[excited]
     return _Solution(values, spread, residual)
 
 

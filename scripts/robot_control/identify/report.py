@@ -57,9 +57,9 @@ def ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> 
     """Friction of the ground from the torque of scrubbing treads at friction 1 (robot/wheels/scrub.h); None if none
     scrub.
     """
-    most = sum(float(wheel["scrub"]) for wheel in now) / len(now)
+    at_friction_one = sum(float(wheel["scrub"]) for wheel in now) / len(now)
     scrub = found.mean("scrub")
-    return Estimate(scrub.value / most, scrub.error / most) if most > 0 else None
+    return Estimate(scrub.value / at_friction_one, scrub.error / at_friction_one) if at_friction_one > 0 else None
 
 
 def _ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:

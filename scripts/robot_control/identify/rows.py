@@ -95,8 +95,8 @@ def _bits(log: Log, column: str, bits: int) -> BoolArray:
     return found
 
 
-def _refuse(bad: BoolArray, of: BoolArray, share: float, what: str, remedy: str) -> None:
-    found = bad.sum() / of.sum()
+def _refuse(bad: BoolArray, considered: BoolArray, share: float, what: str, remedy: str) -> None:
+    found = bad.sum() / considered.sum()
     if found > share:
         raise UnfitError(f"{what} in {found:.0%} of the driven cycles, {share:.0%} are allowed: {remedy}")
 

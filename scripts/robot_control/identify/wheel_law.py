@@ -84,14 +84,14 @@ class Signals:
 def signals_of(log: Log, rows: slice, base: Base, lag: int) -> Signals:
     """The signals of `rows`; `lag`: cycles from a command to the sample of its torque."""
 
-    def of(column: str) -> FloatArray:
+    def mean_of(column: str) -> FloatArray:
         sides = [[wheel.sign * log[f"{wheel.joint}_{column}"][rows] for wheel in base.beside(side)] for side in SIDES]
         mean: FloatArray = np.mean(sides, axis=1).T
         return mean
 
     # The plan of cycle k is carried out from k + lag on.
-    plan = of("velocity_command")[: -lag or None]
-    return Signals(of("position")[lag:], of("effort")[lag:], plan)
+    plan = mean_of("velocity_command")[: -lag or None]
+    return Signals(mean_of("position")[lag:], mean_of("effort")[lag:], plan)
 
 
 @dataclass(frozen=True)

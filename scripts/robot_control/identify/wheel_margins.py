@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 from robot_control._robot_control import spectral_radius
 
-MOST_DELAY = 60
+MAX_DELAY = 60
 """Largest delay that the search tries, cycles"""
-MOST_GAIN = 64.0
+MAX_GAIN = 64.0
 """Largest factor that the search tries"""
 GAIN_STEPS = 12
 """Halvings of that range in the logarithm: 0.1 %"""
@@ -60,7 +60,7 @@ class Margins:
     radius: float
     """Spectral radius; below 1: stable"""
     gain: float
-    """The loop stays stable if all gains are multiplied by it; at most MOST_GAIN, 0 if the loop is unstable already"""
+    """The loop stays stable if all gains are multiplied by it; at most MAX_GAIN, 0 if the loop is unstable already"""
     delay: int
     """Largest delay beyond the bus' one with a stable loop, cycles; −1 if there is none"""
 
@@ -78,15 +78,15 @@ def gain_margin(loop: Loop, delay: int) -> float:
 
     if not stable(1.0):
         return 0.0
-    return _last(stable, 1.0, MOST_GAIN)
+    return _last(stable, 1.0, MAX_GAIN)
 
 
 def delay_margin(loop: Loop) -> int:
     """The largest n for which the loop is stable behind 0 … n cycles."""
-    for delay in range(MOST_DELAY + 1):
+    for delay in range(MAX_DELAY + 1):
         if not loop.radius(delay) < 1:
             return delay - 1
-    return MOST_DELAY
+    return MAX_DELAY
 
 
 def _last(holds: Callable[[float], bool], low: float, high: float) -> float:

@@ -21,7 +21,7 @@ SETTLING = 0.3
 """s after an interruption in which messages may still arrive that were sent before it"""
 ZEROS = 1.0
 """s for which zeros are sent after a motion; then the topic is silent, so that another sender may command"""
-LONGEST = 256
+MAX_INPUTS = 256
 """axes or buttons of a message"""
 
 
@@ -69,7 +69,7 @@ class Pad:
 
     def receive(self, axes: Sequence[float], buttons: Sequence[int], now: float, sender: str = "") -> None:
         """Takes an answer of the device or a message of this sender: its axes, −1 … 1, and buttons, 0 or 1."""
-        if len(axes) > LONGEST or len(buttons) > LONGEST:
+        if len(axes) > MAX_INPUTS or len(buttons) > MAX_INPUTS:
             return
         came_back = not self.answers(now)
         self._newest = {name: self._newest[name] for name in self._senders(now)} | {sender: now}
@@ -96,7 +96,7 @@ class Pad:
         self._armed, self._zeros_until = False, now + ZEROS
 
     def permit(self, drivable: bool | None) -> None:  # noqa: FBT001 (a three-valued state)
-        """Tells whether the robot may drive by its safety monitor; None if there is no message of it."""
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
         if self._drivable is False and drivable is not False:
             self._armed = False  # the button may have been pressed during the stop
         self._drivable = drivable

@@ -177,14 +177,14 @@ class Follower:
     def _moved(self, last: Pose, before: Motion, pose: Pose, measured: Motion, elapsed: float) -> Motion:
         """m, rad since the last message, at the faster speed of both ends; a larger jump ends the path."""
         given = self._parameters
-        way = math.dist((last.x, last.y), (pose.x, pose.y))
+        distance = math.dist((last.x, last.y), (pose.x, pose.y))
         angle = abs(turned(pose.yaw - last.yaw))
-        if way > max(abs(before.linear), abs(measured.linear)) * elapsed + given.jump:
-            self.fail(f"the pose jumped by {way:.2f} m in {elapsed:.2f} s: {JUMPED}")
+        if distance > max(abs(before.linear), abs(measured.linear)) * elapsed + given.jump:
+            self.fail(f"the pose jumped by {distance:.2f} m in {elapsed:.2f} s: {JUMPED}")
         elif angle > max(abs(before.angular), abs(measured.angular)) * elapsed + given.heading_jump:
             self.fail(f"the pose jumped by {math.degrees(angle):.0f} deg in {elapsed:.2f} s: {JUMPED}")
         driven = abs(measured.linear) * elapsed
-        driven = min(driven, max(way, (1 - given.speed_error) * driven))
+        driven = min(driven, max(distance, (1 - given.speed_error) * driven))
         return Motion(math.copysign(driven, measured.linear), measured.angular * elapsed)
 
     def _begin(self, pose: Pose) -> None:

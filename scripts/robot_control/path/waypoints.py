@@ -10,9 +10,9 @@ from pathlib import Path
 from robot_control.common.files import InputFileError, check_input, listed
 
 COLUMNS = ("x", "y", "yaw", "speed")
-MOST = 100_000
+MAX_POINTS = 100_000
 """points"""
-LARGEST_FILE = 1 << 24
+MAX_FILE = 1 << 24
 """bytes of a CSV file"""
 JUMP, JUMP_RATIO, ENOUGH = 1.0, 20.0, 10
 """m, times the median distance, points: in a path of so many a longer step than both is an error"""
@@ -38,8 +38,8 @@ def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
     Raises:
         PathError: fewer than two points, a number that is not finite, a speed that is not above zero, a jump.
     """
-    if len(points) > MOST:
-        raise PathError(f"the path has {len(points)} points, more than {MOST}")
+    if len(points) > MAX_POINTS:
+        raise PathError(f"the path has {len(points)} points, more than {MAX_POINTS}")
     for number, point in enumerate(points):
         numbers = (point.x, point.y, point.yaw or 0.0, point.speed or 0.0)
         if not all(map(math.isfinite, numbers)):
@@ -128,7 +128,7 @@ def read_csv(path: Path) -> list[Waypoint]:
         OSError: the file cannot be read.
     """
     try:
-        check_input(path, LARGEST_FILE)
+        check_input(path, MAX_FILE)
     except InputFileError as error:
         raise PathError(str(error)) from None
     try:

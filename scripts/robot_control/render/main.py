@@ -31,7 +31,7 @@ AHEAD = 12
 FAR = 6.0
 """the camera's distance over the robot's size"""
 AZIMUTH, ELEVATION = 125.0, -24.0
-LARGEST = 4096
+MAX_PIXELS = 4096
 """pixels"""
 
 
@@ -92,8 +92,8 @@ def size_of(text: str) -> tuple[int, int]:
         size = int(width), int(height)
     except ValueError:
         size = 0, 0
-    if min(size) < 2 or size[0] % 2 or size[1] % 2 or max(size) > LARGEST:
-        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, even numbers of 2 to {LARGEST}")
+    if min(size) < 2 or size[0] % 2 or size[1] % 2 or max(size) > MAX_PIXELS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not WIDTHxHEIGHT, even numbers of 2 to {MAX_PIXELS}")
     return size
 
 

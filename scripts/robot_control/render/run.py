@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from robot_control.common.files import LARGEST_TABLE, check_input
+from robot_control.common.files import MAX_TABLE, check_input
 from robot_control.common.run_log import LogError
 
 FLAT = 0.01
@@ -37,7 +37,7 @@ def read_moments(path: Path, period: float) -> list[Moment]:
         LogError: it is no log, or holds no pose.
         OSError: it cannot be read.
     """
-    check_input(path, LARGEST_TABLE)
+    check_input(path, MAX_TABLE)
     rows: list[dict[str, float]] = []
     run, due = "", -math.inf
     try:

@@ -11,7 +11,7 @@ from robot_control.render.run import Moment
 
 STEP = 0.05
 """m between two points of the path driven"""
-MOST_POINTS = 1500
+MAX_POINTS = 1500
 DEGREES_OF_FREEDOM = {"free": 7, "ball": 4, "slide": 1, "hinge": 1}
 """numbers in qpos per type of joint"""
 BODY, RUBBER, MARK = "0.30 0.45 0.62 1", "0.12 0.12 0.13 1", "0.85 0.86 0.88 1"
@@ -148,7 +148,7 @@ class Scene:
     def _add_path(self, moments: Sequence[Moment]) -> None:
         places = [self.place(moment) for moment in moments]
         points = [places[0]]
-        step = max(STEP, sum(math.dist(a, b) for a, b in pairwise(places)) / MOST_POINTS)
+        step = max(STEP, sum(math.dist(a, b) for a, b in pairwise(places)) / MAX_POINTS)
         for place in places[1:]:
             if math.dist(place, points[-1]) > step:
                 points.append(place)

@@ -19,7 +19,7 @@ from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup
 LAWS = ("gate", "state_estimator", "diff_drive_controller", "safety_monitor")
 VARIED = ("state_estimator.", "safety_monitor.")
 WITHOUT_EFFECT = "the controller reads it at its start alone, or it belongs to no law that is varied"
-MOST_LINES = 20
+MAX_LINES = 20
 EXACT, NOT_COMPARED, REFUSED, DIFFERENT = 0, 1, 2, 3
 
 
@@ -124,7 +124,7 @@ def _left_out(report: Mapping[str, Any], law: str | None) -> list[str]:
 
 
 def text_of(report: Mapping[str, Any], setup: RecordedSetup, law: str | None) -> str:
-    """The report; its first line tells whether all was compared, and whether it is the same."""
+    """The report; its first line states whether all was compared, and whether it is the same."""
     found = [*_differences(report, law), *_left_out(report, law)]
     lines = [
         f"{setup.path}: {', '.join(found) or 'every row is the same, bit for bit'}",
@@ -150,6 +150,6 @@ def _of(sentences: Sequence[str], law: str | None) -> list[str]:
 
 
 def _listed(what: str, sentences: Sequence[str]) -> list[str]:
-    lines = [f"{what}: {text}" for text in sentences[:MOST_LINES]]
-    more = len(sentences) - MOST_LINES
+    lines = [f"{what}: {text}" for text in sentences[:MAX_LINES]]
+    more = len(sentences) - MAX_LINES
     return [*lines, f"{what}: {more} more"] if more > 0 else lines

@@ -14,7 +14,7 @@ import yaml  # type: ignore[import-untyped]
 from robot_control.common.files import check_input, printable
 from robot_control.report.figures import Figure
 
-LARGEST_BUDGETS = 1 << 20
+MAX_BUDGETS = 1 << 20
 """bytes"""
 BOUNDS = ("most", "least")
 
@@ -68,7 +68,7 @@ def read_budgets(path: Path, known: Mapping[str, Figure]) -> Budgets:
         BudgetError: no budget at all, no such figure or bound, or a bound that is no number.
         OSError: it cannot be opened.
     """
-    check_input(path, LARGEST_BUDGETS)
+    check_input(path, MAX_BUDGETS)
     try:
         tree: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (yaml.YAMLError, UnicodeDecodeError) as error:

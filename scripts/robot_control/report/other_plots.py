@@ -103,9 +103,9 @@ def _first(drive: Drive) -> tuple[list[float], list[float]]:
 def _path(plot: Any, x: FloatArray, y: FloatArray, look: Line) -> list[Any]:  # noqa: ANN401 (Bokeh's)
     if np.all(np.isnan(x)):
         return []
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.nan_to_num(np.diff(x)), np.nan_to_num(np.diff(y))))])
-    step = max(float(way[-1]) / PATH_POINTS, 1e-9)
-    ticks = np.floor(way / step)
+    distance = np.concatenate([[0.0], np.cumsum(np.hypot(np.nan_to_num(np.diff(x)), np.nan_to_num(np.diff(y))))])
+    step = max(float(distance[-1]) / PATH_POINTS, 1e-9)
+    ticks = np.floor(distance / step)
     kept = np.concatenate([[True], np.diff(ticks) > 0])
     kept[-1] = True
     return [plot.line(x[kept].astype(np.float32), y[kept].astype(np.float32), color=look.colour, line_width=look.width,
@@ -116,12 +116,12 @@ def _ellipses(plot: Any, drive: Drive, colour: str) -> list[Any]:  # noqa: ANN40
     """Ellipses of 95 %, from the eigenvalues of the covariance of x and y."""
     columns = ("estimate_x", "estimate_y", "estimate_x_variance", "estimate_y_variance", "estimate_xy_covariance")
     table = np.column_stack([drive.column(name) for name in columns])
-    way = drive.column("estimate_distance")
-    known = np.flatnonzero(~np.isnan(table).any(axis=1) & ~np.isnan(way))
+    distance = drive.column("estimate_distance")
+    known = np.flatnonzero(~np.isnan(table).any(axis=1) & ~np.isnan(distance))
     if known.size == 0:
         return []
-    places = np.linspace(way[known[0]], way[known[-1]], ELLIPSES)
-    rows = np.unique(known[np.searchsorted(way[known], places).clip(0, known.size - 1)])
+    places = np.linspace(distance[known[0]], distance[known[-1]], ELLIPSES)
+    rows = np.unique(known[np.searchsorted(distance[known], places).clip(0, known.size - 1)])
     x, y, xx, yy, xy = table[rows].T
     middle, difference = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     half = [np.sqrt(CHI_SQUARE_95 * np.maximum(value, 0)) for value in (middle + difference, middle - difference)]
@@ -155,12 +155,12 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
         values = drive.bits(column)
         present = int(np.bitwise_or.reduce(values, initial=0))
         for number in range(present.bit_length()):
-            of = names.bit(kind, number)
-            if not present >> number & 1 or of.name in ORDINARY:
+            bit = names.bit(kind, number)
+            if not present >> number & 1 or bit.name in ORDINARY:
                 continue
-            order.append(f"{label}: {of.name}")
+            order.append(f"{label}: {bit.name}")
             bars += [
-                (order[-1], begin, end, colour, of.sentence)
+                (order[-1], begin, end, colour, bit.sentence)
                 for begin, end in joined(intervals(values >> number & 1 != 0), gap)
             ]
     if not bars:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 BURST = 0.01
 """s; the fastest keyboards repeat every 20 ms"""
-SHORTEST_DELAY = 0.15
+MIN_DELAY = 0.15
 """s; below the shortest usual delay until the first repeat (0.25 s), above the time between two quick taps"""
 SLOWEST_REPEAT = 0.12
 """s; keyboards repeat at 10 to 50 Hz"""
@@ -70,7 +70,7 @@ class RepeatDelay:
         self._times.append(now)
         if len(self._times) == 4:
             delay, second, third = (b - a for a, b in zip(self._times, self._times[1:], strict=False))
-            if delay >= SHORTEST_DELAY and max(second, third) <= SLOWEST_REPEAT:
+            if delay >= MIN_DELAY and max(second, third) <= SLOWEST_REPEAT:
                 self._measured.append(delay)
 
 
@@ -122,7 +122,7 @@ class DeadMan:
             self._since = begin
         else:
             self._bytes += 1
-            tapped = self._bytes == 2 and gap < SHORTEST_DELAY and not repeat
+            tapped = self._bytes == 2 and gap < MIN_DELAY and not repeat
             self._fast = self._fast or not tapped
             self._until = now + (self.first_hold if tapped else self._parameters.hold)
 

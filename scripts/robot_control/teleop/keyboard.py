@@ -29,7 +29,7 @@ from enum import Enum, auto
 
 ESCAPE_WAIT = 0.05
 """s; the bytes of one sequence come together, on a slow link within this time"""
-LONGEST = 32
+MAX_SEQUENCE = 32
 """bytes of a sequence that may mean something"""
 
 QUERY_RELEASES = b"\x1b[?u"
@@ -177,7 +177,7 @@ class Decoder:
             single, self._part = self._part is Part.SINGLE, Part.KEYS
             yield from self._complete(chr(byte), single=single)
             return
-        self._sequence = (self._sequence + chr(byte))[: LONGEST + 1]
+        self._sequence = (self._sequence + chr(byte))[: MAX_SEQUENCE + 1]
         if byte in STOPS or byte < 0x20:
             yield from plain(byte)
 
@@ -190,7 +190,7 @@ class Decoder:
             self._part, self._raw = Part.RAW, RAW_CHARACTERS[final]
         elif body + final in (PASTE, PASTE_END):
             self._pasting = body + final == PASTE
-        elif len(body) <= LONGEST:
+        elif len(body) <= MAX_SEQUENCE:
             yield from control_key(body, final)
 
 

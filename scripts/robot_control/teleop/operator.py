@@ -105,7 +105,7 @@ class Operator:
         self._limits = limits
 
     def permit(self, drivable: bool | None, now: float) -> None:  # noqa: FBT001 (a three-valued state)
-        """Tells whether the robot may drive by its safety monitor; None if there is no message of it."""
+        """Sets whether the robot may drive by its safety monitor; None if there is no message of it."""
         if drivable is False and self._drivable is not False:
             self.interrupt(now)
         if drivable is True and self._drivable is False:

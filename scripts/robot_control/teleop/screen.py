@@ -11,7 +11,7 @@ from robot_control.why.diagnosis import CONTROLLER, Facts, Verdict, judge
 WIDTH, HEIGHT = 80, 24
 LABEL = 10
 """columns of the word before each line"""
-MOST_LINES = {"to do": 3, "causes": 3, "answer": 3, "warnings": 2, "limits": 2}
+MAX_LINES = {"to do": 3, "causes": 3, "answer": 3, "warnings": 2, "limits": 2}
 """lines of each label, so that all of them find room"""
 
 
@@ -52,7 +52,7 @@ def render(facts: Facts, view: View, height: int = HEIGHT) -> list[str]:
         *_wrapped(_headline(facts), "", 2),
     ]
     for label, text in _rows(facts, view):
-        body += _wrapped(text, label, MOST_LINES.get(label, 2))
+        body += _wrapped(text, label, MAX_LINES.get(label, 2))
     body = body[: height - len(foot)]
     body += [""] * (height - len(foot) - len(body))
     return [line[:WIDTH].rstrip() for line in body + foot]
@@ -102,7 +102,7 @@ def _command(facts: Facts, view: View) -> str:
     return f"{own}; also commanding: {', '.join(others) or 'no node'}; {end}"
 
 
-def _wrapped(text: str, label: str, most: int) -> list[str]:
+def _wrapped(text: str, label: str, max_lines: int) -> list[str]:
     width = WIDTH - LABEL if label else WIDTH
-    lines = textwrap.wrap(text, width, max_lines=most, placeholder=" ... (why.py)", break_on_hyphens=False)
+    lines = textwrap.wrap(text, width, max_lines=max_lines, placeholder=" ... (why.py)", break_on_hyphens=False)
     return [f"{label if number == 0 else '':<{LABEL if label else 0}}{line}" for number, line in enumerate(lines)]

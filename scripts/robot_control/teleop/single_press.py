@@ -1,6 +1,6 @@
 """Lets a key act once per press, on a terminal that reports no releases. It reads no clock: time is an argument.
 
-first byte                       acts at once: no byte of this key within LONGEST_DELAY before it
+first byte                       acts at once: no byte of this key within MAX_DELAY before it
 byte after SLOWEST_REPEAT        a tap or the keyboard's first repeat; it acts after SLOWEST_REPEAT, unless a
                                  further byte comes within that time and shows that the key repeats
 byte sooner than SLOWEST_REPEAT  a repeat, which does not act
@@ -8,7 +8,7 @@ byte sooner than SLOWEST_REPEAT  a repeat, which does not act
 
 from robot_control.teleop.dead_man import SLOWEST_REPEAT, HoldParameters
 
-LONGEST_DELAY = HoldParameters.first_hold
+MAX_DELAY = HoldParameters.first_hold
 """s until a keyboard's first repeat"""
 
 
@@ -27,8 +27,8 @@ class SinglePress:
         if key != self._key and self._undecided:
             acts.append(self._key)
         self._key, self._last_byte = key, now
-        self._undecided = not repeat and SLOWEST_REPEAT < gap <= LONGEST_DELAY
-        return [*acts, key] if gap > LONGEST_DELAY and not repeat else acts
+        self._undecided = not repeat and SLOWEST_REPEAT < gap <= MAX_DELAY
+        return [*acts, key] if gap > MAX_DELAY and not repeat else acts
 
     def release(self, key: str) -> list[str]:
         """The keys that act now, after the terminal reported the release of `key`: its next byte is another press."""

@@ -34,7 +34,7 @@ BEGIN = (
 """alternate screen, no cursor, modes saved and set (xterm's control sequences)"""
 END = END_RELEASES + b"\x1b[?" + PASTE + b"l\x1b[?" + MODES + b"r\x1b[?25h\x1b[?1049l"
 """modes as before; off if the terminal saves none"""
-LONGEST_READ = 4096
+MAX_READ = 4096
 """bytes"""
 SETTINGS, ALL = b"settings", b"all"
 """parts that the program has restored, as reported to its guard"""
@@ -121,7 +121,7 @@ class Terminal:
         if not select.select([self._descriptor], [], [], timeout)[0]:
             return b""
         try:
-            data = os.read(self._descriptor, LONGEST_READ)
+            data = os.read(self._descriptor, MAX_READ)
         except BlockingIOError:
             return b""
         except OSError as error:

@@ -11,10 +11,10 @@ from robot_control.safety.states import DRIVABLE
 
 WIDTH = 60
 """columns of the text above the robot"""
-MOST_LINES = 6
+MAX_LINES = 6
 STEP = 0.05
 """m between two points of the path driven"""
-MOST_POINTS = 5000
+MAX_POINTS = 5000
 """points; beyond that, every other one is dropped"""
 METRES_PER_NEWTON = 0.02
 """length of an arrow"""
@@ -71,7 +71,7 @@ def status_text(
         lines += [f"limited: {reason}" for reason in reasons]
     wrapped = [part for line in lines for part in textwrap.wrap(line, WIDTH)]
     colour = RED if state not in DRIVABLE else AMBER if len(lines) > 1 else GREEN
-    return Text("\n".join(wrapped[:MOST_LINES]), colour)
+    return Text("\n".join(wrapped[:MAX_LINES]), colour)
 
 
 @dataclass
@@ -90,6 +90,6 @@ class Trail:
             if distance > 1.0:
                 self.points, self._step = [], STEP
         self.points.append((x, y, 0.0))
-        if len(self.points) > MOST_POINTS:
+        if len(self.points) > MAX_POINTS:
             self.points, self._step = self.points[::2], 2 * self._step
         return True

@@ -91,8 +91,8 @@ def straight(robot: str, speed: float, payload: float = 0.0, params: Mapping[str
     size = abs(speed)
     half = len(true) // 2
     over, back, late = [], [], []
-    for part, target, way in ((slice(0, half), size, 1), (slice(half, None), 0.0, -1)):
-        beyond = way * (true[part] - target) / size
+    for part, target, sign in ((slice(0, half), size, 1), (slice(half, None), 0.0, -1)):
+        beyond = sign * (true[part] - target) / size
         over.append(float(beyond.max()))
         back.append(-float(beyond[int(beyond.argmax()) :].min()))
         late.append(settled(true[part], target, BAND * size) - settled(wanted[part], target, BAND * size))
@@ -110,9 +110,9 @@ def stop_error(robot: str, speed: float, slope: float, *, silence: bool) -> tupl
     loop.run(2.0, (speed, 0.0))
     log = loop.run(3.0, None if silence else (0.0, 0.0))
     start = int(np.flatnonzero(log["limited_linear"] != speed)[0])
-    way = float(np.hypot(log["truth_x"][-1] - log["truth_x"][start], log["truth_y"][-1] - log["truth_y"][start]))
+    distance = float(np.hypot(log["truth_x"][-1] - log["truth_x"][start], log["truth_y"][-1] - log["truth_y"][start]))
     predicted = loop.stop_distance(speed, emergency=silence)
-    return way - predicted, max(0.03 * predicted, 0.005)
+    return distance - predicted, max(0.03 * predicted, 0.005)
 
 
 def rims(loop: ClosedLoop, linear: float, angular: float) -> float:
@@ -124,8 +124,8 @@ def rims(loop: ClosedLoop, linear: float, angular: float) -> float:
 
 def off_the_curve(log: Log, linear: float, angular: float) -> float:
     """Relative error of the driven radius, from turn and way over all of the log, against the commanded one."""
-    way, turn = np.sum(log["truth_linear"]), np.sum(log["truth_angular"])
-    return float(way / turn) / (linear / angular) - 1
+    distance, turn = np.sum(log["truth_linear"]), np.sum(log["truth_angular"])
+    return float(distance / turn) / (linear / angular) - 1
 
 
 def scrubs(loop: ClosedLoop) -> bool:
@@ -181,8 +181,8 @@ def standstill(robot: str) -> tuple[float, float]:
     slope.run(1.5, (0.3, 0.0))
     slope.run(1.0, (0.0, 0.0))
     log = slope.run(20.0, (0.0, 0.0))
-    way = np.hypot(log["truth_x"] - log["truth_x"][0], log["truth_y"] - log["truth_y"][0])
-    return float(torque.std(axis=1).max()), float(way.max())
+    distance = np.hypot(log["truth_x"] - log["truth_x"][0], log["truth_y"] - log["truth_y"][0])
+    return float(torque.std(axis=1).max()), float(distance.max())
 
 
 def released(robot: str, speed: float) -> tuple[float, float]:
@@ -274,7 +274,7 @@ def of_the_peer() -> tuple[float, float]:
     start = ahead.run(REST, (0.0, 0.0))
     ahead.run(10.0, (0.1, 0.0))
     end = ahead.run(2.0, (0.0, 0.0))
-    way = float(np.hypot(end["truth_x"][-1] - start["truth_x"][-1], end["truth_y"][-1] - start["truth_y"][-1]))
+    distance = float(np.hypot(end["truth_x"][-1] - start["truth_x"][-1], end["truth_y"][-1] - start["truth_y"][-1]))
     logs = [around.run(10.0, (0.0, np.pi / 10)), around.run(2.0, (0.0, 0.0))]
     yaw = np.unwrap(np.concatenate([log["truth_yaw"] for log in logs]))
-    return way - 1.0, float(yaw[-1] - yaw[0]) - np.pi
+    return distance - 1.0, float(yaw[-1] - yaw[0]) - np.pi

@@ -64,11 +64,11 @@ def stops(robot: str) -> list[Figure]:
 
 def rest(robot: str) -> list[Figure]:
     """Figures at rest: quiet at standstill, holding on a slope, steady in the air, no jump after a brake."""
-    torque, way = measured.standstill(robot)
+    torque, distance = measured.standstill(robot)
     dip, jump = measured.released(robot, FULL)
     return [
         Figure("torque at rest, RMS", torque, 1e-3, "N·m"),
-        Figure("way in 20 s on 5°", 1e3 * way, 1, "mm"),  # that of the stand test
+        Figure("way in 20 s on 5°", 1e3 * distance, 1, "mm"),  # that of the stand test
         Figure("lifted wheels' error", measured.lifted(robot), 0.2, "rad/s"),  # some counts, drive_performance_test.cpp
         Figure("dip after a brake", 100 * dip, 2, "%"),  # the tracking RMS
         Figure("torque after a brake", 100 * jump, 50, "% of it"),  # a release, not another brake
@@ -95,8 +95,8 @@ def coarse_encoders(robot: str) -> list[Figure]:
 
 def peer(_robot: str) -> list[Figure]:
     """The drives of diff_drive_controller's own test, and its tolerances."""
-    way, turn = measured.of_the_peer()
-    return [Figure("10 s at 0.1 m/s", 1e3 * way, 10, "mm"), Figure("10 s at π/10 rad/s", 1e3 * turn, 30, "mrad")]
+    distance, turn = measured.of_the_peer()
+    return [Figure("10 s at 0.1 m/s", 1e3 * distance, 10, "mm"), Figure("10 s at π/10 rad/s", 1e3 * turn, 30, "mrad")]
 
 
 def promises(robot: str) -> Iterator[Figure]:

@@ -39,7 +39,7 @@ HARDLY = 0.3  # share of the target speed of a wheel that hardly turns
 REST = 1.0  # s, in which the estimator learns the bias of the gyro
 STANDSTILL = mask_of("StateFlag", "standstill")
 TURNS = 40  # seeds of turning_drive.py, of each robot
-LONGEST = 300.0  # s, of one drive; shorter drives keep all processors busy to the end
+MAX_DRIVE = 300.0  # s, of one drive; shorter drives keep all processors busy to the end
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def all_drives(share: float, errors: str = "data_sheet") -> list[Drive]:
 
 
 def _split(drive: Drive) -> list[Drive]:
-    count = max(1, round(drive.seconds / LONGEST))
+    count = max(1, round(drive.seconds / MAX_DRIVE))
     return [replace(drive, seconds=drive.seconds / count, seed=seed) for seed in range(count)]
 
 

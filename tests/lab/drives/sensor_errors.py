@@ -60,9 +60,9 @@ def _motion(some: Recording) -> tuple[float, NDArray[np.bool_]]:
 
 
 def _shaking(some: Recording, table: FloatArray, moving: NDArray[np.bool_]) -> float:
-    there = ~np.isnan(some.gyro[:, 2])
-    time = some.time[there]
-    fast = [column - _smooth(column, time, WINDOW) for column in table[there].T]
+    present = ~np.isnan(some.gyro[:, 2])
+    time = some.time[present]
+    fast = [column - _smooth(column, time, WINDOW) for column in table[present].T]
     return max(float(np.std(column[moving])) for column in fast)
 
 

@@ -87,9 +87,9 @@ def draw_frictions(random: np.random.Generator, robot: str, loop: ClosedLoop) ->
     return _between(random, GROUND, (spare - joints * own) / scrub if scrub else GROUND[1]), joints
 
 
-def _between(random: np.random.Generator, ends: tuple[float, float], most: float) -> float:
-    """A value from a range, evenly by its logarithm, and at most `most`."""
-    return float(np.exp(random.uniform(np.log(ends[0]), np.log(np.clip(most, *ends)))))
+def _between(random: np.random.Generator, ends: tuple[float, float], bound: float) -> float:
+    """A value from a range, evenly by its logarithm, and at most `bound`."""
+    return float(np.exp(random.uniform(np.log(ends[0]), np.log(np.clip(bound, *ends)))))
 
 
 def draw(random: np.random.Generator, half_base: float) -> list[tuple[float, float]]:
@@ -118,8 +118,8 @@ def slides(loop: ClosedLoop, log: dict[str, Any]) -> bool:
     window = round(WINDOW / loop.period)
     yaw = np.zeros(len(log["truth_yaw"]) - window)
     for wheel in wheels:
-        way = wheel["sign"] * wheel["radius"] * log[f"{wheel['joint']}_position"]
-        yaw += (way[window:] - way[:-window]) * (1 if wheel["side"] == "right" else -1)
+        travel = wheel["sign"] * wheel["radius"] * log[f"{wheel['joint']}_position"]
+        yaw += (travel[window:] - travel[:-window]) * (1 if wheel["side"] == "right" else -1)
     rate = yaw / loop.robot["effective_wheel_base"] / (window * loop.period)
     true = np.convolve(log["truth_angular"], np.full(window, 1 / window), mode="valid")[1:]
     spans = np.lib.stride_tricks.sliding_window_view(np.abs(rate - true) > SLIDES, round(SLIDES_FOR / loop.period))

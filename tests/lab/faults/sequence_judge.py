@@ -17,7 +17,8 @@ No rule demands more than a brake can do. A motor that is off, intermittent or s
 (drivers/motors/motor_faults.h). Meanwhile s may grow by what the slope gives a free robot, g sin 5° t, and by
 GARBAGE_SPEED; the robot need not come to rest. A monitor that errs (garbage, wrong) gives permits by itself. Then
 the rules of the gate alone count: "permit", "machine", that "brake" ends at rest, and "rest" after its recovery. A
-blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A drive that is slow or delayed receives the brake LATE_DRIVE later.
+blocked wheel, or a motor with a wrong torque, jolts the robot harder than any brake. Its tilt then does not count. A
+drive that is slow or delayed receives the brake LATE_DRIVE later.
 """
 
 from __future__ import annotations

@@ -18,13 +18,13 @@ import numpy as np
 
 from lab.drives.sensor_errors import LEVELS
 from lab.odometry.judge import Run, run
-from lab.odometry.promises import all_promises, of
+from lab.odometry.promises import all_promises, runs_of
 from lab.odometry.scenarios import SCENARIOS
 from lab.odometry.table import table
 from lab.runs.runner import Processes, Runner
 
 SEEDS = 50
-LONGEST_FIRST = ("umbmark", "random", "standstill", "waves")  # so that all processors are busy to the end
+SLOW_SCENARIOS = ("umbmark", "random", "standstill", "waves")  # so that all processors are busy to the end
 
 
 def all_runs(
@@ -40,7 +40,7 @@ def all_runs(
     """Runs in the order of scenarios and seeds. `level`: one of sensor_errors.LEVELS. `pictured`: the seed whose runs
     keep the data of a plot. `cache`: folder of recordings, which are used if they exist.
     """
-    order = sorted(scenarios, key=lambda name: LONGEST_FIRST.index(name) if name in LONGEST_FIRST else 9)
+    order = sorted(scenarios, key=lambda name: SLOW_SCENARIOS.index(name) if name in SLOW_SCENARIOS else 9)
     work = [(scenario, seed) for scenario in order for seed in seeds]
     runner = runner or Processes()
     runs = list(runner.outcomes(partial(_one, level=level, pictured=pictured, cache=cache), work, say))
@@ -68,7 +68,7 @@ def result_of(runs: Sequence[Run], seconds: float, level: str = "data_sheet") ->
         for promise in all_promises(runs, level)
     ]
     for scenario in SCENARIOS:
-        pitch = [each.pitch for each in of(runs, scenario)]
+        pitch = [each.pitch for each in runs_of(runs, scenario)]
         if scenario == "waves" and pitch:
             rows.append(_plain("waves, pitch RMS", float(np.rad2deg(np.median(pitch))), "°"))
     rows.append(_plain("seeds", len({each.seed for each in runs}), ""))

@@ -49,12 +49,12 @@ def umbmark(draft: Draft) -> None:
     speed = draft.random.uniform(0.2, 0.5)
     rate = draft.random.uniform(0.5, 1.0)  # rad/s
     draft.program.stand(SET_DOWN - FIRST_STAND)
-    for way in (-1, 1):
+    for direction in (-1, 1):
         for _ in range(SQUARES):
-            draft.mark("cw" if way < 0 else "ccw")
+            draft.mark("cw" if direction < 0 else "ccw")
             for _ in range(4):
                 draft.program.ways(speed, SIDE, 0.3)
-                draft.program.turn(way * rate, np.pi / 2, 0.3)
+                draft.program.turn(direction * rate, np.pi / 2, 0.3)
             draft.mark("end")
             draft.program.stand(SET_DOWN)
 
@@ -68,8 +68,8 @@ def figure_eight(draft: Draft) -> None:
     """Five figures of eight with radii of 0.8 … 1.5 m."""
     speed, radius = draft.random.uniform(0.3, 0.6), draft.random.uniform(0.8, 1.5)
     for _ in range(5):
-        for way in (1, -1):
-            draft.program.drive(speed, way * speed / radius, 2 * np.pi * radius / speed)
+        for direction in (1, -1):
+            draft.program.drive(speed, direction * speed / radius, 2 * np.pi * radius / speed)
     draft.program.stand(2.0)
 
 
@@ -85,8 +85,8 @@ def ice(draft: Draft) -> None:
     """
     draft.scene = _scene("low_friction_patch")
     for _ in range(3):
-        for way in (1.0, -1.0):
-            speed = way * draft.random.uniform(0.4, 0.8)
+        for direction in (1.0, -1.0):
+            speed = direction * draft.random.uniform(0.4, 0.8)
             bend = draft.random.uniform(-0.4, 0.4)
             draft.program.drive(speed, 0.0, 1.5 / abs(speed))
             draft.program.drive(speed, bend, 0.5)
@@ -101,8 +101,8 @@ def kerb(draft: Draft) -> None:
     draft.scene = _scene("kerb")
     draft.program.turn(0.5 * np.sign(draft.random.uniform(-1, 1)), draft.random.uniform(0.0, 0.6), 0.3)
     for _ in range(4):
-        for way in (1.0, -1.0):
-            draft.program.drive(way * draft.random.uniform(0.3, 0.7), 0.0, 5.0)
+        for direction in (1.0, -1.0):
+            draft.program.drive(direction * draft.random.uniform(0.3, 0.7), 0.0, 5.0)
             draft.program.stand(2.0)
 
 
@@ -118,12 +118,12 @@ def waves(draft: Draft) -> None:
     draft.scene = _scene("waves")
     for _ in range(3):
         speed = draft.random.uniform(0.2, 0.5)
-        for way in (1.0, -1.0):
-            draft.program.ways(way * speed, 2.0, 0.5)
+        for direction in (1.0, -1.0):
+            draft.program.ways(direction * speed, 2.0, 0.5)
         draft.program.turn(0.8, draft.random.uniform(0.5, 2.5), 0.5)
         radius = draft.random.uniform(0.6, 1.0)
-        for way in (1, -1):
-            draft.program.drive(speed, way * speed / radius, 2 * np.pi * radius / speed)
+        for direction in (1, -1):
+            draft.program.drive(speed, direction * speed / radius, 2 * np.pi * radius / speed)
         draft.program.stand(1.0 + draft.random.uniform(0.5, 2.0))
 
 

@@ -173,5 +173,5 @@ def _drift(recording: Recording, path: Track, truth: Truth) -> tuple[float, floa
     begin = int(np.searchsorted(times, times[np.flatnonzero(moving(truth))[-1]] + SETTLED))
     moved_x, moved_y = path.x - true.x, path.y - true.y
     turned = path.yaw - true.yaw
-    way = np.hypot(moved_x[begin:] - moved_x[begin], moved_y[begin:] - moved_y[begin])
-    return float(way.max()), float(np.abs(turned[begin:] - turned[begin]).max())
+    drift = np.hypot(moved_x[begin:] - moved_x[begin], moved_y[begin:] - moved_y[begin])
+    return float(drift.max()), float(np.abs(turned[begin:] - turned[begin]).max())

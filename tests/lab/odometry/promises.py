@@ -43,26 +43,26 @@ class Promise:
         return f"{self.name}: {self.value:.4g} {self.unit}, promised {rule} {self.bound:.4g}".replace(" ,", ",")
 
 
-def of(runs: Sequence[Run], scenario: str) -> list[Run]:
+def runs_of(runs: Sequence[Run], scenario: str) -> list[Run]:
     """The runs of one scenario."""
     return [run for run in runs if run.scenario == scenario]
 
 
 def positions(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
     """m, by seed."""
-    return np.array([run.position[method] for run in of(runs, scenario)])
+    return np.array([run.position[method] for run in runs_of(runs, scenario)])
 
 
 def yaws(runs: Sequence[Run], scenario: str, method: str = OURS) -> Array:
     """degrees, by seed."""
-    return np.rad2deg([run.yaw[method] for run in of(runs, scenario)])
+    return np.rad2deg([run.yaw[method] for run in runs_of(runs, scenario)])
 
 
 def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise]:
     """The promises of all present scenarios; beyond the errors of the data sheet, those of the field."""
     if level != "data_sheet":
         return field(runs)
-    there = {run.scenario for run in runs}
+    present = {run.scenario for run in runs}
     promises = []
     for scenario, part in {
         "umbmark": umbmark,
@@ -70,7 +70,7 @@ def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise
         "standstill": standstill,
         "slip": slip,
     }.items():
-        if scenario in there:
+        if scenario in present:
             promises += part(runs)
     return promises + false_alarms(runs) + never_worse(runs)
 
@@ -78,10 +78,10 @@ def all_promises(runs: Sequence[Run], level: str = "data_sheet") -> list[Promise
 def field(runs: Sequence[Run]) -> list[Promise]:
     """Promises for sensors that err as in the field."""
     promises = []
-    if of(runs, "umbmark"):
+    if runs_of(runs, "umbmark"):
         promises.append(Promise("UMBmark, mean", 1e3 * positions(runs, "umbmark").mean(), 30, "mm"))
-    if of(runs, "slip"):
-        notices = [run.notice for run in of(runs, "slip")]
+    if runs_of(runs, "slip"):
+        notices = [run.notice for run in runs_of(runs, "slip")]
         spins, reported = sum(each.spins for each in notices), sum(each.reported for each in notices)
         worst = float((positions(runs, "slip") / positions(runs, "slip", RAW)).max())
         promises += [
@@ -103,7 +103,7 @@ def umbmark(runs: Sequence[Run]) -> list[Promise]:
 
 def random_drive(runs: Sequence[Run]) -> list[Promise]:
     """Promises on ten minutes, and on their second half without gyro."""
-    drives = of(runs, "random")
+    drives = runs_of(runs, "random")
     share = 100 * np.array([run.position[OURS] / run.distance for run in drives])
     yaw = yaws(runs, "random")
     killed = {name: float(np.median([run.killed[name] for run in drives])) for name in (OURS, RAW)}
@@ -119,7 +119,7 @@ def random_drive(runs: Sequence[Run]) -> list[Promise]:
 
 def standstill(runs: Sequence[Run]) -> list[Promise]:
     """Promises on ten minutes at rest, the worst seed."""
-    drifts = np.array([run.drift for run in of(runs, "standstill")])
+    drifts = np.array([run.drift for run in runs_of(runs, "standstill")])
     return [
         Promise("standstill, way in 10 min", 1e3 * drifts[:, 0].max(), 0.1, "mm"),
         Promise("standstill, yaw in 10 min", np.rad2deg(drifts[:, 1].max()), 0.01, "°"),
@@ -130,9 +130,9 @@ def slip(runs: Sequence[Run]) -> list[Promise]:
     """Promises on a minute of slip in each run."""
     ours, wheels = positions(runs, "slip"), positions(runs, "slip", CALIBRATED)
     worth = wheels > WORTH
-    notices = [run.notice for run in of(runs, "slip")]
+    notices = [run.notice for run in runs_of(runs, "slip")]
     noticed = sum(each.noticed for each in notices) / max(1, sum(each.slipping for each in notices))
-    nees = np.concatenate([run.pose_nees for run in of(runs, "slip")])
+    nees = np.concatenate([run.pose_nees for run in runs_of(runs, "slip")])
     better = float(np.mean(wheels[worth] >= 5 * ours[worth])) if worth.any() else math.nan
     return [
         Promise("slip, 5 × better than wheels", 100 * better, 80, "% of runs", least=True),
@@ -146,7 +146,7 @@ def false_alarms(runs: Sequence[Run]) -> list[Promise]:
     """Promises on all runs of a scenario together, in rows in which no wheel slips by more than 5 %."""
     promises = []
     for scenario in SCENARIOS:
-        notices = [run.notice for run in of(runs, scenario)]
+        notices = [run.notice for run in runs_of(runs, scenario)]
         if notices and scenario != "standstill":
             alarms = sum(each.alarms for each in notices) / max(1, sum(each.rolling for each in notices))
             promises.append(Promise(f"false alarms, {scenario}", 100 * alarms, 3, "% of time"))
@@ -156,7 +156,7 @@ def false_alarms(runs: Sequence[Run]) -> list[Promise]:
 def never_worse(runs: Sequence[Run]) -> list[Promise]:
     """Promise to stay below 1.1 × the simple odometry: ratio of the medians over the seeds, in every scenario."""
     promises = []
-    for scenario in (name for name in SCENARIOS if of(runs, name)):
+    for scenario in (name for name in SCENARIOS if runs_of(runs, name)):
         for what, errors in (("position", positions), ("yaw", yaws)):
             ratio = np.median(errors(runs, scenario)) / np.median(errors(runs, scenario, SIMPLE))
             promises.append(Promise(f"{scenario}, {what} over simple odometry's", float(ratio), 1.1, ""))

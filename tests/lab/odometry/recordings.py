@@ -212,9 +212,9 @@ def simple_path(drive: Recording) -> FloatArray:
     turned = np.concatenate([[0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
     yaw = np.interp(drive.time, time, turned - bias * (time - time[0]))
     read = ~np.isnan(drive.left)
-    way = np.interp(drive.time, drive.time[read], drive.radius * (drive.left + drive.right)[read] / 2)
+    travel = np.interp(drive.time, drive.time[read], drive.radius * (drive.left + drive.right)[read] / 2)
     middle = yaw - np.diff(yaw, prepend=yaw[0]) / 2
-    steps = np.diff(way, prepend=way[0])
+    steps = np.diff(travel, prepend=travel[0])
     return np.column_stack([np.cumsum(steps * np.cos(middle)), np.cumsum(steps * np.sin(middle)), yaw])
 
 

@@ -94,13 +94,13 @@ def slip_ratio(recording: Recording) -> Array:
 def truth_of(recording: Recording) -> Truth:
     """The truth of a recording."""
     turned = rotation(recording.orientation)
-    way = np.linalg.norm(np.diff(recording.position, axis=0), axis=1)
+    steps = np.linalg.norm(np.diff(recording.position, axis=0), axis=1)
     return Truth(
         ground=_path(recording.position, turned),
         odom=_path(recording.position @ levelling(recording.up).T, levelling(recording.up) @ turned),
         linear=recording.linear[:, 0],
         angular=recording.angular[:, 2],
-        distance=np.concatenate([[0.0], np.cumsum(way)]),
+        distance=np.concatenate([[0.0], np.cumsum(steps)]),
         slip=slip_ratio(recording),
         pitch=-np.arcsin(np.clip(turned[:, 2, 0], -1, 1)),
     )

@@ -12,7 +12,7 @@ from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import Waypoint
 
 PERIOD = 0.02  # s, odometry
-LONGEST = 60.0  # s, of every path here
+MAX_TIME = 60.0  # s, of every path here
 FARTHEST = 0.3  # m beyond the length of the path
 STRAIGHT = [Waypoint(0.0, 0.0), Waypoint(2.0, 0.0)]
 BENT = [Waypoint(0.0, 0.0), Waypoint(0.8, 0.0), Waypoint(0.8, 0.8)]
@@ -66,10 +66,10 @@ def jumps(chance: random.Random) -> Callable[[float, Jumping], None]:
         first = begin <= now < begin + PERIOD
         if not first and (now < begin or chance.random() >= often):
             return
-        way = chance.uniform(-math.pi, math.pi) if wander else direction
+        course = chance.uniform(-math.pi, math.pi) if wander else direction
         length = chance.uniform(0.5, 1.0) * size if what != "heading" else 0.0
         yaw = chance.uniform(-angle, angle) if what != "position" else 0.0
-        robot.jump(length * math.cos(way), length * math.sin(way), yaw)
+        robot.jump(length * math.cos(course), length * math.sin(course), yaw)
 
     return jump
 
@@ -80,7 +80,7 @@ def excess(seed: int) -> float:
     robot = Jumping(chance.choice(PATHS))
     jump = jumps(chance)
     pause = chance.uniform(0.0, 6.0) if chance.random() < 0.2 else math.inf
-    for number in range(round(LONGEST / PERIOD)):
+    for number in range(round(MAX_TIME / PERIOD)):
         now = number * PERIOD
         jump(now, robot)
         if pause <= now < pause + PERIOD:

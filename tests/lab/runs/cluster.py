@@ -140,12 +140,12 @@ class Cluster:
 
     def _assign(self, work: _Work) -> None:
         """Takes the chunks of lost workers back and gives each idle worker one."""
-        there = set(self._client.scheduler_info()["workers"])
-        for worker in [worker for worker in work.running if worker not in there]:
+        present = set(self._client.scheduler_info()["workers"])
+        for worker in [worker for worker in work.running if worker not in present]:
             chunk, future = work.running.pop(worker)
             future.cancel()
             self._repeat(work, worker, chunk)
-        for worker in sorted(there - self._refused - set(work.running)):
+        for worker in sorted(present - self._refused - set(work.running)):
             if not work.open:
                 return
             chunk = work.open.popleft()
