@@ -77,7 +77,7 @@ class Tuned:
 
 
 def draw(random: np.random.Generator, derived: Log, joint: str, effort_limit: float, speed: float) -> dict[str, Any]:
-    """Draws a set; `derived`: a row of the log, `joint` a wheel's, `effort_limit` [N m] `speed` [rad/s] of the wheels."""
+    """Draws a set; `derived`: a row of the log, `joint`: a wheel's; `effort_limit` N m and `speed` rad/s are limits."""
 
     def times(factor: float) -> float:
         return float(np.exp(random.uniform(-np.log(factor), np.log(factor))))
