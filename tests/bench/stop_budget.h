@@ -27,7 +27,7 @@ struct StopMeasurement {
   std::optional<std::uint64_t> stopped_cycle;
   bool ramps = false;                           ///< stop category 1
   std::optional<std::uint64_t> standing_cycle;  ///< by truth
-  double way = 0;                               ///< m
+  double distance = 0;                          ///< m
   double period = 0;                            ///< s
 
   /// Cycles from the latch to the gate's tick; nothing if either is missing.

@@ -315,7 +315,7 @@ struct WatchedAxis {
 
   /// The value is within the new limits, or on the way back to them. Then |a| does not grow, and a speed beyond its
   /// limit grows only while its acceleration fades at the new jerk.
-  void look(double now, const AxisTuning& limits, double dt) {
+  void check(double now, const AxisTuning& limits, double dt) {
     const double next = (now - speed) / dt;
     const double fastest = std::max({limits.acceleration, limits.deceleration, std::abs(acceleration)});
     EXPECT_LE(std::abs(next), fastest + kTuneRounding / dt);
@@ -354,8 +354,8 @@ TEST_F(Tune, AtRandomWhileDrivingNeverExceedsTheOldOrTheNewLimits) {
         bench.controller.tune(tuning);
       }
       bench.step();
-      linear.look(bench.command.twist_limited.linear[0], tuning.linear, bench.period);
-      angular.look(bench.command.twist_limited.angular[2], tuning.angular, bench.period);
+      linear.check(bench.command.twist_limited.linear[0], tuning.linear, bench.period);
+      angular.check(bench.command.twist_limited.angular[2], tuning.angular, bench.period);
       ASSERT_EQ(bench.command.reasons & kReasonBadSensors, 0u);
       if (HasFailure()) FAIL() << "seed " << seed << ", cycle " << k;
     }

@@ -117,7 +117,7 @@ class SlipFixture : public testing::Test {
     body_.detector.restart_at_rest(0, {0, 0, 1}, {});
   }
 
-  void judge(bool learns) {
+  void evaluate(bool learns) {
     body_.detector.evaluate({.acceleration_variance = {1e-6, 1e-6}, .wheel_base = 0.003, .gyro_bias = 1e-5}, learns);
   }
   bool any_proven() const {
@@ -129,7 +129,7 @@ class SlipFixture : public testing::Test {
     double proven = 0;
     for (double t = 0; t < seconds - SlidingBody::kStep / 2; t += SlidingBody::kStep) {
       if (!body_.step(ahead, across, turning)) continue;
-      judge(true);
+      evaluate(true);
       if (any_proven()) proven += Tuning::kPointInterval;
     }
     return proven;
@@ -142,7 +142,7 @@ class SlipFixture : public testing::Test {
   double time_to_proof(SlipResidual::Channel channel, double longest, double ahead = 0, double across = 0) {
     for (double t = 0; t < longest; t += SlidingBody::kStep) {
       if (!body_.step(ahead, across)) continue;
-      judge(false);
+      evaluate(false);
       if (body_.detector.proven(channel)) return t;
     }
     return longest;

@@ -58,7 +58,7 @@ class BusDamageTest : public testing::Test {
   }
 
   /// A mapped object can be read, and shows no frame but the published one.
-  static void look(const ForeignChannel<Frames>& reader) {
+  static void check_frames(const ForeignChannel<Frames>& reader) {
     if (reader.memory() == nullptr) return;
     TestFrame frame;
     const Lookup found = FrameReader<TestFrame>(reader.memory()).newest(frame);
@@ -80,7 +80,7 @@ TEST_F(BusDamageTest, ADamagedLeftoverIsMappedOrNotAndTheNextWriterMakesItWhole)
     ForeignChannel<Frames> reader(bus_.name(), ChannelNames::kState);
     const bool mapped = reader.poll();
     EXPECT_EQ(mapped, reader.obstacle().empty());
-    look(reader);
+    check_frames(reader);
     const OwnedChannel<Frames> writer(bus_.name(), ChannelNames::kState);
     publish(writer, 6);
     reader.poll();
@@ -101,7 +101,7 @@ TEST_F(BusDamageTest, WhatIsDamagedUnderALivingWriterIsMappedOrAnErrorThatNamesI
     ForeignChannel<Frames> before(bus_.name(), ChannelNames::kState);
     ASSERT_TRUE(before.poll());
     damage.strike({reinterpret_cast<std::byte*>(writer.memory()), sizeof(ChannelHead)});
-    look(before);
+    check_frames(before);
     ForeignChannel<Frames> after(bus_.name(), ChannelNames::kState);
     for (ForeignChannel<Frames>* const reader : {&before, &after}) {
       try {
@@ -109,7 +109,7 @@ TEST_F(BusDamageTest, WhatIsDamagedUnderALivingWriterIsMappedOrAnErrorThatNamesI
       } catch (const BusError& error) {
         EXPECT_NE(std::string(error.what()).find(file()), std::string::npos);
       }
-      look(*reader);
+      check_frames(*reader);
     }
   }
 }

@@ -116,7 +116,7 @@ class GateRandomDrive : public GateFixture {
       sensors_.joints[i] = {.position = position_[i], .velocity = velocity_[i], .effort = within(-8, 8)};
     }
   }
-  void ask() {
+  void request() {
     for (JointCommand& joint : command_.joints) {
       joint = {.mode = static_cast<JointMode>(random_() % 4),
                .position = within(-4, 6),
@@ -149,7 +149,7 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
     bool driven_before[2] = {};
     for (int tick = 0; tick < 500; ++tick) {
       move();
-      ask();
+      request();
       const std::uint64_t cycle = input_.cycle;
       next();
       for (std::size_t i = 0; i < 2; ++i) {
@@ -200,7 +200,7 @@ TEST_F(GateRandomDrive, SameInputsGiveTheSameBits) {
       begin(seed);
       for (std::size_t tick = 0; tick < 200; ++tick) {
         move();
-        ask();
+        request();
         next();
         for (std::size_t i = 0; i < 2; ++i) {
           if (round == 0) {

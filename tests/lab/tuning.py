@@ -1,13 +1,14 @@
-"""Drives random sets of limits, gains and feed-forward that set_parameters accepts: none makes a robot exceed the
-commanded speed by much, or shake without a cause.
+"""Drives random sets of limits, gains and feed-forward that set_parameters accepts.
+
+None makes a robot exceed the commanded speed by much, or shake without a cause.
 
 A set is drawn around derived and described values, so widely that most sets are refused; the first accepted one is
 driven. It is set at rest or in motion, and the robot then drives on and stops. The drive is a pure function of the
 seed, which also selects the robot: ROBOTS[seed mod their number].
 
-    exceeds    a true speed beyond the commanded one, or below rest, by 5 % of it, at least MIN_EXCESS, for 50 ms on
-               break; where 0 is commanded, by 20 % of the fastest rim's. Of skid steers, whose treads scrub, the mean
-               of the wheels over 50 ms
+    exceeds    a true speed beyond the commanded one, or below rest, by 5 % of it, at least MIN_EXCESS, for 50 ms
+               without a break; where 0 is commanded, by 20 % of the fastest rim's. On skid steers, whose treads scrub,
+               the mean of the wheels over 50 ms counts
     shakes     a motor whose torque varies within 0.2 s by more than SHAKES of its limit, RMS, all of the last half
                second, while the monitor neither stops nor warns
 

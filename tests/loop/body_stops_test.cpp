@@ -39,7 +39,7 @@ class BodyStops : public testing::Test {
       if (loop.cycle() % 100 == 1) loop.command({.linear = {linear, 0, 0}, .angular = {}});
       if (look) look(loop);
       loop.step();
-      note(loop.row());
+      record(loop.row());
     }
     truth_ = loop.row().driver->truth;
     permit_ = loop.row().monitor->permit;
@@ -62,7 +62,7 @@ class BodyStops : public testing::Test {
   Permit permit_;                          ///< in the end
 
  private:
-  void note(const JoinedRow& row) {
+  void record(const JoinedRow& row) {
     const Permit& permit = row.monitor->permit;
     for (std::size_t bit = 0; bit < kStopCauses; ++bit) {
       const std::uint64_t cause = std::uint64_t{1} << bit;

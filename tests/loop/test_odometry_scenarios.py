@@ -77,10 +77,10 @@ def test_every_run_begins_at_rest_and_no_monitor_stops_it(scenario):
 
 
 def test_on_the_square_nominal_wheels_return_to_where_they_began():
-    """The wheels return except for 12.5 mrad, on squares whose corners are at most 5.7 m away. That bound holds whole
-    cycles (0.5 ms of 1 rad/s in each of four turns), the creep of the wheel loops, and the brakes' share of each turn.
-    The creep is at most one and a half counts of 0.15 mm of both wheels, 0.5 m apart, after each of eight ramps. It
-    also holds the count by which each wheel may miss its next one.
+    """The wheels return except for 12.5 mrad, on squares whose corners are at most 5.7 m away. That bound has
+    several parts. Whole cycles make 0.5 ms of 1 rad/s in each of four turns, and the brakes take a share of each turn.
+    The wheel loops creep by at most one and a half counts of 0.15 mm of both wheels, 0.5 m apart, after each of eight
+    ramps. Each wheel may miss its next count.
     """
     trial = draw_trial("umbmark", 0)
     begin, end = trial.marks["cw"][0], trial.marks["end"][0]

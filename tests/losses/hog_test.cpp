@@ -89,7 +89,7 @@ class AHog : public Losses {
 
 TEST_F(AHog, AtTheControllersPriorityStarvesItAndTheRobotBrakes) {
   Hog hog(static_cast<int>(LoopPriority::kController), 0);
-  robot_.look();
+  robot_.poll();
   log().forget();
   const std::uint64_t before = robot_.cycle();
   hog.begin();
@@ -107,7 +107,7 @@ TEST_F(AHog, AtTheControllersPriorityStarvesItAndTheRobotBrakes) {
 TEST_F(AHog, AboveTheDriverStopsEverythingAndAfterItNothingJumps) {
   constexpr std::int64_t kSpell = 300'000'000;  // ns; less than what the kernel's real-time throttling lets pass
   Hog hog(static_cast<int>(LoopPriority::kDriver) + 1, 0);
-  robot_.look();
+  robot_.poll();
   log().forget();
   hog.begin();
   sleep_ns(kSpell / 3);

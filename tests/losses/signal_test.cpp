@@ -30,11 +30,11 @@ TEST_P(ALostNode, StopsTheRobotUntilResetAndANewCommand) {
   const MeasuredStop stop = robot_.lose(node, signal);
   std::printf("  %s of %s: brake after %llu cycles (%s), %.3f m to standstill\n", name_of_signal(signal).c_str(),
               name_of(node), static_cast<unsigned long long>(stop.cycles),
-              names_of(kGateReasonNames, stop.reasons).c_str(), stop.way);
+              names_of(kGateReasonNames, stop.reasons).c_str(), stop.distance);
   if (stop.measured()) {
     EXPECT_LE(stop.cycles, kBrakeWithin);
   }
-  EXPECT_LT(stop.way, 0.5) << "v²/2a with brakes of 2 · 2.2 N·m on wheels of 0.1 m under 12 kg: 0.14 m";
+  EXPECT_LT(stop.distance, 0.5) << "v²/2a with brakes of 2 · 2.2 N·m on wheels of 0.1 m under 12 kg: 0.14 m";
   if (signal != SIGSTOP) {
     EXPECT_FALSE(nodes().lives(node));
     EXPECT_EQ(nodes().process(node).ending_signal(), signal) << "and it hangs nowhere on its way";

@@ -37,7 +37,7 @@ struct ABlackBoxKeeper : testing::Test {
     return keeper;
   }
 
-  void take(BlackBoxKeeper& keeper, const JoinedRow& row) {
+  void store(BlackBoxKeeper& keeper, const JoinedRow& row) {
     keeper.add(*row.driver);
     keeper.add(*row.estimator);
     keeper.add(*row.controller);
@@ -46,14 +46,14 @@ struct ABlackBoxKeeper : testing::Test {
   }
 
   void drive_on(BlackBoxKeeper& keeper, std::uint64_t cycles) {
-    drive(loop, cycles, [&](const JoinedRow& row) { take(keeper, row); });
+    drive(loop, cycles, [&](const JoinedRow& row) { store(keeper, row); });
   }
 
   void stand(BlackBoxKeeper& keeper, std::uint64_t cycles) {
     loop.command({});
     for (std::uint64_t i = 0; i < cycles; ++i) {
       loop.step();
-      take(keeper, loop.row());
+      store(keeper, loop.row());
     }
   }
 

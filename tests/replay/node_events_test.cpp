@@ -104,7 +104,7 @@ class RandomNodes {
         return pause();
       case 7:
         add_silence(loop_.monitor->time_out());
-        return ask();
+        return request_stop_or_reset();
       case 8:
         return corrupt();
       case 9:
@@ -114,12 +114,12 @@ class RandomNodes {
         set_fault(loop_.machine.faults, "monitor", chance(0.5) ? "intermittent" : "garbage");
         return;
       default:
-        return ask();
+        return request_stop_or_reset();
     }
   }
 
   /// An emergency stop or a reset, in time or during silence.
-  void ask() {
+  void request_stop_or_reset() {
     if (chance(0.3)) {
       ++requests_.e_stop_services;
     } else {
@@ -132,7 +132,7 @@ class RandomNodes {
   void pause() {
     for (int i = 0; i < 3; ++i) {
       loop_.driver.publish_paused();
-      if (chance(0.5)) ask();
+      if (chance(0.5)) request_stop_or_reset();
       add_silence(loop_.monitor->step());
     }
   }

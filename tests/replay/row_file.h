@@ -31,7 +31,7 @@ class SnapshotSource {
   }
 
   /// Takes the next snapshot, sealed; false: there is none yet.
-  bool take(LawSnapshot& snapshot) {
+  bool next(LawSnapshot& snapshot) {
     if (!reader_ || !reader_->take(snapshot)) return false;
     seal(snapshot);
     return true;
@@ -114,7 +114,7 @@ class RowFile {
       monitor.drain(join);
       for (SnapshotSource& source : sources) {
         source.poll();
-        while (source.take(*snapshot)) std::fwrite(snapshot.get(), sizeof(LawSnapshot), 1, snapshots.get());
+        while (source.next(*snapshot)) std::fwrite(snapshot.get(), sizeof(LawSnapshot), 1, snapshots.get());
       }
       sleep_ns(5'000'000);
     }

@@ -43,7 +43,7 @@ class DamagedFrames : public testing::Test {
 
   /// Calls `check` with each frame that a look-up returned.
   template <class Check>
-  void look(Damage& damage, Check check) {
+  void check_frames(Damage& damage, Check check) {
     TestFrame frame;
     if (is_frame(reader_.newest(frame))) check(frame);
     for (const std::uint64_t cycle : {kCycles - 1, kCycles - kFrameSlots, damage.number()}) {
@@ -73,7 +73,7 @@ TEST_F(DamagedFrames, NothingIsTakenForAFrameThatWasNotPublished) {
     Damage damage(seed);
     heal();
     damage.strike(bytes_of(*damaged_));
-    look(damage, [&](const TestFrame& frame) {
+    check_frames(damage, [&](const TestFrame& frame) {
       ++accepted;
       EXPECT_TRUE(intact(frame));
       EXPECT_TRUE(whole(frame));

@@ -35,7 +35,7 @@ class RingModelTest : public testing::Test {
   using Reader = RingReader<Row, ModelAtomic, kRows>;
 
   /// Takes a row, which must be that of the reader's position.
-  bool take(Reader& reader) {
+  bool take_next(Reader& reader) {
     Row row;
     if (!reader.take(row)) return false;
     if (row.first != row.second) model_.fail("torn");
@@ -47,7 +47,7 @@ class RingModelTest : public testing::Test {
   /// The writer does not know which rows were read.
   Report rows_overwritten(std::uint64_t rows) {
     return explore(rows, nullptr, [this](Reader& reader) {
-      for (int i = 0; i < 3; ++i) take(reader);
+      for (int i = 0; i < 3; ++i) take_next(reader);
     });
   }
 
@@ -55,7 +55,7 @@ class RingModelTest : public testing::Test {
   Report rows_dropped(std::uint64_t rows) {
     return explore(rows, &read_, [this](Reader& reader) {
       for (int i = 0; i < 3; ++i) {
-        if (take(reader)) read_.store(reader.position(), std::memory_order_release);
+        if (take_next(reader)) read_.store(reader.position(), std::memory_order_release);
       }
       if (reader.overwritten() != 0) model_.fail("overwritten before it was read");
     });
@@ -74,7 +74,7 @@ class RingModelTest : public testing::Test {
         },
         [this] {
           reader_.emplace(&ring_, 0);
-          for (int i = 0; i < 2; ++i) take(*reader_);
+          for (int i = 0; i < 2; ++i) take_next(*reader_);
         });
   }
 
@@ -87,8 +87,8 @@ class RingModelTest : public testing::Test {
         },
         [this] {
           reader_.emplace(&ring_, 0);
-          const bool found = take(*reader_);
-          if (told_.load(std::memory_order_acquire) == 1 && !found && !take(*reader_)) model_.fail("not found");
+          const bool found = take_next(*reader_);
+          if (told_.load(std::memory_order_acquire) == 1 && !found && !take_next(*reader_)) model_.fail("not found");
         });
   }
 
@@ -104,7 +104,7 @@ class RingModelTest : public testing::Test {
         },
         [this] {
           reader_.emplace(&ring_, 0);
-          if (!take(*reader_)) return;
+          if (!take_next(*reader_)) return;
           read_.store(reader_->position(), std::memory_order_release);
           asked_.store(1, std::memory_order_release);
         });
@@ -125,7 +125,7 @@ class RingModelTest : public testing::Test {
           look(*reader_);
         },
         [this, rows] {
-          for (std::uint64_t i = 0; i < rows; ++i) take(*reader_);
+          for (std::uint64_t i = 0; i < rows; ++i) take_next(*reader_);
           if (taken_ + reader_->overwritten() + reader_->dropped() != rows) model_.fail("miscounted");
         });
   }

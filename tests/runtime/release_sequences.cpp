@@ -146,7 +146,8 @@ class Sequence {
     }
   }
 
-  /// As the node does. Where this was no restart, the judge forgets as the node does, at its first look.
+  /// Acts as the node does. After a connection without a restart, the judge forgets as the node does, at its first
+  /// pass.
   void start_intake() {
     EarlierController earlier;
     CommandFrame command;

@@ -2,8 +2,8 @@
 /// Nothing moves without a release: each seed gives one random sequence in virtual time. Nodes die, restart, stall,
 /// pause and reset. Two senders of commands have clocks that jump; they are suspended, restarted, and close and open
 /// their connections. Publishers of e_stop come and go; cmd_vel_timeouts change; emergency stops and resets are
-/// requested. A restart builds the node's classes again on the channels of their predecessors, with an empty inbox. In a
-/// third of the sequences the senders are two sources of a list with a lock, whose timeouts are short, long or none.
+/// requested. A restart builds the node's classes again on the channels of their predecessors, with an empty inbox. In
+/// a third of the sequences the senders are two sources of a list with a lock, whose timeouts are short, long or none.
 ///
 /// The judge knows only what was sent, which stamps were refused, and what was started. With T = the shorter of
 /// cmd_vel_timeout and the one before it, in cycles:

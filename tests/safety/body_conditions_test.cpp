@@ -50,10 +50,10 @@ class BodyConditionsTest : public testing::Test {
     jitter_ = -jitter_;
     sensors_.imu.angular_velocity = plain(rate_ + jitter_ * Vector3d::Ones());
     sensors_.imu.linear_acceleration = plain(force_ + jitter_ * Vector3d::Ones());
-    look();
+    check();
   }
   /// Checks the present frame.
-  void look(std::uint64_t elapsed = 1) {
+  void check(std::uint64_t elapsed = 1) {
     out_.clear();
     facts_.step(sensors_, elapsed, wheels_turn_, out_);
   }
@@ -260,7 +260,7 @@ TEST_F(BodyConditionsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
     int count = 0;
     for (; quiet() && count < 2000; ++count) {
       other[0] = -other[0];
-      look();
+      check();
     }
     EXPECT_EQ(count, cycles(parameters_.imu_stuck));
     EXPECT_EQ(out_.with(Reaction::kSlow), kCauseImuStuck);
@@ -271,7 +271,7 @@ TEST_F(BodyConditionsTest, AStuckDeviceIsFoundWhileTheWheelsTurn) {
 TEST_F(BodyConditionsTest, StandsStillWithoutAStuckImu) {
   wheels_turn_ = false;
   for (int i = 0; i < 2000; ++i) {
-    look();
+    check();
     ASSERT_TRUE(quiet());
   }
 }
@@ -281,7 +281,7 @@ TEST_F(BodyConditionsTest, ASlowImuIsNotStuck) {
     jitter_ = i / 10 % 2 == 0 ? 1e-12 : -1e-12;
     if (i % 10 == 0) sensors_.imu.angular_velocity = plain(rate_ + jitter_ * Vector3d::Ones());
     if (i % 10 == 5) sensors_.imu.linear_acceleration = plain(force_ + jitter_ * Vector3d::Ones());
-    look();
+    check();
     ASSERT_TRUE(quiet());
   }
 }
@@ -294,7 +294,7 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
       sensors_.imu.linear_acceleration = {0, 0, kGravity};
       sensors_.imu.angular_velocity[axis] = bad;
       sensors_.imu.linear_acceleration[axis] = bad;
-      look();
+      check();
       EXPECT_TRUE(quiet());
     }
   }
@@ -386,7 +386,7 @@ TEST_F(BodyConditionsTest, ANewRunKnowsNothing) {
 
 TEST_F(BodyConditionsTest, SkippedCyclesCount) {
   sensors_.imu.linear_acceleration = {0, 0, 0.5};
-  look(static_cast<std::uint64_t>(cycles(parameters_.free_fall)));
+  check(static_cast<std::uint64_t>(cycles(parameters_.free_fall)));
   EXPECT_EQ(out_.stopping(), kCauseFreeFall);
 }
 
@@ -401,7 +401,7 @@ TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
     force_ = force;
     rate_ = {0, 3, 0};
     steps(500);
-    for (int i = 0; i < 500; ++i) look();
+    for (int i = 0; i < 500; ++i) check();
     EXPECT_TRUE(quiet());
   }
 }

@@ -38,7 +38,7 @@ class DriveLog {
   }
 
   /// Takes the available rows. A ring holds 2 s at 1 kHz: call it more often.
-  void look() {
+  void read_rows() {
     while (reader_ && reader_->take(row_)) {
       const TruthFrame& truth = row_.truth;
       cycles_.push_back({.run = row_.sensors.head.run,

@@ -26,7 +26,7 @@ struct MeasuredStop {
   std::uint64_t cycles = 0;   ///< from the newest cycle before the signal to the first of all that braked
   std::uint64_t blurred = 0;  ///< cycles that passed until the signal had its effect: the uncertainty of `cycles`
   bool before = false;        ///< it braked already: this machine stood still, and nothing is measured
-  double way = 0;             ///< m, true, from then to standstill
+  double distance = 0;        ///< m, true, from then to standstill
   std::uint64_t reasons = 0;  ///< the gate's, in the first cycle that braked
 
   /// False if this machine delayed the test, or the process that gets the signal: the trial must be repeated.
@@ -90,7 +90,7 @@ class DrivingRobot {
   void ask_for_nothing() { asked_.reset(); }
 
   /// Sends, maps and reads what is due.
-  void look() {
+  void poll() {
     const std::int64_t now_ns = monotonic_ns();
     if (asked_ && now_ns >= next_send_ns_) {
       next_send_ns_ = now_ns + kSendNs;
@@ -106,7 +106,7 @@ class DrivingRobot {
       truth_.poll();
       log_.poll();
     }
-    log_.look();
+    log_.read_rows();
   }
 
   /// Objects are no longer opened again: a damaged one would be an error.
@@ -135,7 +135,7 @@ class DrivingRobot {
   template <class Condition>
   bool await(Condition condition, double timeout_s = kTimeout) {
     const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(timeout_s * 1e9);
-    for (look(); !condition(); look()) {
+    for (poll(); !condition(); poll()) {
       if (monotonic_ns() > end_ns) return false;
       sleep_ns(kLookNs);
     }
@@ -209,7 +209,7 @@ class DrivingRobot {
 
   /// Sends the signal at full speed and watches until the robot stands. Throws std::runtime_error if it does not.
   MeasuredStop lose(LoopNode node, int signal) {
-    look();
+    poll();
     log_.forget();
     const std::uint64_t before = cycle();
     nodes_.process(node).stop_with(signal);
@@ -218,7 +218,7 @@ class DrivingRobot {
     const std::uint64_t braked = *log_.braking_since();
     stop.before = braked <= before;
     stop.cycles = stop.before ? 0 : braked - before;
-    stop.way = log_.way_since(before);
+    stop.distance = log_.way_since(before);
     for (const DrivenCycle& driven : log_.cycles()) {
       if (driven.cycle == braked) stop.reasons = driven.reasons;
     }

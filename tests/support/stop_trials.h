@@ -71,7 +71,7 @@ inline StopTrials run_trials(DrivingRobot& robot, const LossCell& cell, int coun
     const MeasuredStop stop = robot.lose(cell.node, cell.signal);
     if (stop.measured()) {
       trials.cycles.push_back(static_cast<double>(stop.cycles));
-      trials.ways.push_back(stop.way);
+      trials.ways.push_back(stop.distance);
     } else if (++trials.repeated > count + kRepeatedTrials) {
       throw std::runtime_error("this machine stalls too often to measure anything");
     }

@@ -14,8 +14,8 @@ def wheel_angles(odometry: Stream, robot: Robot, source: str | None) -> tuple[Fl
     """Angles (n, 2) [rad] of the left and the right wheel, as their joints would report them, and the source in words.
 
     base_link moves by `forward` [m] and `turn` [rad] in a step. The left and right wheels then travel forward − turn ·
-    axle_y ∓ turn · base / 2. A pose gives forward as c · (turn/2) / sin(turn/2) over the arc whose chord is c; its sign
-    is that of c along the mean heading. A twist gives both by its trapezoid.
+    axle_y ∓ turn · base / 2. Between two poses with the chord c, forward is
+    c · (turn/2) / sin(turn/2). Its sign is that of c along the mean heading. A twist gives both by its trapezoid.
 
     Args:
         odometry: columns x, y [m], yaw [rad], linear [m/s], angular [rad/s], increasing in time.

@@ -170,9 +170,7 @@ def wheel_column(loop: ClosedLoop, log: Log, name: str) -> Array:
 
 
 def standstill(robot: str) -> tuple[float, float]:
-    """RMS of the torque [N·m] about its mean on the level, and the way [m] in 20 s on a slope with hand-over to the
-    brake.
-    """
+    """RMS of the torque [N·m] about its mean on the level, and the way [m] in 20 s on a slope, hand-over included."""
     level = make(robot)
     level.run(1.5, (0.3, 0.0))
     level.run(1.5, (0.0, 0.0))
@@ -255,8 +253,8 @@ def steady_curve(robot: str, counts: int, linear: float) -> Steady:
 
 
 def of_the_peer() -> tuple[float, float]:
-    """Drives the two drives of diff_drive_controller's own test with its robot's radius and separation: 10 s at 0.1
-    m/s, and 10 s at π/10 rad/s; then a stop.
+    """Makes the two drives of diff_drive_controller's own test: 10 s at 0.1 m/s, and 10 s at π/10 rad/s; then a stop.
+    The robot has that test's radius and separation.
 
     Returns:
         Way less 1 m [m], turn less half a turn [rad].

@@ -1,9 +1,9 @@
 """Judges one run of the odometry benchmark by method: errors, consistency, detected slip.
 
-position error   |estimated − true position| at the end of the run. UMBmark: of the ten return errors, each in the
-                 frame of its own start, the larger of the two distances of their centres of gravity, one of the
-                 five clockwise runs and one of the five counter-clockwise, from zero (Borenstein & Feng 1996,
-                 section III: E_max,syst). The odometry is reset before each
+position error   |estimated − true position| at the end of the run. In UMBmark each of the ten
+                 return errors lies in the frame of its own start. The error is the larger distance from zero of their
+                 two centres of gravity, clockwise and counter-clockwise (Borenstein & Feng 1996, section III:
+                 E_max,syst). The odometry is reset before each
 yaw error        |estimated − true| at the end, within half a turn. UMBmark: the largest of the ten
 NEES             of consistency.py, every SAMPLE s, where the robot moves: one at rest errs by micrometres and
                  has no dynamics that a covariance could describe

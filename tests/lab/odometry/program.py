@@ -37,8 +37,9 @@ class Program:
         self.drive(0.0, 0.0, seconds)
 
     def ramp(self, linear: float, angular: float, acceleration: float) -> None:
-        """Adds a linear ramp from the last command to this one: a wheel 0.25 m beside the middle changes by at most
-        `acceleration` m/s², whatever the controller's limits are.
+        """Adds a linear ramp from the last command to this one, whatever the controller's limits are.
+
+        A wheel 0.25 m beside the middle changes by at most `acceleration` m/s².
         """
         last = self._parts[-1][-1] if self._parts else np.zeros(2)
         change = abs(linear - last[0]) + 0.25 * abs(angular - last[1])
