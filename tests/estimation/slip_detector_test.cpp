@@ -178,7 +178,7 @@ TEST_F(SlipDetectorTest, TheAccelerometersSlowErrorIsTheGravityError) {
   int count = 0;
   for (int i = 0; i < 4000; ++i) {
     if (!body_.step()) continue;
-    judge(true);
+    evaluate(true);
     if (!body_.detector.gravity_error().known) continue;
     sum += body_.detector.gravity_error().along;
     ++count;
@@ -243,7 +243,7 @@ TEST_F(SlipFixture, TheLevelIsTheQuantileOfTheResiduals) {
   int count = 0;
   for (int i = 0; i < 200000; ++i) {
     if (!body_.step()) continue;
-    judge(true);
+    evaluate(true);
     ++count;
     beyond += body_.detector.nis(SlipResidual::kAlong) > 1.645 * 1.645 ? 1 : 0;
   }

@@ -25,7 +25,7 @@ class WheelSlideTest : public SlipFixture {
   double go(double seconds, double ahead = 0, double across = 0) {
     for (double t = 0; t < seconds - SlidingBody::kStep / 2; t += SlidingBody::kStep) {
       if (!body_.step(ahead, across)) continue;
-      judge(false);
+      evaluate(false);
       if (slide_.active()) {
         add(slide_.step(body_.detector.difference(), input()));
         if (!slide_.active()) return t;
@@ -140,7 +140,7 @@ TEST_F(SlipFixture, ARobotThatIsTippedOnStandingWheelsDoesNotMove) {
   for (int i = 0; i < 600; ++i) {
     body_.error = i < 200 ? 3.0 : -2.0;
     if (!body_.step()) continue;
-    judge(false);
+    evaluate(false);
     const WheelSlide::Input input{.noise = body_.detector.acceleration_noise(1e-6),
                                   .path_slope_deviation = body_.detector.slope_deviation(SlipResidual::kAlong)};
     const double span = body_.detector.shortest_proven_span();
